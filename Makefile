@@ -1,0 +1,82 @@
+# One virtual environment, built from the lock files; `make` alone lists the targets.
+# Everything runs as `python -m …`: scripts' first lines break in a path with spaces.
+
+PYTHON ?= python3
+VENV   ?= .venv
+HOST   ?= 127.0.0.1
+PORT   ?= 8000
+COUNT  ?= 100000
+SEED   ?= 1
+
+python  := "$(VENV)/bin/python"
+install := $(python) -m pip install --quiet --disable-pip-version-check
+
+# A stamp is written last, inside the environment: an interrupted install leaves none and is redone,
+# and rebuilding the environment drops both. $(space) keeps an overridden VENV with spaces one word.
+empty   :=
+space   := $(empty) $(empty)
+stamps  := $(subst $(space),\$(space),$(VENV))
+runtime := $(stamps)/.runtime-installed
+dev     := $(stamps)/.dev-installed
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.PHONY: help install run test lint format bench fuzz lock clean
+
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' Makefile
+
+install: $(dev) ## create .venv with everything for work on the project
+
+run: $(runtime) ## start the service on http://127.0.0.1:8000 (HOST=, PORT=)
+	$(python) -m service serve --host "$(HOST)" --port "$(PORT)"
+
+test: lint ## lint, type-check and test, with coverage
+	$(python) -m pytest --cov
+
+lint: $(dev) ## ruff and mypy, without the tests
+	$(python) -m ruff check .
+	$(python) -m ruff format --check .
+	$(python) -m mypy
+
+format: $(dev) ## rewrite the code in the house style
+	$(python) -m ruff check --fix .
+	$(python) -m ruff format .
+
+bench: $(dev) ## measure against the budgets
+	$(python) -m tests.benchmarks
+
+fuzz: $(dev) ## read 100,000 hostile texts (COUNT=, SEED=)
+	$(python) -m tests.fuzz --count "$(COUNT)" --seed "$(SEED)"
+
+# Only pins that pyproject.toml no longer allows are changed; `make lock UPGRADE=--upgrade` takes the newest.
+# One resolution serves every Python and platform; later files repeat the pins of earlier ones.
+compile = "$$tmp/bin/python" -m uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
+	--no-header --no-emit-index-url --no-emit-find-links --no-annotate $(UPGRADE)
+lock: ## regenerate the lock files (UPGRADE=--upgrade for the newest versions)
+	@tmp=$$(mktemp -d) && trap 'rm -rf "$$tmp"' EXIT && \
+	$(PYTHON) -m venv "$$tmp" && "$$tmp/bin/python" -m pip install --quiet uv && \
+	$(compile) pyproject.toml -o requirements.lock && \
+	$(compile) --group pyproject.toml:build -o requirements-build.lock && \
+	$(compile) pyproject.toml --group dev -c requirements.lock -c requirements-build.lock -o requirements-dev.lock
+
+clean: ## remove .venv and every cache
+	@[ ! -e "$(VENV)" ] || [ -f "$(VENV)/pyvenv.cfg" ] || { echo '$(VENV) is no virtual environment; not removed.'; exit 1; }
+	rm -rf "$(VENV)" .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache build dist
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(runtime): pyproject.toml requirements.lock requirements-build.lock
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo \
+	  'DH Grader needs Python 3.11 or newer, and "$(PYTHON)" is not. Name one: make PYTHON=python3.12 …' >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { echo \
+	  '"$(PYTHON)" cannot create virtual environments. Install its venv module (on Debian: apt install python3-venv).' >&2; exit 1; }
+	@[ ! -e "$(VENV)" ] || [ -f "$(VENV)/pyvenv.cfg" ] || { echo \
+	  '"$(VENV)" exists and is no virtual environment. Remove it, or choose another place: make VENV=… …' >&2; exit 1; }
+	$(PYTHON) -m venv --clear "$(VENV)"
+	$(install) --require-hashes -r requirements.lock -r requirements-build.lock
+	$(install) --no-deps --no-build-isolation --editable .
+	@touch "$@"
+
+$(dev): $(runtime) requirements-dev.lock
+	$(install) --require-hashes -r requirements-dev.lock
+	@touch "$@"

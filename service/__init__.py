@@ -1,0 +1,1 @@
+"""DH Grader: evaluates what a robotics student submits against a reference robot."""

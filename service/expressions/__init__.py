@@ -1,0 +1,20 @@
+"""What a student writes -> syntax tree -> numbers, text, LaTeX, MathML. Knows nothing of robots."""
+
+from service.expressions.errors import ExpressionError, Note
+from service.expressions.limits import LIMITS, Limits
+from service.expressions.reader import AngleUnits, Expression, read
+from service.expressions.vocabulary import Kind, Symbol, Vocabulary, joint_variable
+
+__all__ = [
+    "LIMITS",
+    "AngleUnits",
+    "Expression",
+    "ExpressionError",
+    "Kind",
+    "Limits",
+    "Note",
+    "Symbol",
+    "Vocabulary",
+    "joint_variable",
+    "read",
+]

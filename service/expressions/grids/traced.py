@@ -1,0 +1,80 @@
+"""A piece of text that remembers where each of its characters was typed."""
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from service.expressions.errors import Span
+
+_LINE_END: Final = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
+
+
+@dataclass(frozen=True, slots=True)
+class Traced:
+    """``text``, and for each of its characters the [start, end) of what was typed for it.
+
+    ``at`` is where the piece stands if it is empty.
+    """
+
+    text: str
+    starts: Sequence[int]
+    ends: Sequence[int]
+    at: int = 0
+
+    @staticmethod
+    def of(source: str) -> "Traced":
+        """The whole of what was typed."""
+        return Traced(source, range(len(source)), range(1, len(source) + 1))
+
+    def cut(self, start: int, end: int) -> "Traced":
+        """The characters [start, end)."""
+        return Traced(
+            self.text[start:end], self.starts[start:end], self.ends[start:end], self.span(start)[0]
+        )
+
+    def span(self, start: int = 0, end: int | None = None) -> Span:
+        """The place in the text as typed of the characters [start, end)."""
+        length = len(self.text)
+        start = min(max(start, 0), length)
+        stop = start if end is None else min(max(end, start), length)
+        if start < stop:
+            return self.starts[start], self.ends[stop - 1]
+        if start < length:
+            return self.starts[start], self.starts[start]
+        at = self.ends[-1] if length else self.at
+        return at, at
+
+    @property
+    def whole(self) -> Span:
+        """The place in the text as typed of the whole piece."""
+        return self.span(0, len(self.text))
+
+    def strip(self, letters: str | None = None) -> "Traced":
+        """The piece without blanks (or ``letters``) at either end."""
+        left = len(self.text) - len(self.text.lstrip(letters))
+        return self.cut(left, max(left, len(self.text.rstrip(letters))))
+
+    def lines(self) -> list["Traced"]:
+        """The lines, without what ends them."""
+        found, start = [], 0
+        for end in _LINE_END.finditer(self.text):
+            found.append(self.cut(start, end.start()))
+            start = end.end()
+        return [*found, self.cut(start, len(self.text))]
+
+    def spelled(self, text: str) -> "Traced":
+        """``text`` in place of the whole piece."""
+        start, end = self.whole
+        return Traced(text, (start,) * len(text), (end,) * len(text), start)
+
+
+def joined(pieces: Iterable[Traced], at: int) -> Traced:
+    """The pieces one after the other; ``at`` is where the result stands if it is empty."""
+    kept = [piece for piece in pieces if piece.text]
+    return Traced(
+        "".join(piece.text for piece in kept),
+        [start for piece in kept for start in piece.starts],
+        [end for piece in kept for end in piece.ends],
+        at,
+    )

@@ -1,0 +1,27 @@
+"""A name and its index with a space between them: theta 1, c 12."""
+
+import re
+
+from service.expressions import greek
+from service.expressions.errors import ExpressionError
+from service.expressions.repairs.failure import Failure
+from service.expressions.words import split
+
+_DETACHED = re.compile(rf"([A-Za-z{greek.CLASS}]+)[ _]+([0-9]+)(?![0-9.])")
+
+
+def repair(failure: Failure) -> ExpressionError | None:
+    """Offer them joined, where that is a name."""
+    if failure.stop.cause != "name":
+        return None
+    match = _DETACHED.match(failure.source, failure.span[0])
+    if match is None or match.end(1) != failure.span[1]:
+        return None
+    joined = f"{match[1]}{match[2]}"
+    pieces = split(joined, failure.vocabulary)
+    if pieces is None or pieces[-1].kind not in {"symbol", "shorthand"}:
+        return None
+    message = f"A name and its index stand together here: {joined}."
+    return ExpressionError(
+        "detached_index", message, match.span(), failure.replaced(joined, match.span())
+    )

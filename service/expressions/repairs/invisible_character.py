@@ -1,0 +1,31 @@
+"""Characters that cannot be seen, often brought in by pasting."""
+
+import unicodedata
+
+from service.expressions.errors import ExpressionError
+from service.expressions.glyphs import is_invisible
+from service.expressions.repairs.failure import Failure
+
+# Pasted from a formula on a web page, this one is a product.
+_INVISIBLE_TIMES = "\u2062"
+
+
+def repair(failure: Failure) -> ExpressionError | None:
+    """Name it, and offer the text without any; an accent changes what it stands on, so no offer."""
+    if failure.stop.cause != "invisible":
+        return None
+    letter = failure.written
+    name = unicodedata.name(letter, f"U+{ord(letter):04X}").lower()
+    if letter == _INVISIBLE_TIMES:
+        message = "There is an invisible product sign here, perhaps from pasting. Write * instead."
+    elif unicodedata.category(letter) in {"Mn", "Me"} and not "\ufe00" <= letter <= "\ufe0f":
+        message = f"There is a mark here that changes the letter before it ({name}). Delete it."
+        return ExpressionError("invisible_character", message, failure.span)
+    else:
+        message = f"There is an invisible character here ({name}), perhaps from pasting. Delete it."
+    return ExpressionError("invisible_character", message, failure.span, _visible(failure.source))
+
+
+def _visible(source: str) -> str | None:
+    product = source.replace(_INVISIBLE_TIMES, "*")
+    return "".join(letter for letter in product if letter in "\t\n\r" or not is_invisible(letter))

@@ -1,0 +1,22 @@
+"""Letters of another alphabet that look like those of a formula."""
+
+import unicodedata
+
+from service.expressions.errors import ExpressionError
+from service.expressions.glyphs import LOOK_ALIKES
+from service.expressions.repairs.failure import Failure
+
+
+def repair(failure: Failure) -> ExpressionError | None:
+    """Name it, and offer the text with all of them replaced."""
+    if failure.stop.cause != "look_alike":
+        return None
+    letter = failure.written
+    plain = LOOK_ALIKES[letter]
+    return ExpressionError(
+        "look_alike_character",
+        f"This only looks like the letter {plain}: it is the {unicodedata.name(letter).lower()}. "
+        f"Type {plain} instead.",
+        failure.span,
+        "".join(LOOK_ALIKES.get(letter, letter) for letter in failure.source),
+    )

@@ -1,0 +1,22 @@
+"""(q1 + q2]: a bracket closed by one of another kind."""
+
+from service.expressions.errors import ExpressionError
+from service.expressions.glyphs import CLOSE
+from service.expressions.repairs.failure import Failure, place, shown
+
+
+def repair(failure: Failure) -> ExpressionError | None:
+    """Name both brackets and their places; offer the partner of the first."""
+    if failure.stop.cause != "mismatch":
+        return None
+    opener, wanted = failure.details["opener"], failure.details["wanted"]
+    first = shown(failure.source[opener[0] : opener[1]])
+    if wanted == CLOSE or failure.span[0] == failure.span[1]:
+        return ExpressionError("mismatched_bracket", f"{first} is not closed in its place.", opener)
+    return ExpressionError(
+        "mismatched_bracket",
+        f"{first} at {place(opener)} is closed by {shown(failure.written)} at "
+        f"{place(failure.span)}; these two do not belong together.",
+        failure.span,
+        failure.replaced(wanted),
+    )

@@ -1,0 +1,25 @@
+"""(q1 + 90)deg: a variable is not a number of degrees."""
+
+from service.expressions.errors import ExpressionError
+from service.expressions.repairs.failure import Failure
+
+
+def repair(failure: Failure) -> ExpressionError | None:
+    """Ask for the unit behind the number."""
+    if failure.stop.cause != "unit_on_variable":
+        return None
+    start, end = failure.span
+    inside = failure.details["variable"]
+    # The unit stands behind nothing but the variable: q1° is the angle q1.
+    alone = inside[0] == start and not failure.source[inside[1] : end].strip(" ()")[:1].isdigit()
+    rest = failure.source[inside[1] : end].strip()
+    suggestion = None
+    if alone and rest in {"°", "deg", "degree", "degrees", "rad", "radian", "radians"}:
+        suggestion = failure.replaced("", (inside[1], end))
+    return ExpressionError(
+        "unit_on_variable",
+        f"The unit stands behind {failure.details['name']}, which has its own. "
+        "Put the unit directly behind the number, for example q1 + 90deg.",
+        failure.span,
+        suggestion,
+    )

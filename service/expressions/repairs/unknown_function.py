@@ -1,0 +1,50 @@
+"""Functions that are not read: sec, cot, ln, hypot."""
+
+from service.expressions.errors import ExpressionError
+from service.expressions.functions import ARITY
+from service.expressions.repairs.failure import Failure, shown
+
+_RECIPROCALS = {"sec": "cos", "csc": "sin", "cosec": "sin", "cot": "tan", "ctg": "tan"}
+_RENAMED = {
+    "tan2": "atan2", "arctg2": "atan2", "artan2": "atan2", "atang2": "atan2", "atan22": "atan2",
+    "square_root": "sqrt", "squareroot": "sqrt", "root": "sqrt", "sqr": "sqrt", "wurzel": "sqrt",
+    "fabs": "abs", "absolute": "abs", "cosine": "cos", "sine": "sin", "tangent": "tan",
+    "sen": "sin", "sinus": "sin", "cosinus": "cos", "kosinus": "cos", "tangens": "tan",
+    "ArcCosine": "acos", "c": "cos", "s": "sin", "t": "tan", "C": "cos", "S": "sin",
+}  # fmt: skip
+_OTHERS = {
+    *("ln", "log", "log10", "sinh", "cosh", "tanh", "mod", "sign", "floor", "round", "hypot"),
+    *("norm", "power", "pow", "diff", "int", "sum", "max", "min", "dot", "cross", "Rational"),
+}
+
+
+def repair(failure: Failure) -> ExpressionError | None:
+    """Offer 1/cos(x) for sec(x), and the name that is read for one that is not."""
+    if failure.stop.cause != "name" or not failure.details["called"]:
+        return None
+    name = failure.details["run"]
+    message = f"The function {shown(failure.written)} is not known here."
+    suggestion = None
+    if name in _RECIPROCALS:
+        suggestion = _reciprocal(failure, _RECIPROCALS[name])
+        message += f" Write 1/{_RECIPROCALS[name]}(x)."
+    elif name in _RENAMED:
+        suggestion = failure.replaced(_RENAMED[name])
+        message += f" Did you mean {_RENAMED[name]}?"
+    elif name in _OTHERS:
+        message += f" These are: {', '.join(ARITY)}."
+    else:
+        return None
+    return ExpressionError("unknown_function", message, failure.span, suggestion)
+
+
+def _reciprocal(failure: Failure, name: str) -> str | None:
+    """Return the source with 1/name(...) in brackets, so that what stands around stays apart."""
+    start, end = failure.span
+    depth = 0
+    for at in range(end, len(failure.source)):
+        depth += (failure.source[at] == "(") - (failure.source[at] == ")")
+        if depth == 0:
+            inside = failure.source[end : at + 1]
+            return failure.replaced(f"(1/{name}{inside})", (start, at + 1))
+    return None

@@ -1,0 +1,35 @@
+"""A name that is not declared."""
+
+import re
+
+from service.expressions.errors import ExpressionError
+from service.expressions.nearest import nearest
+from service.expressions.repairs.failure import Failure, shown
+from service.expressions.vocabulary import Vocabulary, normal_form
+
+_INDEXED = re.compile(r"([^0-9]+)[0-9]+")
+
+
+def repair(failure: Failure) -> ExpressionError | None:
+    """Offer the nearest name that is; list those that differ in their index alone."""
+    if failure.stop.cause != "name":
+        return None
+    run = failure.details["run"]
+    message = f"The name {shown(failure.written)} is not known in this exercise."
+    siblings = _siblings(normal_form(run), failure.vocabulary)
+    if siblings:
+        message += f" These are: {', '.join(siblings)}."
+        return ExpressionError("unknown_symbol", message, failure.span)
+    known = nearest(run, failure.vocabulary, failure.details["called"])
+    if known is not None:
+        message += f" Did you mean {known}?"
+    suggestion = None if known is None else failure.replaced(known)
+    return ExpressionError("unknown_symbol", message, failure.span, suggestion)
+
+
+def _siblings(name: str, vocabulary: Vocabulary) -> list[str]:
+    match = _INDEXED.fullmatch(name)
+    if match is None:
+        return []
+    sibling = re.compile(rf"{re.escape(match[1])}_?[0-9]+")
+    return [symbol.name for symbol in vocabulary.symbols if sibling.fullmatch(symbol.name)]

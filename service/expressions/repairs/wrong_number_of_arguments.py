@@ -1,0 +1,42 @@
+"""atan2 of one value, sin of two, atan(y, x), and cos(0,5) with a decimal comma."""
+
+from service.expressions.errors import ExpressionError
+from service.expressions.repairs.failure import Failure
+
+
+def repair(failure: Failure) -> ExpressionError | None:
+    """Count the arguments; offer atan2 for atan(y, x), and a point for a decimal comma."""
+    if failure.stop.cause != "arguments":
+        return None
+    name, wanted = failure.details["name"], failure.details["wanted"]
+    places = failure.details["places"]
+    if len(places) == 2 * wanted and (point := _with_points(failure)) is not None:
+        message = "A comma separates values here. If this is one number, write it with a point."
+        return ExpressionError("decimal_comma", message, (places[0][1], places[1][0]), point)
+    message = f"The function {name} takes {_count(wanted)}, but {_count(len(places))} stand here."
+    suggestion = None
+    if len(places) == 1:
+        message = f"The function {name} takes {_count(wanted)}, but only one stands here."
+    if name == "atan" and len(places) == 2:
+        suggestion = failure.replaced("atan2", failure.details["function"])
+    if name == "atan2":
+        message += " Write atan2(y, x)."
+    return ExpressionError("wrong_number_of_arguments", message, failure.span, suggestion)
+
+
+def _with_points(failure: Failure) -> str | None:
+    """Return the source with points for the commas between digits, if all arguments are such."""
+    places = failure.details["places"]
+    source = failure.source
+    for left, right in reversed(list(zip(places[::2], places[1::2], strict=True))):
+        digits = source[right[0] : right[1]]
+        if source[left[1] : right[0]] != "," or not source[left[1] - 1].isdigit():
+            return None
+        if not digits[:1].isdigit():
+            return None
+        source = f"{source[: left[1]]}.{source[right[0] :]}"
+    return None if failure.details["name"] == "atan" else source
+
+
+def _count(number: int) -> str:
+    return "one value" if number == 1 else f"{number} values"

@@ -1,0 +1,104 @@
+"""The syntax tree of an expression.
+
+    Number 90 | Pi | Variable theta1
+    Unit deg ─ operand            90deg, 90°, deg(90)
+    Negation ─ operand            -q1
+    Binary + ┬ left               q1 + q2, l1*c1, 1/2, x^2
+             └ right
+    Call cos ─ arguments          cos(q1), c1, atan2(y, x)
+
+Brackets, spelling and the c12 shorthand leave no trace: equal trees mean equal mathematics as
+typed. `start` and `end` are offsets in the text that the student typed, brackets included, and
+take no part in equality. The classes are not frozen because a frozen dataclass takes four times
+as long to construct; nothing changes a tree after the reader has built it.
+"""
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from service.expressions.vocabulary import Symbol
+
+AngleUnit = Literal["deg", "rad"]
+Operator = Literal["+", "-", "*", "/", "^"]
+
+
+@dataclass(slots=True)
+class Number:
+    """A numeric constant, never negative; `literal` is its text."""
+
+    value: float
+    literal: str = field(compare=False)
+    start: int = field(default=0, compare=False)
+    end: int = field(default=0, compare=False)
+
+
+@dataclass(slots=True)
+class Pi:
+    """The constant π."""
+
+    start: int = field(default=0, compare=False)
+    end: int = field(default=0, compare=False)
+
+
+@dataclass(slots=True)
+class Variable:
+    """A declared symbol."""
+
+    symbol: Symbol
+    start: int = field(default=0, compare=False)
+    end: int = field(default=0, compare=False)
+
+
+@dataclass(slots=True)
+class Unit:
+    """An operand with an explicit angle unit."""
+
+    operand: "Node"
+    unit: AngleUnit
+    start: int = field(default=0, compare=False)
+    end: int = field(default=0, compare=False)
+
+
+@dataclass(slots=True)
+class Negation:
+    """The operand with its sign changed."""
+
+    operand: "Node"
+    start: int = field(default=0, compare=False)
+    end: int = field(default=0, compare=False)
+
+
+@dataclass(slots=True)
+class Binary:
+    """Two operands joined by an operator."""
+
+    operator: Operator
+    left: "Node"
+    right: "Node"
+    start: int = field(default=0, compare=False)
+    end: int = field(default=0, compare=False)
+
+
+@dataclass(slots=True)
+class Call:
+    """A function of its arguments."""
+
+    function: str
+    arguments: tuple["Node", ...]
+    start: int = field(default=0, compare=False)
+    end: int = field(default=0, compare=False)
+
+
+Node = Number | Pi | Variable | Unit | Negation | Binary | Call
+
+
+def children(node: Node) -> tuple[Node, ...]:
+    """Return the operands or arguments of `node`, left to right."""
+    kind = type(node)
+    if kind is Binary:
+        return (node.left, node.right)  # type: ignore[union-attr]
+    if kind is Call:
+        return node.arguments  # type: ignore[union-attr]
+    if kind is Negation or kind is Unit:
+        return (node.operand,)  # type: ignore[union-attr]
+    return ()

@@ -1,0 +1,49 @@
+"""Every line of corpus/*.txt: what a student types, and its worth or what is wrong with it."""
+
+import numpy as np
+import pytest
+
+from service.expressions import ExpressionError, read
+from tests.expressions.corpus_files import ROBOT, Case, cases, names, numbers
+from tests.expressions.reference import worth
+
+VALUES = [(name, case) for name in names() for case in cases(name)]
+ERRORS = cases("errors")
+
+
+def _ids(found: list[Case]) -> list[str]:
+    return [case.place for case in found]
+
+
+@pytest.mark.parametrize(("name", "case"), VALUES, ids=_ids([case for _, case in VALUES]))
+def test_value(name: str, case: Case) -> None:
+    known = numbers(name)
+    values = {
+        symbol.name: np.array([known[alias]])
+        for symbol in ROBOT.symbols
+        for alias in (symbol.name, *symbol.aliases)
+        if alias in known
+    }
+    expression = (
+        read(case.text, ROBOT, quantity="angle", angle_unit="degrees")
+        if name == "degrees"
+        else read(case.text, ROBOT)
+    )
+    expected = worth(case.answers[0], known)
+    assert np.ravel(expression.evaluate(values)) == pytest.approx([expected], rel=1e-12, abs=1e-15)
+
+
+@pytest.mark.parametrize("case", ERRORS, ids=_ids(ERRORS))
+def test_error(case: Case) -> None:
+    code, place, suggestion = case.answers
+    with pytest.raises(ExpressionError) as caught:
+        read(case.text, ROBOT)
+    error = caught.value
+    part = case.text[slice(*error.span)]
+    assert (error.code, f"{error.span[0]}-{error.span[1]} {part}".rstrip()) == (code, place)
+    assert (error.suggestion or "-") == suggestion
+
+
+def test_there_are_as_many_as_were_promised() -> None:
+    assert len(VALUES) + len(ERRORS) >= 600
+    assert len({(name, case.text) for name, case in VALUES}) == len(VALUES)

@@ -1,0 +1,76 @@
+"""Whatever is typed, one answer comes back, soon, and the same one again."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from service.expressions import LIMITS, ExpressionError, read
+from tests.expressions.corpus_files import ROBOT
+from tests.expressions.fuzzing import PIECES, hostile, outcome, seeds, texts
+
+BUDGET = 0.050  # seconds of processor time for one text
+HOSTILE = hostile()
+
+formulas: st.SearchStrategy[str] = st.recursive(
+    st.sampled_from(["q1", "θ₁", r"\theta_2", "l1", "2", "0.5", "π", "c12", "90°", "½", "d3*"]),
+    lambda inner: st.one_of(
+        st.tuples(inner, st.sampled_from([*"+-*/^·", " ", r"\cdot ", ".*", "**"]), inner).map(
+            "".join
+        ),
+        st.tuples(st.sampled_from(["sin", "cos ", r"\tan", "√", "sin^2", "-"]), inner).map("".join),
+        st.tuples(
+            st.sampled_from(["(", r"\left(", "[", "{", "sin("]), inner, st.sampled_from(")]}")
+        ).map("".join),
+        st.tuples(inner, inner).map(lambda parts: rf"\frac{{{parts[0]}}}{{{parts[1]}}}"),
+    ),
+    max_leaves=15,
+)
+
+
+def _check(text: str) -> None:
+    for degrees in (False, True):
+        first, second = outcome(text, degrees=degrees), outcome(text, degrees=degrees)
+        assert first.fingerprint == second.fingerprint
+        # A garbage collection may fall into one of the two.
+        assert min(first.seconds, second.seconds) < BUDGET
+
+
+@settings(max_examples=150, deadline=None)
+@given(formulas)
+def test_formulas_of_the_grammar(text: str) -> None:
+    _check(text)
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(st.sampled_from(PIECES), max_size=25).map("".join) | st.text(max_size=60))
+def test_pieces_of_formulas(text: str) -> None:
+    _check(text)
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.sampled_from(seeds()), st.integers(0, 60), st.binary(max_size=6))
+def test_cases_with_other_bytes_in_them(text: str, at: int, put: bytes) -> None:
+    data = text.encode()
+    _check((data[:at] + put + data[at + 1 :]).decode("utf-8", "replace"))
+
+
+def test_a_short_run_of_the_long_fuzz() -> None:
+    for text in texts(300, seed=1):
+        _check(text)
+
+
+@pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
+def test_hostile(text: str) -> None:
+    _check(text)
+
+
+@pytest.mark.parametrize("text", [text for text in HOSTILE if "__" in text or "import" in text])
+def test_code_is_not_read(text: str) -> None:
+    with pytest.raises(ExpressionError):
+        read(text, ROBOT)
+
+
+def test_what_is_too_long_is_not_even_looked_at() -> None:
+    with pytest.raises(ExpressionError) as caught:
+        read("(" * 10_000_000, ROBOT)
+    assert (caught.value.code, caught.value.span[0]) == ("too_long", LIMITS.characters)

@@ -1,0 +1,57 @@
+"""Limits before work."""
+
+import time
+
+import pytest
+
+from service.expressions import LIMITS, ExpressionError, Vocabulary, read
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "span"),
+    [
+        ("1" * 501, "too_long", (500, 501)),
+        ("k+" * 110 + "k", "too_many_nodes", (0, 221)),
+        ("-" * 41 + "1", "too_deep", (0, 42)),
+        ("(" * 41 + "1" + ")" * 41, "too_deep", (40, 41)),
+        ("sin(" * 40 + "1" + ")" * 40, "too_deep", (0, 201)),
+    ],
+)
+def test_beyond(text: str, code: str, span: tuple[int, int], arm: Vocabulary) -> None:
+    with pytest.raises(ExpressionError) as caught:
+        read(text, arm)
+    assert (caught.value.code, caught.value.span) == (code, span)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        " " * 499 + "1",
+        "k+" * 99 + "k",
+        "-" * 39 + "1",
+        "(" * 40 + "1" + ")" * 40,
+        "sin(" * 39 + "1" + ")" * 39,
+        "*".join(["q1"] * 100),
+    ],
+)
+def test_within(text: str, arm: Vocabulary) -> None:
+    """A long sum is one level deep, for that is how it is written."""
+    expression = read(text, arm, quantity="angle", angle_unit="degrees")
+    assert expression.mathml()
+    assert expression.latex()
+
+
+def test_the_limits_are_those_of_the_design() -> None:
+    assert (LIMITS.characters, LIMITS.nodes, LIMITS.depth) == (500, 200, 40)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["a" * 500, "θ" * 500, "sin" * 166, ")" * 500, "k1" * 250, "-(" * 250, "c1" * 250, "½" * 500],
+)
+def test_no_text_is_costly(text: str, arm: Vocabulary) -> None:
+    """A generous bound on processor time, to catch what grows with the square of the length."""
+    start = time.process_time()
+    with pytest.raises(ExpressionError):
+        read(text, arm, angle_unit="degrees")
+    assert time.process_time() - start < 0.05

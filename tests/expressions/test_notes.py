@@ -1,0 +1,99 @@
+"""Readings that a student should know of, with the place in the text as typed."""
+
+import pytest
+
+from service.expressions import ExpressionError, Symbol, Vocabulary, read
+
+CASES = [
+    ("θ1*", [("joint_marker", (2, 3))]),
+    (" q1 * ", [("joint_marker", (4, 5))]),
+    ("θ₂* + 90°", [("joint_marker", (2, 3))]),
+    ("q1* - 90", [("joint_marker", (2, 3))]),
+    ("q1*+q2*", [("joint_marker", (2, 3)), ("joint_marker", (6, 7))]),
+    ("q2*-1", []),
+    ("q1*q2", []),
+    ("1/2q1", [("division_then_product", (0, 5))]),
+    ("1/2*q1", []),
+    ("(1/2)q1", []),
+    ("½q1", []),
+    ("q1/2 c1", [("division_then_product", (0, 7))]),
+    ("sin q1/2", [("bare_argument", (4, 6))]),
+    ("l1 sin q1/2", [("bare_argument", (7, 9))]),
+    ("sin^2 q1/2", [("bare_argument", (6, 8))]),
+    ("sin(q1)/2", []),
+    ("(sin q1)/2", []),
+    ("sin q1 l1", [("bare_argument", (4, 6))]),
+    ("sin q1 cos q2", []),
+    ("sin q1^2", [("bare_argument", (4, 8))]),
+    ("sin 2(q1)", [("bare_argument", (4, 9))]),
+    ("√2 q1", [("bare_argument", (1, 2))]),
+    ("cos12", [("shorthand", (0, 5))]),
+    ("cos_12", []),
+    ("c12", []),
+]
+
+
+@pytest.mark.parametrize(("text", "expected"), CASES)
+def test_notes(text: str, expected: list[tuple[str, tuple[int, int]]], arm: Vocabulary) -> None:
+    assert [(note.code, note.span) for note in read(text, arm).notes] == expected
+
+
+def test_digits_behind_a_sine_in_degrees_have_two_readings(six: Vocabulary) -> None:
+    assert read("sin45", six).notes[0].code == "shorthand"
+    with pytest.raises(ExpressionError) as caught:
+        read("sin45", six, angle_unit="degrees")
+    assert caught.value.code == "ambiguous_shorthand"
+
+
+MORE: list[tuple[str, list[tuple[str, tuple[int, int]]]]] = [
+    ("√2/2", []),
+    (r"\sqrt{2} q_1", []),
+    ("√(2) q1", []),
+    ("sqrt 2 q1", [("bare_argument", (5, 9))]),
+    ("sin ½ q1", []),
+    (r"\sin\frac{\pi}{2} q_1", [("bare_argument", (4, 17))]),
+    (r"\frac{1}{2} q_1", []),
+    ("C1", [("shorthand", (0, 2))]),
+    ("l1S12", [("shorthand", (2, 5))]),
+    ("Cos(q1)", [("letter_case", (0, 3))]),
+    ("2 PI", [("letter_case", (2, 4))]),
+    ("ArcTan2(k, 1)", [("letter_case", (0, 7))]),
+    ("cosd(60)", [("degrees_function", (0, 4))]),
+    ("q[0]", [("zero_based_index", (0, 4))]),
+    ("l1*np.cos(q[1])", [("zero_based_index", (10, 14))]),
+    ("q(1)", [("one_based_index", (0, 4))]),
+    ("cos q{1}", [("one_based_index", (4, 8))]),
+    ("θ^*_1", [("joint_marker", (1, 3))]),
+    (r"\theta_1^{*}", [("joint_marker", (8, 12))]),
+    ("90 + 45°", [("mixed_units", (0, 2))]),
+    ("45° - 90", [("mixed_units", (6, 8))]),
+    ("0 + 45°", []),
+    ("45° + 90°", []),
+    ("atan2(c1, s1)", [("atan2_order", (0, 13))]),
+    ("atan2(s1, c1)", []),
+    ("atan2(l1 c1, l1 c1 + s1)", []),
+]
+
+
+@pytest.mark.parametrize(("text", "expected"), MORE)
+def test_notes_on_other_spellings(
+    text: str, expected: list[tuple[str, tuple[int, int]]], arm: Vocabulary
+) -> None:
+    assert [(note.code, note.span) for note in read(text, arm).notes] == expected
+
+
+def test_a_number_beside_degrees_needs_no_note_where_all_are_degrees(arm: Vocabulary) -> None:
+    expression = read("90 + 45°", arm, quantity="angle", angle_unit="degrees")
+    assert expression.notes == ()
+
+
+def test_in_degrees_the_inverse_functions_of_degrees_are_read(arm: Vocabulary) -> None:
+    expression = read("acosd(0.5) + 30", arm, quantity="angle", angle_unit="degrees")
+    assert [note.code for note in expression.notes] == ["degrees_function"]
+
+
+def test_acos_is_not_a_product_where_a_is_a_symbol() -> None:
+    vocabulary = Vocabulary([Symbol("a", "length"), Symbol("k", "number")])
+    [note] = read("acos(k)", vocabulary).notes
+    assert (note.code, note.span) == ("function_name", (0, 4))
+    assert read("a cos(k)", vocabulary).notes == ()

@@ -1,0 +1,185 @@
+"""What holds for any tree and any text."""
+
+import xml.etree.ElementTree as ET
+from operator import add, mul, sub
+
+import numpy as np
+import pytest
+import sympy
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from service.expressions import ExpressionError, Symbol, Vocabulary, joint_variable, read
+from service.expressions.degrees import in_degrees
+from service.expressions.text import to_text
+from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, Unit, Variable
+
+ARM = Vocabulary(
+    [
+        joint_variable(1),
+        joint_variable(2),
+        joint_variable(3, sliding=True),
+        Symbol("l1", "length"),
+        Symbol("k", "number"),
+        Symbol("beta", "angle"),
+    ]
+)
+
+literals = st.one_of(
+    st.integers(0, 999).map(str),
+    st.floats(0.001, 1e6).map(repr),
+    st.sampled_from([".5", "5.", "1e-3", "2E2"]),
+)
+numbers = literals.map(lambda literal: Number(float(literal), literal))
+leaves = numbers | st.builds(Pi) | st.sampled_from(ARM.symbols).map(Variable)
+units = st.builds(Unit, numbers | numbers.map(lambda n: Binary("/", n, Number(2.0, "2"))),
+                  st.sampled_from(["deg", "rad"]))  # fmt: skip
+
+
+def _inner(trees: st.SearchStrategy[Node]) -> st.SearchStrategy[Node]:
+    one = st.sampled_from(["sin", "cos", "tan", "asin", "acos", "atan", "sqrt", "abs", "exp"])
+    return st.one_of(
+        st.builds(Negation, trees),
+        st.builds(Binary, st.sampled_from("+-*/^"), trees, trees),
+        st.builds(Call, one, st.tuples(trees)),
+        st.builds(Call, st.just("atan2"), st.tuples(trees, trees)),
+    )
+
+
+trees: st.SearchStrategy[Node] = st.recursive(leaves | units, _inner, max_leaves=12)
+
+
+@given(trees)
+def test_a_printed_tree_reads_back(tree: Node) -> None:
+    assert read(to_text(tree), ARM).tree == tree
+
+
+@given(trees)
+def test_degrees_are_explicit_once_converted(tree: Node) -> None:
+    once = in_degrees(tree, is_angle=True, notes=[])
+    assert in_degrees(once, is_angle=True, notes=[]) == once
+    text = to_text(once)
+    assert read(text, ARM, quantity="angle", angle_unit="degrees").tree == once
+
+
+@given(trees)
+def test_mathml_is_well_formed_and_latex_is_balanced(tree: Node) -> None:
+    expression = read(to_text(tree), ARM)
+    ET.fromstring(expression.mathml())
+    latex = expression.latex()
+    assert latex.count("{") == latex.count("}")
+    assert latex.count(r"\left") == latex.count(r"\right")
+
+
+@given(trees)
+def test_latex_reads_back_to_the_same_values(tree: Node) -> None:
+    values = {symbol.name: np.linspace(-2, 3, 4) for symbol in ARM.symbols}
+    expression = read(to_text(tree), ARM)
+    again = read(expression.latex(), ARM)
+    np.testing.assert_allclose(
+        np.broadcast_to(again.evaluate(values), 4),
+        np.broadcast_to(expression.evaluate(values), 4),
+        rtol=1e-6,
+        atol=1e-300,
+    )
+
+
+def _oracle(node: Node, values: dict[str, float]) -> sympy.Expr:
+    """Build the same tree in SymPy, exactly and without its evaluation."""
+    match node:
+        case Number(value):
+            return sympy.Float(value, 40)
+        case Pi():
+            return sympy.pi
+        case Variable(symbol):
+            return sympy.Float(values[symbol.name], 40)
+        case Negation(operand):
+            return -_oracle(operand, values)
+        case Unit(operand, unit):
+            return _oracle(operand, values) * (sympy.pi / 180 if unit == "deg" else 1)
+        case Binary(operator, left, right):
+            apply = {"+": add, "-": sub, "*": mul}[operator]
+            return apply(_oracle(left, values), _oracle(right, values))
+        case Call("abs", (argument,)):
+            return sympy.Abs(_oracle(argument, values))
+        case Call(function, arguments):
+            return getattr(sympy, function)(*(_oracle(item, values) for item in arguments))
+
+
+def _mild(trees: st.SearchStrategy[Node]) -> st.SearchStrategy[Node]:
+    one = st.sampled_from(["sin", "cos", "atan", "abs"])
+    return st.one_of(
+        st.builds(Negation, trees),
+        st.builds(Binary, st.sampled_from("+-*"), trees, trees),
+        st.builds(Call, one, st.tuples(trees)),
+    )
+
+
+small = st.integers(0, 9).map(lambda n: Number(float(n), str(n)))
+mild: st.SearchStrategy[Node] = st.recursive(
+    small | st.sampled_from(ARM.symbols).map(Variable) | st.builds(Unit, small, st.just("deg")),
+    _mild,
+    max_leaves=6,
+)
+
+
+@settings(max_examples=50, deadline=None)
+@given(mild, st.lists(st.floats(-3, 3), min_size=6, max_size=6))
+def test_values_are_those_of_sympy(tree: Node, numbers: list[float]) -> None:
+    values = {symbol.name: number for symbol, number in zip(ARM.symbols, numbers, strict=True)}
+    ours = read(to_text(tree), ARM).evaluate({name: np.array(x) for name, x in values.items()})
+    theirs = complex(_oracle(tree, values).evalf(30))
+    assert float(ours) == pytest.approx(theirs.real, rel=1e-6, abs=1e-6)
+
+
+@given(trees, st.floats(-10, 10))
+def test_evaluation_never_raises_or_warns(tree: Node, number: float) -> None:
+    values = {symbol.name: np.full(3, number) for symbol in ARM.symbols}
+    result = read(to_text(tree), ARM).evaluate(values)
+    assert isinstance(result, float) or result.shape == (3,)
+
+
+def _check(error: ExpressionError, source: str | float) -> None:
+    start, end = error.span
+    if isinstance(source, str):
+        assert 0 <= start <= end <= len(source)
+    assert error.message
+    assert error.message.isprintable()
+
+
+PIECES = [
+    *("q1", "θ", "₁", "²", "sin", "c12", "(", ")", "*", "^", "-", " ", "½", "°", "deg", ",", "_{"),
+    *("}", "\\", "theta", "1", ".", "e", "√", "=", "\u200b", "а", "k"),
+]
+
+
+@given(
+    st.text(max_size=40)
+    | st.lists(st.sampled_from(PIECES), max_size=20).map("".join)
+    | st.integers()
+    | st.floats()
+)
+@example("²")
+@example("₁")
+@example("sin²")
+@example("\udcff")
+@example("1٣")
+def test_nothing_but_an_expression_error_escapes(source: str | float) -> None:
+    for unit in ("radians", "degrees"):
+        try:
+            expression = read(source, ARM, quantity="angle", angle_unit=unit)
+        except ExpressionError as error:
+            _check(error, source)
+            continue
+        for note in expression.notes:
+            start, end = note.span
+            assert 0 <= start < end <= len(str(source))
+        again = read(expression.text(), ARM, quantity="angle", angle_unit=unit)
+        assert again.tree == expression.tree
+        ET.fromstring(expression.mathml())
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_a_number_keeps_its_value(number: float) -> None:
+    assert read(number, ARM).evaluate({}) == number
+    assert read(repr(number), ARM).evaluate({}) == number

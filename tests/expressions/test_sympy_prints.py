@@ -1,0 +1,78 @@
+"""What SymPy prints is read, and is worth what SymPy says it is."""
+
+from collections.abc import Callable
+from random import Random
+
+import numpy as np
+import pytest
+import sympy
+from sympy.printing.numpy import NumPyPrinter
+from sympy.simplify.fu import TR8, TR10i
+
+from service.expressions import LIMITS, read
+from tests.expressions.corpus_files import ROBOT
+from tests.expressions.random_formulas import NUMBERS, entry, product, value
+
+VALUES = {name: np.array([number]) for name, number in NUMBERS.items()}
+PRINTERS: dict[str, Callable[[sympy.Expr], str]] = {
+    "str": str,
+    "latex": sympy.latex,
+    "latex, folded": lambda e: str(sympy.latex(e, fold_frac_powers=True, fold_short_frac=True)),
+    "latex, no brackets": lambda e: str(sympy.latex(e, fold_func_brackets=True, mul_symbol="dot")),
+    "latex, times": lambda e: f"$${sympy.latex(e, mul_symbol='times', ln_notation=True)}$$",
+    "octave": sympy.octave_code,
+    "numpy": lambda e: str(NumPyPrinter().doprint(e)),
+    "python": sympy.pycode,
+}
+REWRITINGS: dict[str, Callable[[sympy.Expr], sympy.Expr]] = {
+    "expand": sympy.expand,
+    "expand_trig": sympy.expand_trig,
+    "sum of angles": lambda e: TR10i(sympy.expand(sympy.expand_trig(e))),
+    "trigsimp": lambda e: sympy.trigsimp(sympy.expand(e)),
+    # Rules 8 and 10 of Fu et al., by which trigsimp works: products to sums, and the way back.
+    "product to sum": lambda e: TR8(sympy.expand(e)),
+    "factor_terms": lambda e: sympy.factor_terms(sympy.expand(e)),
+    "collect": lambda e: sympy.collect(sympy.expand(e), list(sympy.ordered(e.free_symbols))[:1]),
+}
+
+
+def worth(text: str) -> float:
+    return float(np.ravel(read(text, ROBOT).evaluate(VALUES))[0])
+
+
+def entries(seed: int, count: int) -> list[sympy.Expr]:
+    random = Random(seed)
+    return [entry(random) for _ in range(count)]
+
+
+@pytest.mark.parametrize("printer", PRINTERS)
+def test_a_print_is_read(printer: str) -> None:
+    count = 0
+    for expression in entries(1, 60):
+        text = PRINTERS[printer](expression)
+        if len(text) > LIMITS.characters:
+            continue
+        count += 1
+        assert worth(text) == pytest.approx(value(expression), rel=1e-9, abs=1e-9), text
+    assert count > 40
+
+
+@pytest.mark.parametrize("rewriting", REWRITINGS)
+def test_a_rewritten_formula_is_worth_the_same(rewriting: str) -> None:
+    """Both texts are read by us; that they are equal is SymPy's word."""
+    random = Random(2)
+    changed = 0
+    for _ in range(20):
+        expression = product(random)
+        rewritten = REWRITINGS[rewriting](expression)
+        changed += rewritten != expression
+        for pair in ((str(expression), str(rewritten)), (str(expression), sympy.latex(rewritten))):
+            assert worth(pair[0]) == pytest.approx(worth(pair[1]), rel=1e-9, abs=1e-9), pair
+    assert changed >= 5
+
+
+def test_our_own_latex_is_read_back() -> None:
+    for expression in entries(3, 60):
+        ours = read(str(expression), ROBOT).latex()
+        if len(ours) <= LIMITS.characters:
+            assert worth(ours) == pytest.approx(value(expression), rel=1e-9, abs=1e-9)
