@@ -1,0 +1,26 @@
+"""Whether the checks of an exercise file speak of the parts that it has."""
+
+from collections.abc import Sequence
+
+from service.catalogue.reading import FieldError
+from service.catalogue.schema import CheckSpec, PartSpec
+
+
+def check_parts(checks: Sequence[CheckSpec], parts: Sequence[PartSpec]) -> None:
+    """Every check names parts that there are. Raises FieldError."""
+    most = {part.id: part.points for part in parts}
+    for i, check in enumerate(checks):
+        for field, named in (("answers", check.answers), ("expect", check.expect)):
+            for name in named:
+                if name not in most:
+                    known = ", ".join(most)
+                    raise FieldError(
+                        f"checks[{i}].{field}.{name}",
+                        f"there is no such part; write one of {known}",
+                    )
+        for name, expected in check.expect.items():
+            if expected.points is not None and expected.points > most[name]:
+                raise FieldError(
+                    f"checks[{i}].expect.{name}.points",
+                    f"is more than the part's {most[name]:g} points; write {most[name]:g} or less",
+                )

@@ -1,0 +1,123 @@
+"""Where in a TOML text each of its values stands.
+
+tomllib tells the line of what is no TOML, but not of a value that is none here. The text has been
+read by it before: this only has to follow its values, not to judge them.
+"""
+
+import re
+from typing import Final
+
+_BLANK: Final = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
+_KEY: Final = re.compile(r"""[ \t]*("(?:[^"\\\n]|\\.)*"|'[^'\n]*'|[A-Za-z0-9_-]+)[ \t]*""")
+_STRINGS: Final = (
+    r'"""(?:[^\\]|\\.)*?"{3,5}(?!")',
+    r"'''.*?'{3,5}(?!')",
+    r'"(?:[^"\\\n]|\\.)*"',
+    r"'[^'\n]*'",
+)
+_STRING: Final = re.compile("|".join(_STRINGS), re.DOTALL)
+_SCALAR: Final = re.compile(r"[^,\]}#\n]*")
+
+
+def line_of(field: str, lines: dict[str, int]) -> int | None:
+    """The line of a field such as ``parts[1].points``, or of what encloses it; None if of nothing.
+
+    ``lines`` is what ``value_lines`` has found.
+    """
+    while field and field not in lines:
+        field = field[: max(field.rfind("."), field.rfind("["), 0)]
+    return lines.get(field)
+
+
+def value_lines(text: str) -> dict[str, int]:
+    """The line of each value of a TOML text by its path: ``{"parts[1].points": 31, …}``."""
+    return _Follower(text).followed()
+
+
+class _Follower:
+    def __init__(self, text: str) -> None:
+        self._text = text
+        self._at = 0
+        self._lines: dict[str, int] = {}
+        # How many tables each array of tables has so far.
+        self._counts: dict[str, int] = {}
+
+    def followed(self) -> dict[str, int]:
+        prefix = ""
+        self._skip()
+        while self._at < len(self._text):
+            if self._text.startswith("[", self._at):
+                prefix = self._header()
+            else:
+                self._pair(prefix)
+            self._skip()
+        return self._lines
+
+    def _skip(self) -> None:
+        match = _BLANK.match(self._text, self._at)
+        assert match is not None
+        self._at = match.end()
+
+    def _header(self) -> str:
+        array = self._text.startswith("[[", self._at)
+        line = self._line()
+        self._at += 1 + array
+        path = self._keys("", tables=True)
+        if array:
+            self._counts[path] = self._counts.get(path, -1) + 1
+            path = f"{path}[{self._counts[path]}]"
+        self._lines.setdefault(path, line)
+        self._at += 1 + array
+        return path
+
+    def _pair(self, prefix: str) -> None:
+        line = self._line()
+        path = self._keys(prefix)
+        self._lines.setdefault(path, line)
+        self._at += 1  # the =
+        self._value(path)
+
+    def _keys(self, prefix: str, *, tables: bool = False) -> str:
+        """A dotted key; a name of an array of tables means the last table of it so far."""
+        path = prefix
+        while match := _KEY.match(self._text, self._at):
+            if tables and path in self._counts:
+                path = f"{path}[{self._counts[path]}]"
+            name = match[1].strip("\"'")
+            path = f"{path}.{name}" if path else name
+            self._at = match.end()
+            if not self._text.startswith(".", self._at):
+                break
+            self._at += 1
+        return path
+
+    def _value(self, path: str) -> None:
+        self._skip()
+        self._lines.setdefault(path, self._line())
+        if self._text.startswith("[", self._at):
+            self._inside("]", path)
+        elif self._text.startswith("{", self._at):
+            self._inside("}", path)
+        else:
+            match = _STRING.match(self._text, self._at) or _SCALAR.match(self._text, self._at)
+            assert match is not None
+            self._at = match.end()
+
+    def _inside(self, closing: str, path: str) -> None:
+        self._at += 1
+        index = 0
+        self._skip()
+        while self._at < len(self._text) and not self._text.startswith(closing, self._at):
+            if closing == "]":
+                self._value(f"{path}[{index}]")
+            else:
+                self._pair(path)
+            index += 1
+            self._skip()
+            if self._text.startswith(",", self._at):
+                self._at += 1
+            self._skip()
+        self._at += 1
+
+    def _line(self) -> int:
+        return self._text.count("\n", 0, self._at) + 1

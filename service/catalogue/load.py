@@ -1,0 +1,130 @@
+"""Reading the folder of exercise files."""
+
+import tomllib
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from service.catalogue.advice import advised
+from service.catalogue.compile import compile_exercise
+from service.catalogue.exercise import Exercise
+from service.catalogue.lines import line_of, value_lines
+from service.catalogue.reading import FieldError
+from service.catalogue.schema import ExerciseSpec
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One reason why an exercise file is refused: where in the file, and why."""
+
+    file: Path
+    field: str
+    reason: str
+    line: int | None = None
+
+    def __str__(self) -> str:
+        """File, field and reason on one line."""
+        place = self.field if self.line is None else f"{self.field} (line {self.line})"
+        return ": ".join(filter(None, (str(self.file), place, self.reason)))
+
+
+class CatalogueError(Exception):
+    """One or more exercise files cannot be used; ``faults`` says which and why."""
+
+    def __init__(self, faults: list[Fault]) -> None:
+        super().__init__("\n".join(str(fault) for fault in faults))
+        self.faults = faults
+
+
+def shipped_folder() -> Path:
+    """The folder of the exercises that come with the program.
+
+    A wheel carries it inside the package; a checkout has it at the top.
+    """
+    package = Path(__file__).parents[1]
+    packaged = package / "_exercises"
+    return packaged if packaged.is_dir() else package.parent / "exercises"
+
+
+def exercise_files(*folders: Path) -> list[Path]:
+    """The exercise files of folders, folder by folder, in the order of their names.
+
+    Raises CatalogueError where a folder holds none, or a name stands in two of them.
+    """
+    files: dict[str, Path] = {}
+    faults: list[Fault] = []
+    for folder in dict.fromkeys(folders):
+        found = sorted(folder.glob("*.toml"))
+        if not found:
+            faults.append(Fault(folder, "", "holds no exercise file (*.toml)"))
+        for file in found:
+            if files.setdefault(file.stem, file) is not file:
+                reason = f"has the name of {files[file.stem]}; give it another, for it is the id"
+                faults.append(Fault(file, "", reason))
+    if faults:
+        raise CatalogueError(faults)
+    return list(files.values())
+
+
+def load_catalogue(*folders: Path) -> dict[str, Exercise]:
+    """All exercises of one or more folders by id, in the order of their file names.
+
+    Raises CatalogueError naming every fault of every file, so that an author mends them at once.
+    """
+    exercises: dict[str, Exercise] = {}
+    faults: list[Fault] = []
+    for file in exercise_files(*folders):
+        try:
+            exercises[file.stem] = load_exercise(file)
+        except CatalogueError as error:
+            faults.extend(error.faults)
+    if faults:
+        raise CatalogueError(faults)
+    return exercises
+
+
+def load_exercise(file: Path) -> Exercise:
+    """The exercise of one file; its id is the file's name. Raises CatalogueError."""
+    text = _text(file)
+    try:
+        content = tomllib.loads(text)
+        return compile_exercise(file.stem, ExerciseSpec.model_validate(content))
+    except ValidationError as error:
+        found = [(_path(each["loc"]), advised(each)) for each in error.errors(include_url=False)]
+        raise CatalogueError(_with_lines(file, found, text)) from error
+    except FieldError as error:
+        raise CatalogueError(_with_lines(file, [(error.field, error.reason)], text)) from error
+    except ValueError as error:  # of TOML itself, or of a number with thousands of digits
+        raise CatalogueError([Fault(file, "", f"is not TOML: {error}")]) from error
+    except RecursionError as error:
+        reason = "has tables or lists too deep in each other"
+        raise CatalogueError([Fault(file, "", reason)]) from error
+
+
+def _text(file: Path) -> str:
+    try:
+        return file.read_text(encoding="utf-8")
+    except OSError as error:
+        raise CatalogueError([Fault(file, "", f"cannot be read: {error.strerror}")]) from error
+    except UnicodeDecodeError as error:
+        raise CatalogueError([Fault(file, "", f"is not UTF-8 text: {error.reason}")]) from error
+
+
+def _with_lines(file: Path, found: Iterable[tuple[str, str]], text: str) -> list[Fault]:
+    lines = value_lines(text)
+    return [Fault(file, field, reason, line_of(field, lines)) for field, reason in found]
+
+
+def _path(location: tuple[int | str, ...]) -> str:
+    """A field as an author would name it: ``parts[0].points``.
+
+    Behind the number of a part pydantic puts the part's kind, and behind the robot the way that it
+    is given; neither is a field of the file.
+    """
+    inserted = {"parts": 2, "robot": 1}.get(str(location[0])) if location else None
+    names = {"start": "from"}
+    steps = [names.get(str(step), step) for i, step in enumerate(location) if i != inserted]
+    path = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps)
+    return path.lstrip(".") or "file"

@@ -1,0 +1,158 @@
+"""The reference robot: its table as formulas, and the numbers that they give."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.expressions import Expression
+from service.kinematics.chain import (
+    COLUMNS,
+    Row,
+    Table,
+    links,
+    modified_rows,
+    pose,
+    standard_rows,
+)
+from service.kinematics.dh import Convention
+from service.kinematics.screws import Numbers, moved
+from service.kinematics.transforms import Matrices, identity
+
+Values = Mapping[str, NDArray[np.float64]]
+FormulaRow = Row[Expression]
+
+TOOL_ROW = "e"
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """One joint: its index as the table's row label shows it, its variable, and how it moves."""
+
+    index: int
+    variable: str
+    prismatic: bool
+
+    @property
+    def column(self) -> str:
+        """The table column that the joint variable stands in."""
+        return "d" if self.prismatic else "theta"
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceTable:
+    """A table of formulas in one convention; rows beyond the joints are fixed."""
+
+    convention: Convention
+    joints: tuple[Joint, ...]
+    rows: tuple[FormulaRow, ...]
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Row labels: the joint's number, and "e" for the fixed row after the last joint.
+
+        A standard table with a row "e" takes two of them in the modified convention.
+        """
+        joints = tuple(str(joint.index) for joint in self.joints)
+        fixed = (TOOL_ROW, f"{TOOL_ROW}2")
+        return joints + fixed[: len(self.rows) - len(joints)]
+
+    def values(self, values: Values, lanes: int) -> Table:
+        """The table in numbers, ``(rows, 4, lanes)``, at the given values of the symbols."""
+        table = np.empty((len(self.rows), len(COLUMNS), lanes))
+        for i, row in enumerate(self.rows):
+            for j, formula in enumerate(row):
+                table[i, j] = formula.evaluate(values)
+        return table
+
+
+def at_home(joints: tuple[Joint, ...], values: Values, lanes: int) -> Values:
+    """The same values with all joint variables 0."""
+    return {**values, **{joint.variable: np.zeros(lanes) for joint in joints}}
+
+
+# The screw axis of a joint, turning or sliding, in a frame whose z axis it is.
+ABOUT_Z = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+ALONG_Z = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """The reference mechanism. ``tables`` holds it in each convention that can express it."""
+
+    structure: str
+    convention: Convention
+    joints: tuple[Joint, ...]
+    tables: Mapping[Convention, ReferenceTable]
+
+    def pose(self, values: Values, lanes: int) -> Matrices:
+        """The end-effector frame in the base frame, ``(lanes, 4, 4)``."""
+        table = self.tables[self.convention]
+        return pose(table.values(values, lanes), table.convention)
+
+    @property
+    def frames(self) -> tuple[int | str, ...]:
+        """What its frames are called, from first to last: "base", numbers, "tool"."""
+        first = self.joints[0].index
+        last = first + len(self.tables[self.convention].rows) - 1
+        return ("base", *range(first, last), "tool")
+
+    def frame(self, name: int | str, values: Values, lanes: int) -> Matrices:
+        """The pose of a frame in the base frame, ``(lanes, 4, 4)``.
+
+        The last joint's frame answers to its number, too, where no row leads on from it, and the
+        base frame to the number before the first joint's.
+        """
+        first = self.joints[0].index
+        known = {"base": 0, "tool": len(self.tables[self.convention].rows)}
+        steps = known[name] if isinstance(name, str) else name - first + 1
+        return list(self._poses(values, lanes))[steps]
+
+    def has_frame(self, name: int | str) -> bool:
+        """Whether ``frame`` knows it."""
+        first = self.joints[0].index
+        return isinstance(name, str) or first - 1 <= name < first + len(self.joints)
+
+    def _poses(self, values: Values, lanes: int) -> Iterator[Matrices]:
+        table = self.tables[self.convention]
+        reached = identity((lanes,))
+        yield reached
+        for link in links(table.values(values, lanes), table.convention):
+            reached = reached @ link
+            yield reached
+
+    def screws(self, values: Values, lanes: int) -> Numbers:
+        """The screw axis of each joint in the base frame at home, ``(joints, lanes, 6)``."""
+        poses = list(self._poses(at_home(self.joints, values, lanes), lanes))
+        on_axis = poses if self.convention is Convention.STANDARD else poses[1:]
+        return np.stack(
+            [
+                moved(frame, ALONG_Z if joint.prismatic else ABOUT_Z)
+                for joint, frame in zip(self.joints, on_axis, strict=False)
+            ]
+        )
+
+
+def tables_in_both_conventions(
+    joints: tuple[Joint, ...], rows: Sequence[FormulaRow], convention: Convention, zero: Expression
+) -> dict[Convention, ReferenceTable]:
+    """The author's table, and the same chain in the other convention where that has a row for all.
+
+    A last row that is zero throughout is dropped beyond the joints: it moves nothing.
+    """
+    if convention is Convention.STANDARD:
+        other, regrouped = Convention.MODIFIED, modified_rows(rows, zero)
+    else:
+        other, regrouped = Convention.STANDARD, standard_rows(rows, zero)
+    tables = {convention: ReferenceTable(convention, joints, tuple(rows))}
+    begins_on_first_axis = all(_is_zero(cell) for cell in rows[0][:2])
+    if other is Convention.MODIFIED or begins_on_first_axis:
+        if len(regrouped) > len(joints) and all(_is_zero(cell) for cell in regrouped[-1]):
+            regrouped.pop()
+        tables[other] = ReferenceTable(other, joints, tuple(regrouped))
+    return tables
+
+
+def _is_zero(formula: Expression) -> bool:
+    return not formula.symbols and float(formula.evaluate({})) == 0.0

@@ -1,0 +1,52 @@
+"""The reference robot by its product of exponentials: its home pose and its screw axes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from service.catalogue.robot import Joint, Values
+from service.expressions import Expression
+from service.kinematics.screws import Numbers, product_in_space
+from service.kinematics.transforms import Matrices
+
+FormulaGrid = tuple[tuple[Expression, ...], ...]
+
+
+def grid_values(grid: FormulaGrid, values: Values, lanes: int) -> Numbers:
+    """The numbers that formulas give, ``(rows, columns, lanes)``."""
+    numbers = np.empty((len(grid), len(grid[0]), lanes))
+    for i, row in enumerate(grid):
+        for j, formula in enumerate(row):
+            numbers[i, j] = formula.evaluate(values)
+    return numbers
+
+
+@dataclass(frozen=True, slots=True)
+class ScrewRobot:
+    """The reference mechanism. ``home`` is 4×4, ``axes`` holds a six-vector (ω; v) per joint."""
+
+    structure: str
+    joints: tuple[Joint, ...]
+    home: FormulaGrid
+    axes: FormulaGrid
+
+    @property
+    def frames(self) -> tuple[int | str, ...]:
+        """What its frames are called: the base (space) frame and the tool (body) frame."""
+        return ("base", "tool")
+
+    def has_frame(self, name: int | str) -> bool:
+        """Whether ``frame`` knows it."""
+        return name in self.frames
+
+    def frame(self, name: int | str, values: Values, lanes: int) -> Matrices:
+        """The pose of a frame in the base frame, ``(lanes, 4, 4)``."""
+        if name == "base":
+            return np.broadcast_to(np.eye(4), (lanes, 4, 4))
+        home = np.moveaxis(grid_values(self.home, values, lanes), -1, 0)
+        amounts = np.array([values[joint.variable] for joint in self.joints])
+        return product_in_space(self.screws(values, lanes), amounts, home)
+
+    def screws(self, values: Values, lanes: int) -> Numbers:
+        """The screw axis of each joint in the base frame at home, ``(joints, lanes, 6)``."""
+        return np.swapaxes(grid_values(self.axes, values, lanes), 1, 2)

@@ -1,0 +1,1 @@
+"""Rigid transforms and Denavit-Hartenberg chains, batched. Knows nothing of students."""

@@ -1,0 +1,67 @@
+"""A serial chain as the alternating product X_0 Z_1 X_1 Z_2 X_2 … Z_m X_m.
+
+Z_i = Rot_z(θ_i) Trans_z(d_i) and X_i = Trans_x(a_i) Rot_x(α_i); the factors of each commute. The
+standard table groups the product as (Z_1 X_1)(Z_2 X_2)…, the modified table as (X_0 Z_1)(X_1 Z_2)…,
+so converting a table is moving (a, α) by one row and nothing is solved for.
+
+A numeric table is an array ``(rows, 4, ...)``: the columns are a, α, d, θ in this order, whatever
+follows is the batch; angles in radians. The regrouping itself does not care what a cell is, so that
+it serves numbers and formulas alike.
+"""
+
+from collections.abc import Iterable, Sequence
+from functools import reduce
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.kinematics.dh import Convention, link_transforms
+from service.kinematics.transforms import Matrices
+
+Table = NDArray[np.float64]
+Cell = TypeVar("Cell")
+Row = tuple[Cell, Cell, Cell, Cell]
+
+COLUMNS = ("a", "alpha", "d", "theta")
+A, ALPHA, D, THETA = range(4)
+
+
+def modified_rows(standard: Sequence[Row[Cell]], zero: Cell) -> list[Row[Cell]]:
+    """Regroup (Z_1 X_1)…(Z_m X_m) as (X_0 Z_1)…(X_{m-1} Z_m)(X_m), with X_0 the identity.
+
+    The last of the ``m + 1`` rows is the fixed end-effector row "e" of the proximal convention.
+    """
+    x = [(zero, zero), *((a, alpha) for a, alpha, _, _ in standard)]
+    z = [*((d, theta) for _, _, d, theta in standard), (zero, zero)]
+    return _zip_rows(x, z)
+
+
+def standard_rows(modified: Sequence[Row[Cell]], zero: Cell) -> list[Row[Cell]]:
+    """Regroup (X_0 Z_1)…(X_{m-1} Z_m) as (Z_1 X_1)…(Z_m): as many rows, the last without X.
+
+    X_0 is left out: a standard table begins on the axis of joint 1. Whether the chain had an X_0 is
+    for the caller to see.
+    """
+    x = [*((a, alpha) for a, alpha, _, _ in modified[1:]), (zero, zero)]
+    z = [(d, theta) for _, _, d, theta in modified]
+    return _zip_rows(x, z)
+
+
+def _zip_rows(x: Iterable[tuple[Cell, Cell]], z: Iterable[tuple[Cell, Cell]]) -> list[Row[Cell]]:
+    return [(a, alpha, d, theta) for (a, alpha), (d, theta) in zip(x, z, strict=True)]
+
+
+def links(table: Table, convention: Convention) -> Matrices:
+    """The link transform of each row: ``(rows, ..., 4, 4)`` from a table ``(rows, 4, ...)``."""
+    return link_transforms(convention, table[:, A], table[:, ALPHA], table[:, D], table[:, THETA])
+
+
+def compound(transforms: Matrices) -> Matrices:
+    """The product A_1 A_2 … along the first axis of ``(rows, ..., 4, 4)``."""
+    return reduce(np.matmul, transforms)
+
+
+def pose(table: Table, convention: Convention) -> Matrices:
+    """The compound transform of a table ``(rows, 4, ...)``: ``(..., 4, 4)``."""
+    return compound(links(table, convention))

@@ -1,0 +1,76 @@
+"""Link transforms of the two Denavit-Hartenberg conventions, in closed form and batched.
+
+Parameters are link length a, link twist α, link offset d and joint angle θ: scalars or arrays
+that broadcast to one batch shape ``(...)``; angles in radians. Results are ``(..., 4, 4)``.
+"""
+
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from service.kinematics.transforms import Matrices
+
+
+class Convention(StrEnum):
+    """Which frame of a link carries the joint: the distal one or the proximal one."""
+
+    STANDARD = "standard"
+    MODIFIED = "modified"
+
+
+def standard_link(a: ArrayLike, alpha: ArrayLike, d: ArrayLike, theta: ArrayLike) -> Matrices:
+    """A_i = Rot_z(θ_i) Trans_z(d_i) Trans_x(a_i) Rot_x(α_i), the distal convention.
+
+    Source: Spong, Hutchinson, Vidyasagar, *Robot Modeling and Control*, eq. 3.10.
+    """
+    a, alpha, d, theta = np.broadcast_arrays(a, alpha, d, theta)
+    cos_theta, sin_theta = np.cos(theta), np.sin(theta)
+    cos_alpha, sin_alpha = np.cos(alpha), np.sin(alpha)
+    link = np.zeros((*a.shape, 4, 4))
+    link[..., 0, 0] = cos_theta
+    link[..., 0, 1] = -sin_theta * cos_alpha
+    link[..., 0, 2] = sin_theta * sin_alpha
+    link[..., 0, 3] = a * cos_theta
+    link[..., 1, 0] = sin_theta
+    link[..., 1, 1] = cos_theta * cos_alpha
+    link[..., 1, 2] = -cos_theta * sin_alpha
+    link[..., 1, 3] = a * sin_theta
+    link[..., 2, 1] = sin_alpha
+    link[..., 2, 2] = cos_alpha
+    link[..., 2, 3] = d
+    link[..., 3, 3] = 1.0
+    return link
+
+
+def modified_link(a: ArrayLike, alpha: ArrayLike, d: ArrayLike, theta: ArrayLike) -> Matrices:
+    """Rot_x(α_{i-1}) Trans_x(a_{i-1}) Rot_z(θ_i) Trans_z(d_i), the proximal convention.
+
+    Source: Craig, *Introduction to Robotics*, eq. 3.6; here ``a`` and ``alpha`` are the entries
+    of row i, which carry the index i−1.
+    """
+    a, alpha, d, theta = np.broadcast_arrays(a, alpha, d, theta)
+    cos_theta, sin_theta = np.cos(theta), np.sin(theta)
+    cos_alpha, sin_alpha = np.cos(alpha), np.sin(alpha)
+    link = np.zeros((*a.shape, 4, 4))
+    link[..., 0, 0] = cos_theta
+    link[..., 0, 1] = -sin_theta
+    link[..., 0, 3] = a
+    link[..., 1, 0] = sin_theta * cos_alpha
+    link[..., 1, 1] = cos_theta * cos_alpha
+    link[..., 1, 2] = -sin_alpha
+    link[..., 1, 3] = -sin_alpha * d
+    link[..., 2, 0] = sin_theta * sin_alpha
+    link[..., 2, 1] = cos_theta * sin_alpha
+    link[..., 2, 2] = cos_alpha
+    link[..., 2, 3] = cos_alpha * d
+    link[..., 3, 3] = 1.0
+    return link
+
+
+def link_transforms(
+    convention: Convention, a: ArrayLike, alpha: ArrayLike, d: ArrayLike, theta: ArrayLike
+) -> Matrices:
+    """The link transforms of whole tables at once, in the given convention."""
+    link = standard_link if convention is Convention.STANDARD else modified_link
+    return link(a, alpha, d, theta)

@@ -1,0 +1,50 @@
+"""Whether a transform is a link transform, and its row if it is.
+
+Four numbers describe a transform only under two conditions (Spong, Hutchinson, Vidyasagar, *Robot
+Modeling and Control*, §3.2.1; *Direct Kinematics (Part 2)*, §2.3). Standard: DH1, x_1 is
+perpendicular to z_0; DH2, x_1 meets z_0. Modified: the same of z_1 and x_0. The inverse of a
+modified link transform is a standard one with all four numbers negated, so one formula serves both.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.kinematics.dh import Convention
+from service.kinematics.fit import to_frame
+from service.kinematics.transforms import Matrices, inverse
+
+Numbers = NDArray[np.float64]
+
+
+def _as_standard(transform: Matrices, convention: Convention) -> Matrices:
+    return transform if convention is Convention.STANDARD else inverse(transform)
+
+
+def slant(transform: Matrices, convention: Convention) -> Numbers:
+    """The cosine of the angle between the axes of the first condition, ``(...)``; 0 if it holds."""
+    return np.asarray(_as_standard(transform, convention)[..., 2, 0])
+
+
+def gap(transform: Matrices, convention: Convention) -> Numbers:
+    """How far the axes of the second condition pass each other, ``(...)``; 0 if they meet.
+
+    For parallel axes it is their distance.
+    """
+    standard = _as_standard(transform, convention)
+    x, y = standard[..., 0, 0], standard[..., 1, 0]
+    px, py = standard[..., 0, 3], standard[..., 1, 3]
+    norm = np.hypot(x, y)
+    parallel = norm < 1e-9
+    past = (x * py - y * px) / np.where(parallel, 1.0, norm)
+    return np.where(parallel, np.hypot(px, py), past)
+
+
+def row(transform: Matrices, convention: Convention) -> Numbers:
+    """The row (a, α, d, θ) ``(4, lanes)`` of a transform ``(lanes, 4, 4)`` for which both hold.
+
+    >>> from service.kinematics.dh import modified_link
+    >>> row(modified_link(0.5, 0.2, 0.3, 0.7)[None], Convention.MODIFIED)[:, 0]
+    array([0.5, 0.2, 0.3, 0.7])
+    """
+    found = to_frame(_as_standard(transform, convention)[None])[0]
+    return np.asarray(found if convention is Convention.STANDARD else -found)

@@ -1,0 +1,84 @@
+"""Joint screws of a table, which are the columns of its space Jacobian, and its rank.
+
+A screw (ω; v) is a column of six numbers: ω = z and v = −ω × o for a joint that turns about the
+axis z through o, ω = 0 and v = z for one that slides along z; both in the base frame.
+Source: Lynch and Park, *Modern Robotics*, §5.1.1, eq. 5.11.
+
+Shapes: L lanes (samples) and n joints; a table is ``(rows, 4, L)``, angles in radians.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.kinematics.chain import Table, links
+from service.kinematics.dh import Convention
+from service.kinematics.transforms import Matrices, identity
+
+Screws = NDArray[np.float64]
+
+# Relative to the largest singular value: far above rounding, far below any arm in generic pose.
+RANK = 1e-7
+SAME = 1e-7
+
+
+def joint_frames(table: Table, convention: Convention) -> Matrices:
+    """The frame along whose z each row's joint acts, ``(rows, L, 4, 4)`` in the base frame.
+
+    Row i of a standard table acts along z_{i-1}, of a modified one along z_i.
+    """
+    transforms = links(table, convention)
+    frames = np.empty((len(transforms) + 1, *transforms.shape[1:]))
+    frames[0] = identity(transforms.shape[1:2])
+    for i, transform in enumerate(transforms):
+        np.matmul(frames[i], transform, out=frames[i + 1])
+    return frames[:-1] if convention is Convention.STANDARD else frames[1:]
+
+
+def space_jacobian(
+    table: Table, convention: Convention, rows: Sequence[int], prismatic: Sequence[bool]
+) -> Screws:
+    """The space Jacobian ``(L, 6, n)`` at the configurations that the table is given in.
+
+    ``rows`` says which row belongs to each joint, ``prismatic`` which joints slide. Angular over
+    linear parts; the linear ones have the table's unit of length.
+    """
+    frames = joint_frames(table, convention)[list(rows)]
+    axes, origins = frames[..., :3, 2], frames[..., :3, 3]
+    slides = np.asarray(prismatic, dtype=np.bool_)[:, None, None]
+    angular = np.where(slides, 0.0, axes)
+    linear = np.where(slides, axes, np.cross(origins, axes))
+    return np.moveaxis(np.concatenate([angular, linear], axis=-1), 0, -1)
+
+
+def coincident(jacobian: Screws) -> NDArray[np.bool_]:
+    """Which pairs of joints of ``(L, 6, n)`` are one joint twice, in every lane: ``(n, n)``.
+
+    They turn about one line, or slide along one direction, in the same sense or the opposite.
+    """
+    one, other = jacobian[..., :, None], jacobian[..., None, :]
+    away = np.minimum(np.abs(one - other).max(axis=(0, 1)), np.abs(one + other).max(axis=(0, 1)))
+    return np.asarray((away < SAME) & ~np.eye(len(away), dtype=np.bool_))
+
+
+def rank(jacobian: Screws) -> int:
+    """The rank of ``(L, 6, n)`` at a generic configuration: the highest of all lanes.
+
+    Lengths should be measured in a unit that suits the arm, or they outweigh the angular parts.
+    """
+    singular = np.linalg.svd(jacobian, compute_uv=False)
+    return int((singular > RANK * singular[:, :1]).sum(axis=1).max())
+
+
+def dependent(jacobian: Screws) -> NDArray[np.bool_]:
+    """Which columns of ``(L, 6, n)`` can be made up from the others in every lane, ``(n,)``.
+
+    A column is independent of the others if and only if every null vector is zero there.
+    """
+    _, singular, rows = np.linalg.svd(jacobian)
+    n = jacobian.shape[-1]
+    padded = np.zeros((len(jacobian), n))
+    padded[:, : singular.shape[1]] = singular
+    null = np.where((padded <= RANK * singular[:, :1])[..., None], rows, 0.0)
+    return np.asarray((np.abs(null).max(axis=1) > np.sqrt(RANK)).all(axis=0))

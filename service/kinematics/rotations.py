@@ -1,0 +1,129 @@
+"""Rotations about coordinate axes: sequences of three angles, and sequences of any steps. Batched.
+
+A sequence names three axes, such as "ZYZ". About moving axes each turn is about the axes as the
+turns before have left them, R = R_1(a_1) R_2(a_2) R_3(a_3); about fixed axes all turns are about
+the axes as they were at first, R = R_3(a_3) R_2(a_2) R_1(a_1). Rotations are ``(..., 3, 3)``,
+triples of angles ``(..., 3)`` in the order of the sequence, in radians.
+"""
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from service.kinematics.transforms import Matrices, rot_x, rot_y, rot_z
+
+Numbers = NDArray[np.float64]
+
+TAIT_BRYAN: Final = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
+PROPER: Final = ("XYX", "XZX", "YXY", "YZY", "ZXZ", "ZYZ")
+SEQUENCES: Final = (*TAIT_BRYAN, *PROPER)
+
+# Where the middle angle's sine (or cosine) is below this, the outer axes are one line.
+SINGULAR: Final = 1e-7
+
+_TURNS = {"X": rot_x, "Y": rot_y, "Z": rot_z}
+
+
+def about(axis: str, angle: ArrayLike) -> Matrices:
+    """The fundamental rotation by ``angle`` about "X", "Y" or "Z": ``(..., 3, 3)``.
+
+    Source: *Direct Kinematics (Part 2)*, §1.4.
+    """
+    return _TURNS[axis](angle)[..., :3, :3]
+
+
+def composed(steps: Sequence[tuple[Matrices, bool]]) -> Matrices:
+    """The composite of rotations ``(..., 3, 3)``, each marked whether it is about a fixed axis.
+
+    A turn about an axis of the fixed frame is multiplied from the left, one about an axis of the
+    moving frame from the right. Source: *Direct Kinematics (Part 2)*, §1.5.
+
+    >>> quarter = np.pi / 2
+    >>> fixed = composed([(about("Z", quarter), True), (about("X", quarter), True)])
+    >>> np.round(fixed @ [1, 0, 0]) + 0.0
+    array([0., 0., 1.])
+    """
+    product: Matrices = np.eye(3)
+    for rotation, fixed in steps:
+        product = rotation @ product if fixed else product @ rotation
+    return product
+
+
+def from_angles(sequence: str, angles: Numbers, *, fixed: bool = False) -> Matrices:
+    """The rotation ``(..., 3, 3)`` that a triple of angles ``(..., 3)`` describes.
+
+    Source: Craig, *Introduction to Robotics*, §2.8 and appendix B (all twelve of either kind).
+
+    >>> np.round(from_angles("ZYX", np.array([np.pi / 2, 0.0, np.pi / 2]))) + 0.0
+    array([[0., 0., 1.],
+           [1., 0., 0.],
+           [0., 1., 0.]])
+    """
+    turns = [about(axis, angles[..., i]) for i, axis in enumerate(sequence)]
+    if fixed:
+        turns.reverse()
+    return turns[0] @ turns[1] @ turns[2]
+
+
+def to_angles(sequence: str, rotation: Matrices, *, fixed: bool = False) -> Numbers:
+    """One triple of angles ``(..., 3)`` that describes ``rotation``; ``other_triple`` is the other.
+
+    The middle angle lies in [−π/2, π/2] for three different axes, in [0, π] where the first axis
+    returns. Where only the sum or difference of the outer angles is determined, the last is 0 (of
+    a sequence about fixed axes the first).
+
+    Source: Shoemake, *Euler Angle Conversion*, Graphics Gems IV; for "ZYX" this is Craig, eq. 2.66.
+
+    >>> to_angles("ZYX", from_angles("ZYX", np.array([0.3, -0.9, 1.2])))
+    array([ 0.3, -0.9,  1.2])
+    """
+    if fixed:
+        return to_angles(sequence[::-1], rotation)[..., ::-1]
+    i, j = (ord(axis) - ord("X") for axis in sequence[:2])
+    k = 3 - i - j
+    even = 1.0 if (j - i) % 3 == 1 else -1.0
+    if sequence[2] == sequence[0]:
+        sine = np.hypot(rotation[..., i, j], rotation[..., i, k])
+        middle = np.arctan2(sine, rotation[..., i, i])
+        first = np.arctan2(rotation[..., j, i], -even * rotation[..., k, i])
+        last = np.arctan2(rotation[..., i, j], even * rotation[..., i, k])
+        outer = sine
+    else:
+        outer = np.hypot(rotation[..., i, i], rotation[..., i, j])
+        middle = np.arctan2(even * rotation[..., i, k], outer)
+        first = np.arctan2(-even * rotation[..., j, k], rotation[..., k, k])
+        last = np.arctan2(-even * rotation[..., i, j], rotation[..., i, i])
+    singular = outer < SINGULAR
+    first = np.where(singular, np.arctan2(even * rotation[..., k, j], rotation[..., j, j]), first)
+    return np.stack([first, middle, np.where(singular, 0.0, last)], axis=-1)
+
+
+def other_triple(sequence: str, angles: Numbers) -> Numbers:
+    """The other triple that describes the same rotation, ``(..., 3)``; the same for fixed axes.
+
+    Source: Craig, *Introduction to Robotics*, §2.8: of an arctangent of y and x both signs serve.
+    """
+    first, middle, last = np.moveaxis(angles, -1, 0)
+    turned = -middle if sequence[2] == sequence[0] else np.pi - middle
+    return np.stack([first + np.pi, turned, last + np.pi], axis=-1)
+
+
+def is_singular(sequence: str, rotation: Matrices, *, fixed: bool = False) -> NDArray[np.bool_]:
+    """Where only the sum or difference of the outer angles is determined, ``(...)``."""
+    middle = to_angles(sequence, rotation, fixed=fixed)[..., 1]
+    outer = np.sin(middle) if sequence[2] == sequence[0] else np.cos(middle)
+    return np.asarray(np.abs(outer) < SINGULAR)
+
+
+def last_angle(sequence: str, first_two: Numbers, rotation: Matrices) -> Numbers:
+    """The third angle ``(...)`` where the first two ``(..., 2)`` of a moving sequence are chosen.
+
+    Only where the outer axes are one line may the first angle be chosen at will.
+    """
+    turned = about(sequence[0], first_two[..., 0]) @ about(sequence[1], first_two[..., 1])
+    rest = np.swapaxes(turned, -1, -2) @ rotation
+    axis = ord(sequence[2]) - ord("X")
+    across, up = (axis + 1) % 3, (axis + 2) % 3
+    return np.asarray(np.arctan2(rest[..., up, across], rest[..., across, across]))

@@ -1,0 +1,113 @@
+"""Screw axes, their exponentials and the product of exponentials. Batched.
+
+A screw axis is a six-vector (ω; v) ``(..., 6)``: ω is a unit vector along the axis and
+v = −ω × q + h ω with a point q on the axis and the pitch h; of a prismatic joint (infinite pitch) ω
+is 0 and v the unit vector of its direction. Angles are in radians, lengths in any one unit. The
+source is Lynch and Park, *Modern Robotics*, chapters 3 and 4, with its own order (ω; v).
+"""
+
+from functools import reduce
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from service.kinematics.transforms import Matrices, identity
+
+Numbers = NDArray[np.float64]
+
+# An ω this short is no axis to turn about, only what rounding has left.
+NO_TURN = 1e-12
+
+
+def skew(vector: Numbers) -> Matrices:
+    """The matrix ``(..., 3, 3)`` of the cross product with ``vector`` ``(..., 3)``.
+
+    Source: *Modern Robotics*, eq. 3.30.
+    """
+    matrix = np.zeros((*vector.shape[:-1], 3, 3))
+    x, y, z = np.moveaxis(vector, -1, 0)
+    matrix[..., 0, 1], matrix[..., 0, 2], matrix[..., 1, 2] = -z, y, -x
+    matrix[..., 1, 0], matrix[..., 2, 0], matrix[..., 2, 1] = z, -y, x
+    return matrix
+
+
+def screw_axis(direction: ArrayLike, point: ArrayLike, pitch: ArrayLike = 0.0) -> Numbers:
+    """The screw axis ``(..., 6)`` along the unit vector ``direction`` through ``point``.
+
+    ``pitch`` is the advance per radian; infinite for a sliding joint. Source: *Modern Robotics*,
+    definition 3.24.
+
+    >>> screw_axis([0, 0, 1], [2, 0, 0]) + 0.0
+    array([ 0.,  0.,  1.,  0., -2.,  0.])
+    """
+    direction, point = np.broadcast_arrays(
+        np.asarray(direction, dtype=np.float64), np.asarray(point, dtype=np.float64)
+    )
+    advance = np.asarray(pitch, dtype=np.float64)[..., None]
+    slides = np.isinf(advance)
+    moment = -np.cross(direction, point) + np.where(slides, 0.0, advance) * direction
+    return np.concatenate(
+        np.broadcast_arrays(np.where(slides, 0.0, direction), np.where(slides, direction, moment)),
+        axis=-1,
+    )
+
+
+def exponential(screw: Numbers, amount: ArrayLike) -> Matrices:
+    """The motion e^{[S]θ} ``(..., 4, 4)`` along ``screw`` ``(..., 6)`` by ``amount`` ``(...)``.
+
+    ω need not be of unit length: S θ is taken as it stands. Source: *Modern Robotics*, proposition
+    3.25.
+
+    >>> motion = exponential(np.array([0.0, 0, 1, 0, -2, 0]), np.pi)
+    >>> np.round(motion @ [0, 0, 0, 1]) + 0.0
+    array([4., 0., 0., 1.])
+    """
+    amount = np.asarray(amount, dtype=np.float64)
+    shape = np.broadcast_shapes(screw.shape[:-1], amount.shape)
+    screw, amount = np.broadcast_to(screw, (*shape, 6)), np.broadcast_to(amount, shape)
+    rate = np.linalg.norm(screw[..., :3], axis=-1)
+    turns = rate > NO_TURN
+    unit = screw / np.where(turns, rate, 1.0)[..., None]
+    angle = np.where(turns, rate * amount, 0.0)[..., None, None]
+    omega = skew(unit[..., :3])
+    squared = omega @ omega
+    motion = identity(shape)
+    motion[..., :3, :3] += np.sin(angle) * omega + (1 - np.cos(angle)) * squared
+    along = np.where(turns[..., None, None], angle, amount[..., None, None]) * np.eye(3)
+    along = along + (1 - np.cos(angle)) * omega + (angle - np.sin(angle)) * squared
+    motion[..., :3, 3] = (along @ unit[..., 3:, None])[..., 0]
+    return motion
+
+
+def adjoint(transform: Matrices) -> Matrices:
+    """The matrix ``(..., 6, 6)`` that takes a screw axis from the second frame to the first.
+
+    Source: *Modern Robotics*, definition 3.20: [R, 0; [p] R, R].
+    """
+    rotation = transform[..., :3, :3]
+    matrix = np.zeros((*transform.shape[:-2], 6, 6))
+    matrix[..., :3, :3] = matrix[..., 3:, 3:] = rotation
+    matrix[..., 3:, :3] = skew(transform[..., :3, 3]) @ rotation
+    return matrix
+
+
+def moved(transform: Matrices, screws: Numbers) -> Numbers:
+    """Screw axes ``(..., 6)`` of the second frame of ``transform`` as seen in the first."""
+    return np.asarray((adjoint(transform) @ screws[..., None])[..., 0])
+
+
+def product_in_space(screws: Numbers, amounts: Numbers, home: Matrices) -> Matrices:
+    """T(θ) = e^{[S_1]θ_1} … e^{[S_n]θ_n} M: ``(..., 4, 4)``.
+
+    ``screws`` is ``(n, ..., 6)``, ``amounts`` ``(n, ...)``, ``home`` ``(..., 4, 4)``. Source:
+    *Modern Robotics*, eq. 4.14.
+    """
+    return np.asarray(reduce(np.matmul, exponential(screws, amounts)) @ home)
+
+
+def product_in_body(screws: Numbers, amounts: Numbers, home: Matrices) -> Matrices:
+    """T(θ) = M e^{[B_1]θ_1} … e^{[B_n]θ_n}: ``(..., 4, 4)``, shapes as in ``product_in_space``.
+
+    Source: *Modern Robotics*, eq. 4.16.
+    """
+    return np.asarray(home @ reduce(np.matmul, exponential(screws, amounts)))

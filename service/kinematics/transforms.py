@@ -1,0 +1,66 @@
+"""Homogeneous transforms, batched.
+
+Every function takes scalars or arrays that broadcast to one batch shape ``(...)`` and returns
+float64 matrices of shape ``(..., 4, 4)``. Angles are in radians, lengths in any one unit.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Matrices = NDArray[np.float64]
+
+
+def identity(shape: tuple[int, ...] = ()) -> Matrices:
+    """The identity transform, repeated over the batch ``shape``: ``(*shape, 4, 4)``."""
+    matrices = np.zeros((*shape, 4, 4))
+    matrices[..., [0, 1, 2, 3], [0, 1, 2, 3]] = 1.0
+    return matrices
+
+
+def rot_x(angle: ArrayLike) -> Matrices:
+    """Rotation by ``angle`` about x: R_1(φ) of *Direct Kinematics (Part 2)*, §1.4."""
+    return _rotation(angle, 1, 2)
+
+
+def rot_y(angle: ArrayLike) -> Matrices:
+    """Rotation by ``angle`` about y: R_2(φ) of *Direct Kinematics (Part 2)*, §1.4."""
+    return _rotation(angle, 2, 0)
+
+
+def rot_z(angle: ArrayLike) -> Matrices:
+    """Rotation by ``angle`` about z: R_3(φ) of *Direct Kinematics (Part 2)*, §1.4."""
+    return _rotation(angle, 0, 1)
+
+
+def _rotation(angle: ArrayLike, first: int, second: int) -> Matrices:
+    """Rotation in the plane that axes ``first`` and ``second`` span, from the one to the other."""
+    angle = np.asarray(angle, dtype=np.float64)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    matrices = identity(angle.shape)
+    matrices[..., first, first] = cosine
+    matrices[..., second, second] = cosine
+    matrices[..., first, second] = -sine
+    matrices[..., second, first] = sine
+    return matrices
+
+
+def trans(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Matrices:
+    """Translation by ``(x, y, z)``."""
+    x, y, z = np.broadcast_arrays(x, y, z)
+    matrices = identity(x.shape)
+    matrices[..., 0, 3] = x
+    matrices[..., 1, 3] = y
+    matrices[..., 2, 3] = z
+    return matrices
+
+
+def inverse(transform: Matrices) -> Matrices:
+    """The inverse [Rᵀ, −Rᵀp; 0 1] of rigid transforms ``(..., 4, 4)``.
+
+    Source: *Direct Kinematics (Part 2)*, §1.6.
+    """
+    rotation_transposed = np.swapaxes(transform[..., :3, :3], -1, -2)
+    inverted = identity(transform.shape[:-2])
+    inverted[..., :3, :3] = rotation_transposed
+    inverted[..., :3, 3] = -(rotation_transposed @ transform[..., :3, 3:])[..., 0]
+    return inverted

@@ -1,0 +1,161 @@
+"""A catalogue that is told to follows its files."""
+
+import logging
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from service.catalogue import CatalogueError, load_catalogue, open_catalogue
+from service.catalogue.live import LiveCatalogue
+from tests.catalogue.test_faults import VALID
+
+
+class Clock:
+    """Time that passes when the test says so."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+@pytest.fixture
+def clock() -> Clock:
+    return Clock()
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    write(tmp_path, "arm", VALID)
+    return tmp_path
+
+
+@pytest.fixture(autouse=True)
+def _logged(caplog: pytest.LogCaptureFixture) -> Iterator[None]:
+    with caplog.at_level(logging.INFO):
+        yield
+
+
+# Each write gets a time of its own, however coarse the disk's clock is.
+_times = iter(range(1_700_000_000, 1_800_000_000))
+
+
+def write(folder: Path, name: str, text: str) -> None:
+    file = folder / f"{name}.toml"
+    file.write_text(text, encoding="utf-8")
+    time = next(_times)
+    os.utime(file, (time, time))
+
+
+def titled(title: str) -> str:
+    return VALID.replace("An arm", title)
+
+
+def test_a_change_counts_after_a_second(folder: Path, clock: Clock) -> None:
+    catalogue = LiveCatalogue([folder], clock)
+    version = catalogue["arm"].version
+    write(folder, "arm", titled("A new arm"))
+    clock.now = 0.9
+    assert catalogue["arm"].version == version
+    clock.now = 1.1
+    assert catalogue["arm"].title == "A new arm"
+    assert catalogue["arm"].version != version
+
+
+def test_what_has_not_changed_is_not_read_again(folder: Path, clock: Clock) -> None:
+    write(folder, "other", VALID)
+    catalogue = LiveCatalogue([folder], clock)
+    before = catalogue["other"]
+    write(folder, "arm", titled("B"))
+    clock.now = 2
+    assert catalogue["arm"].title == "B"
+    assert catalogue["other"] is before
+
+
+def test_files_come_and_go(folder: Path, clock: Clock) -> None:
+    catalogue = LiveCatalogue([folder], clock)
+    write(folder, "boom", VALID)
+    clock.now = 2
+    assert list(catalogue) == ["arm", "boom"]
+    assert [exercise.id for exercise in catalogue.values()] == ["arm", "boom"]
+    assert [name for name, _ in catalogue.items()] == ["arm", "boom"]
+    (folder / "arm.toml").unlink()
+    clock.now = 4
+    assert list(catalogue) == ["boom"]
+    assert len(catalogue) == 1
+
+
+def test_a_broken_file_keeps_its_last_good_version(
+    folder: Path, clock: Clock, caplog: pytest.LogCaptureFixture
+) -> None:
+    catalogue = LiveCatalogue([folder], clock)
+    good = catalogue["arm"]
+    write(folder, "arm", VALID.replace("points = 4", "points = 0"))
+    for clock.now in (2, 4, 6):
+        assert catalogue["arm"] is good
+    assert caplog.text.count("its last good version stays") == 1
+    assert "parts[1].points (line 28): Input should be greater than 0" in caplog.text
+    write(folder, "arm", titled("Mended"))
+    clock.now = 8
+    assert catalogue["arm"].title == "Mended"
+
+
+def test_a_new_file_that_is_broken_is_left_out(
+    folder: Path, clock: Clock, caplog: pytest.LogCaptureFixture
+) -> None:
+    catalogue = LiveCatalogue([folder], clock)
+    write(folder, "half", VALID[:200])
+    clock.now = 2
+    assert list(catalogue) == ["arm"]
+    assert "half.toml cannot be used, so it is left out" in caplog.text
+
+
+@pytest.mark.parametrize("text", ["x = " + "[" * 5000, "x = " + "1" * 5000, "\x00", "[" * 100])
+def test_whatever_is_in_a_file(text: str, folder: Path, clock: Clock) -> None:
+    catalogue = LiveCatalogue([folder], clock)
+    write(folder, "arm", text)
+    clock.now = 2
+    assert catalogue["arm"].title == "An arm"
+
+
+def test_a_folder_that_is_gone_changes_nothing(
+    folder: Path, clock: Clock, caplog: pytest.LogCaptureFixture
+) -> None:
+    catalogue = LiveCatalogue([folder], clock)
+    (folder / "arm.toml").unlink()
+    folder.rmdir()
+    for clock.now in (2, 4):
+        assert list(catalogue) == ["arm"]
+    assert caplog.text.count("The exercises stay as they were") == 1
+    folder.mkdir()
+    write(folder, "arm", titled("Back"))
+    clock.now = 6
+    assert catalogue["arm"].title == "Back"
+
+
+def test_two_folders(folder: Path, tmp_path_factory: pytest.TempPathFactory, clock: Clock) -> None:
+    other = tmp_path_factory.mktemp("other")
+    write(other, "boom", VALID)
+    assert list(load_catalogue(other, folder)) == ["boom", "arm"]
+    catalogue = LiveCatalogue([other, folder], clock)
+    write(other, "arm", titled("A second of that name"))
+    clock.now = 2
+    assert catalogue["arm"].title == "An arm"
+    with pytest.raises(CatalogueError, match=r"arm\.toml: has the name of .*arm\.toml; give it"):
+        load_catalogue(other, folder)
+    assert list(load_catalogue(folder, folder)) == ["arm"]
+
+
+def test_a_broken_file_refuses_the_start(folder: Path) -> None:
+    write(folder, "arm", "title = ")
+    for reload in (True, False):
+        with pytest.raises(CatalogueError, match=r"arm\.toml: is not TOML"):
+            open_catalogue([folder], reload=reload)
+
+
+def test_only_who_asks_for_it_gets_it(folder: Path) -> None:
+    assert isinstance(open_catalogue([folder], reload=True), LiveCatalogue)
+    assert isinstance(open_catalogue([folder], reload=False), dict)

@@ -1,0 +1,70 @@
+"""What every test folder may use: the shipped exercises, and exercises written for one test."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+from service.catalogue import DhTableSpec, Exercise, load_catalogue, load_exercise, shipped_folder
+
+# How long one example takes says more about the machine than about the code.
+settings.register_profile("suite", deadline=None, max_examples=50)
+settings.load_profile("suite")
+
+
+FIGURES = pytest.StashKey[list[str]]()
+
+
+@pytest.fixture
+def figure(pytestconfig: pytest.Config) -> Callable[[str], None]:
+    """Notes a measured figure, to be shown at the end of the run."""
+    return pytestconfig.stash.setdefault(FIGURES, []).append
+
+
+def pytest_terminal_summary(
+    terminalreporter: pytest.TerminalReporter, config: pytest.Config
+) -> None:
+    figures = config.stash.get(FIGURES, [])
+    if figures:
+        terminalreporter.section("figures")
+        for line in figures:
+            terminalreporter.write_line(line)
+
+
+@pytest.fixture(scope="session")
+def catalogue() -> Mapping[str, Exercise]:
+    """The shipped exercises by id."""
+    return load_catalogue(shipped_folder())
+
+
+@pytest.fixture(scope="session")
+def given_frames(catalogue: Mapping[str, Exercise]) -> Mapping[str, Exercise]:
+    """Table and pose of the same exercises, the frames prescribed, so that one table is right."""
+    given = {"frames": "given", "base": "given", "tool": "given", "directions": "given"}
+    return {
+        name: replace(
+            exercise,
+            parts=tuple(
+                part.model_copy(update=given | {"follows": None})
+                if isinstance(part, DhTableSpec)
+                else part.model_copy(update={"follows": None})
+                for part in exercise.parts
+                if part.id in ("table", "pose")
+            ),
+        )
+        for name, exercise in catalogue.items()
+    }
+
+
+@pytest.fixture
+def make_exercise(tmp_path: Path) -> Callable[[str], Exercise]:
+    """Compiles the text of an exercise file."""
+
+    def make(text: str) -> Exercise:
+        file = tmp_path / "test-exercise.toml"
+        file.write_text(text, encoding="utf-8")
+        return load_exercise(file)
+
+    return make

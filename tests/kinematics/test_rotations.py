@@ -1,0 +1,123 @@
+"""Angles and rotations against SciPy, all twelve sequences, about moving and fixed axes."""
+
+import doctest
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from service.kinematics import rotations
+from service.kinematics.rotations import (
+    PROPER,
+    SEQUENCES,
+    about,
+    composed,
+    from_angles,
+    is_singular,
+    last_angle,
+    other_triple,
+    to_angles,
+)
+from service.kinematics.transforms import Matrices
+
+RNG = np.random.default_rng(4)
+ANGLES = RNG.uniform(-np.pi, np.pi, (40, 3))
+
+
+def scipy_rotation(sequence: str, angles: object, fixed: bool) -> Matrices:
+    """SciPy writes moving axes in capitals, fixed ones in small letters."""
+    name = sequence.lower() if fixed else sequence
+    return np.asarray(Rotation.from_euler(name, np.asarray(angles)).as_matrix())
+
+
+def scipy_angles(sequence: str, rotation: Matrices, fixed: bool) -> Matrices:
+    name: Any = sequence.lower() if fixed else sequence
+    return np.asarray(Rotation.from_matrix(rotation).as_euler(name))
+
+
+def test_the_worked_examples() -> None:
+    assert doctest.testmod(rotations).attempted >= 5
+    assert doctest.testmod(rotations).failed == 0
+
+
+def test_there_are_twelve_sequences() -> None:
+    assert len(set(SEQUENCES)) == 12
+    assert all(a != b != c for a, b, c in SEQUENCES)
+
+
+@pytest.mark.parametrize("fixed", [False, True])
+@pytest.mark.parametrize("sequence", SEQUENCES)
+def test_the_rotation_of_a_triple(sequence: str, fixed: bool) -> None:
+    np.testing.assert_allclose(
+        from_angles(sequence, ANGLES, fixed=fixed),
+        scipy_rotation(sequence, ANGLES, fixed),
+        atol=1e-14,
+    )
+
+
+@pytest.mark.parametrize("fixed", [False, True])
+@pytest.mark.parametrize("sequence", SEQUENCES)
+def test_both_triples_of_a_rotation(sequence: str, fixed: bool) -> None:
+    rotation = scipy_rotation(sequence, ANGLES, fixed)
+    one = to_angles(sequence, rotation, fixed=fixed)
+    other = other_triple(sequence, one)
+    for triple in (one, other):
+        np.testing.assert_allclose(scipy_rotation(sequence, triple, fixed), rotation, atol=1e-12)
+    assert (np.abs(np.exp(1j * one) - np.exp(1j * other)).max(axis=-1) > 1e-3).all()
+    np.testing.assert_allclose(one, scipy_angles(sequence, rotation, fixed), atol=1e-9)
+
+
+@pytest.mark.parametrize("fixed", [False, True])
+@pytest.mark.parametrize("sequence", SEQUENCES)
+def test_where_the_outer_axes_are_one_line(sequence: str, fixed: bool) -> None:
+    singular = [0.0, np.pi] if sequence in PROPER else [np.pi / 2, -np.pi / 2]
+    for middle in singular:
+        rotation = scipy_rotation(sequence, [[0.7, middle, -1.1]], fixed)
+        found = to_angles(sequence, rotation, fixed=fixed)
+        np.testing.assert_allclose(scipy_rotation(sequence, found, fixed), rotation, atol=1e-12)
+        assert found[0, 0 if fixed else 2] == 0.0
+        assert is_singular(sequence, rotation, fixed=fixed).all()
+    assert not is_singular(sequence, scipy_rotation(sequence, ANGLES, fixed), fixed=fixed).any()
+
+
+@pytest.mark.parametrize("sequence", SEQUENCES)
+def test_a_first_angle_may_be_chosen_where_the_outer_axes_are_one_line(sequence: str) -> None:
+    middle = 0.0 if sequence in PROPER else np.pi / 2
+    rotation = scipy_rotation(sequence, [[0.7, middle, -1.1]], fixed=False)
+    chosen = np.array([[2.5, middle]])
+    triple = [[2.5, middle, last_angle(sequence, chosen, rotation)[0]]]
+    np.testing.assert_allclose(scipy_rotation(sequence, triple, False), rotation, atol=1e-12)
+
+
+def test_fixed_axes_from_the_left_moving_axes_from_the_right() -> None:
+    """Direct Kinematics (Part 2), §1.5, against SciPy's two kinds of sequence."""
+    turns = [about(axis, ANGLES[:, i]) for i, axis in enumerate("XZY")]
+    for fixed in (True, False):
+        np.testing.assert_allclose(
+            composed([(turn, fixed) for turn in turns]),
+            scipy_rotation("XZY", ANGLES, fixed),
+            atol=1e-14,
+        )
+
+
+def test_steps_about_both_kinds_of_axes() -> None:
+    """Fixed z by φ, then the moving x by θ, then fixed y by ψ: R_y(ψ) R_z(φ) R_x(θ)."""
+    found = composed([(about("Z", 0.3), True), (about("X", 0.5), False), (about("Y", 0.7), True)])
+    expected = Rotation.from_euler("YZX", [0.7, 0.3, 0.5]).as_matrix()
+    np.testing.assert_allclose(found, expected, atol=1e-15)
+
+
+@given(
+    st.sampled_from(SEQUENCES),
+    st.tuples(*[st.floats(-10, 10)] * 3),
+    st.booleans(),
+)
+def test_a_triple_leads_to_its_rotation_and_back(
+    sequence: str, angles: tuple[float, float, float], fixed: bool
+) -> None:
+    rotation = from_angles(sequence, np.array(angles), fixed=fixed)
+    back = from_angles(sequence, to_angles(sequence, rotation, fixed=fixed), fixed=fixed)
+    np.testing.assert_allclose(back, rotation, atol=3e-7)

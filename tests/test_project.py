@@ -1,0 +1,135 @@
+"""The project's own set-up: lock files, image, continuous integration and what a wheel carries."""
+
+import importlib.metadata
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tomllib
+import zipfile
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+ROOT = Path(__file__).parent.parent
+LOCKS = ("requirements.lock", "requirements-build.lock", "requirements-dev.lock")
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+
+
+def read(name: str) -> str:
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+def logical_lines(text: str) -> list[str]:
+    """Lines without blanks and comments, those that end in a backslash joined to the next."""
+    lines = text.replace("\\\n", " ").splitlines()
+    return [line for line in lines if line.strip() and not line.lstrip().startswith("#")]
+
+
+def pins(lock: str) -> list[Requirement]:
+    return [Requirement(line.split("--hash=")[0]) for line in logical_lines(read(lock))]
+
+
+def copied_into_image() -> list[str]:
+    """What the Dockerfile copies from the checkout (and not from an earlier stage)."""
+    copies = [line.split() for line in logical_lines(read("Dockerfile")) if line.startswith("COPY")]
+    return [
+        source for _, *sources, _ in copies if "--from=builder" not in sources for source in sources
+    ]
+
+
+@pytest.mark.parametrize("lock", LOCKS)
+def test_a_lock_holds_only_pinned_requirements_with_hashes(lock: str) -> None:
+    lines = logical_lines(read(lock))
+    assert lines
+    for line in lines:
+        assert re.match(r"[a-z0-9-]+==\S+ ", line), line
+        assert re.search(r" --hash=sha256:[0-9a-f]{64}", line), line
+
+
+@pytest.mark.parametrize("lock", LOCKS)
+def test_a_lock_names_no_download_address(lock: str) -> None:
+    assert "://" not in read(lock)
+
+
+def test_the_runtime_lock_satisfies_the_declared_dependencies() -> None:
+    locked = pins("requirements.lock")
+    for wanted in map(Requirement, PROJECT["project"]["dependencies"]):
+        versions = [
+            specifier.version
+            for pin in locked
+            if canonicalize_name(pin.name) == canonicalize_name(wanted.name)
+            for specifier in pin.specifier
+        ]
+        assert versions, f"{wanted.name} is not locked: run `make lock`"
+        assert all(wanted.specifier.contains(version) for version in versions), wanted
+
+
+def test_the_development_lock_repeats_the_pins_of_the_others() -> None:
+    development = {str(pin) for pin in pins("requirements-dev.lock")}
+    for lock in ("requirements.lock", "requirements-build.lock"):
+        assert {str(pin) for pin in pins(lock)} <= development
+
+
+def test_the_version_is_stated_in_pyproject_only() -> None:
+    version = PROJECT["project"]["version"]
+    assert importlib.metadata.version("dh-grader") == version
+    stated = re.compile(rf"""["']{re.escape(version)}["']|__version__\s*=\s*["']""")
+    repeats = [
+        path for path in (ROOT / "service").rglob("*.py") if stated.search(path.read_text("utf-8"))
+    ]
+    assert repeats == []
+
+
+def test_a_wheel_carries_the_program_and_the_catalogue(tmp_path: Path) -> None:
+    build = [sys.executable, "-m", "hatchling", "build", "--target", "wheel", "-d", str(tmp_path)]
+    subprocess.run(build, cwd=ROOT, check=True, capture_output=True)
+    [wheel] = tmp_path.glob("*.whl")
+    with zipfile.ZipFile(wheel) as archive:
+        carried = set(archive.namelist())
+    exercises = {
+        f"service/_exercises/{path.relative_to(ROOT / 'exercises').as_posix()}"
+        for path in (ROOT / "exercises").rglob("*.toml")
+    }
+    program = {
+        path.relative_to(ROOT).as_posix()
+        for path in (ROOT / "service").rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts
+    }
+    assert exercises
+    assert exercises | program <= carried
+    assert not [name for name in carried if name.startswith(("tests/", "exercises/"))]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="hadolint is not published for Windows")
+def test_hadolint_finds_nothing_in_the_dockerfile() -> None:
+    hadolint = shutil.which("hadolint", path=sysconfig.get_path("scripts"))
+    assert hadolint, "hadolint belongs to requirements-dev.lock: run `make install`"
+    command = [hadolint, "--no-color", str(ROOT / "Dockerfile")]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (result.returncode, result.stdout) == (0, "")
+
+
+def test_what_the_dockerfile_copies_exists_and_is_not_ignored() -> None:
+    sources = copied_into_image()
+    assert {"service", "exercises", "requirements.lock"} <= set(sources)
+    assert [source for source in sources if not (ROOT / source).exists()] == []
+    let_through = {line[1:] for line in read(".dockerignore").splitlines() if line.startswith("!")}
+    assert let_through == set(sources)
+
+
+def test_the_image_runs_as_a_numbered_user_and_is_watched() -> None:
+    final_stage = logical_lines(read("Dockerfile").rpartition("\nFROM ")[2])
+    [user] = [line for line in final_stage if line.startswith("USER ")]
+    assert re.fullmatch(r"USER [1-9]\d*:[1-9]\d*", user)
+    assert any(line.startswith("HEALTHCHECK ") and "/healthz" in line for line in final_stage)
+
+
+def test_continuous_integration_runs_make_test() -> None:
+    assert "make test" in " ".join(logical_lines(read(".ci/run")))
+    assert "set -euo pipefail" in logical_lines(read(".ci/run"))
+    assert sys.platform == "win32" or os.access(ROOT / ".ci" / "run", os.X_OK)
