@@ -1,0 +1,60 @@
+"""When two columns of numbers are the same answer.
+
+Arrays are ``(..., lanes)``, one lane for each sample; a thing holds over all lanes or not at all.
+"""
+
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Numbers = NDArray[np.float64]
+
+# Far above what rounding does to a formula of 200 operations, far below any slip.
+EXACT = 1e-9
+# Three figures: 1.57 for π/2, 0.707 for 1/√2.
+ROUNDED = 1e-3
+
+
+class Match(IntEnum):
+    """How an answer compares with what was expected."""
+
+    DIFFERENT = 0
+    UNDEFINED = 1
+    ROUNDED = 2
+    EXACT = 3
+
+
+def difference(actual: Numbers, expected: Numbers, angle: ArrayLike = False) -> Numbers:
+    """``actual − expected``; where ``angle`` (it broadcasts), turned into [−π, π] radians."""
+    plain = actual - expected
+    turns = np.where(angle, np.round(plain / (2 * np.pi)), 0.0)
+    return plain - 2 * np.pi * turns
+
+
+def matches(
+    actual: Numbers,
+    expected: Numbers,
+    scale: ArrayLike,
+    angle: ArrayLike = False,
+    rounded: ArrayLike = True,
+) -> NDArray[np.int_]:
+    """The Match of each entry ``(...)``, from ``(..., lanes)``.
+
+    ``rounded`` says which entries may be off by what rounding a number to three figures does.
+    ``scale`` is what the quantity is measured against: 1 for angles and direction cosines, a
+    typical length for lengths. It gives the tolerance an absolute floor, so that sin² + cos² − 1 is
+    0 every time; the floor is far too low for a wrong constant to hide beside a large entry.
+    """
+    with np.errstate(invalid="ignore", over="ignore"):
+        error = np.abs(difference(actual, expected, angle)).max(axis=-1)
+        size = np.sqrt(np.mean(expected * expected, axis=-1))
+        near = (error <= ROUNDED * size) & rounded
+        found = np.where(near, Match.ROUNDED, Match.DIFFERENT)
+        found = np.where(error <= EXACT * np.maximum(size, scale), Match.EXACT, found)
+    return np.where(np.isfinite(actual).all(axis=-1), found, Match.UNDEFINED)
+
+
+def same(actual: Numbers, expected: Numbers, scale: float = 1.0, angle: bool = False) -> bool:
+    """Whether two single entries ``(lanes,)`` are equal, or equal but for rounding."""
+    return bool(matches(actual, expected, scale, angle) >= Match.ROUNDED)

@@ -1,0 +1,175 @@
+"""Answer kind ``dh_table``: a Denavit-Hartenberg table of the exercise's robot."""
+
+from dataclasses import dataclass
+from itertools import accumulate
+
+import numpy as np
+
+from service.catalogue import DhTableSpec, Exercise
+from service.grading.compare import Match
+from service.grading.diagnosis.case import WrongCell
+from service.grading.diagnosis.cells import diagnose
+from service.grading.diagnosis.values import UNEXPLAINED
+from service.grading.findings import ROUNDED, Finding
+from service.grading.formulas import formula_text
+from service.grading.judgement import JudgedRow, Judgement, column_scales, judged_table
+from service.grading.pasted import length_unit
+from service.grading.protocol import Grading, OwnChain, PartTerms
+from service.grading.report import (
+    CellReport,
+    PartReport,
+    RowReport,
+    Verdict,
+    row_report,
+)
+from service.grading.samples import LANES
+from service.grading.tables import (
+    IS_ANGLE,
+    HandedInTable,
+    UnreadableTableError,
+    read_table,
+    values_of,
+)
+from service.grading.whole_table import beliefs, freedom_lost
+from service.kinematics.chain import COLUMNS, links
+from service.kinematics.dh import Convention
+from service.kinematics.transforms import identity
+
+# With so many wrong cells two beliefs at once are looked for.
+WRONG_THROUGHOUT = 3
+
+
+@dataclass(frozen=True, slots=True)
+class DhTableKind:
+    """Grades tables in the reference's frames, or in the student's own where those are free."""
+
+    def grade(self, part: DhTableSpec, answer: object, grading: Grading) -> PartReport:
+        """The report on a table, row by row and cell by cell."""
+        terms = PartTerms(part.id, part.kind, part.points, part.all_or_nothing)
+        try:
+            table = read_table(answer, grading.reader, length_unit(grading.exercise))
+        except UnreadableTableError as error:
+            return terms.unread(Verdict.UNREADABLE, grading.show((error.finding,)))
+        if not table.rows:
+            return terms.unread(Verdict.MISSING)
+        convention, findings = _convention(part, table, grading.exercise)
+        judgement = judged_table(part, table.rows, convention, grading)
+        explained: tuple[Finding, ...] = ()
+        if judgement.wrong > 1:
+            combine = judgement.wrong >= WRONG_THROUGHOUT
+            explained = beliefs(table.rows, convention, part, grading, combine=combine)
+        lost = freedom_lost(table.rows, convention, grading) if judgement.wrong else ()
+        rows = _row_reports(judgement, part.points, grading, explained=bool(explained))
+        told = grading.show((*table.findings, *findings, *explained, *lost, *judgement.findings))
+        missing = tuple(
+            message
+            for judged in judgement.rows
+            if judged.row is None
+            for message in grading.show((_missing(judged),), judged.label)
+        )
+        extra = grading.show(tuple(_extra_row(i) for i in judgement.extra))
+        return terms.report(rows, (*told, *missing, *extra), lost=judgement.lost)
+
+
+def _convention(
+    part: DhTableSpec, table: HandedInTable, exercise: Exercise
+) -> tuple[Convention, tuple[Finding, ...]]:
+    """The convention that the table is read in, and what to say where the answer names another."""
+    if part.convention == "either":
+        return table.convention or exercise.robot.convention, ()
+    if table.convention in (None, part.convention):
+        return part.convention, ()
+    return part.convention, (
+        Finding(
+            "convention_not_asked_for",
+            f"This part asks for the {part.convention.value} convention and was graded in it, but "
+            f"the answer says {table.convention.value if table.convention else ''}.",
+        ),
+    )
+
+
+def read_chain(part: DhTableSpec, answer: object, grading: Grading) -> OwnChain | None:
+    """A table as the chain that later parts may follow from; None where not all of it is read."""
+    try:
+        table = read_table(answer, grading.reader, length_unit(grading.exercise))
+    except UnreadableTableError:
+        return None
+    values = values_of(table.rows) if table.rows else np.array([np.nan])
+    if np.isnan(values).any():
+        return None
+    convention, _ = _convention(part, table, grading.exercise)
+    judgement = judged_table(part, table.rows, convention, grading)
+    frames = np.array(list(accumulate((identity((LANES,)), *links(values, convention)), np.matmul)))
+    found = [entry.expression for row in table.rows for entry in row.entries if entry.expression]
+    return OwnChain(
+        frames=frames,
+        nearest_links=links(np.array([row.expected for row in judgement.rows]), convention),
+        variables=frozenset().union(*(expression.symbols for expression in found)),
+    )
+
+
+def _row_reports(
+    judgement: Judgement, points: float, grading: Grading, *, explained: bool
+) -> tuple[RowReport, ...]:
+    """The rows with their cells; ``explained`` says that the whole table's slip has been found."""
+    share = points / len(judgement.rows)
+    return tuple(
+        row_report(
+            judged.label,
+            share,
+            tuple(
+                _cell(judged, column, match, grading, explained=explained)
+                for column, match in enumerate(row)
+            ),
+        )
+        for judged, row in zip(judgement.rows, judgement.matches.tolist(), strict=True)
+    )
+
+
+def _cell(
+    judged: JudgedRow, column: int, match: int, grading: Grading, *, explained: bool
+) -> CellReport:
+    label = COLUMNS[column]
+    if judged.row is None:
+        return CellReport(label, Verdict.MISSING)
+    entry = judged.row.entries[column]
+    verdict, findings = entry.verdict, entry.findings
+    if match == Match.ROUNDED:
+        findings = (*findings, ROUNDED)
+    elif entry.expression is not None and match < Match.ROUNDED:
+        verdict = Verdict.INCORRECT
+        angle = bool(IS_ANGLE[column])
+        expected = judged.expected[column]
+        wrong = WrongCell(
+            expression=entry.expression,
+            actual=judged.row.values[column],
+            expected=expected,
+            expected_text=formula_text(expected, angle, grading.exercise, grading.samples),
+            samples=grading.samples,
+            scale=float(column_scales(grading)[column]),
+            angle=angle,
+            column=label,
+            joint=judged.joint,
+            shared=judged.shared,
+            joints=grading.exercise.robot.joints,
+        )
+        slip = diagnose(wrong)
+        if not (explained and slip.code == UNEXPLAINED):
+            findings = (*findings, slip)
+    return CellReport(label, verdict, grading.show(findings, judged.label, label))
+
+
+def _missing(judged: JudgedRow) -> Finding:
+    if judged.joint is not None:
+        return Finding("missing_row", f"There is no row for joint {judged.joint.index}.")
+    return Finding(
+        "missing_tool_row",
+        "The fixed row that leads from the last joint's frame to the end effector is missing.",
+    )
+
+
+def _extra_row(i: int) -> Finding:
+    return Finding(
+        "extra_row",
+        f"Row {i + 1} of what was handed in answers to no joint of this robot; it was left out.",
+    )

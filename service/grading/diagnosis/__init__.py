@@ -1,0 +1,1 @@
+"""Misconceptions: small pure functions, each asking whether one belief explains a wrong answer."""

@@ -1,0 +1,80 @@
+"""A wrong cell or entry with everything that its diagnosis may look at."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from service.catalogue import Joint
+from service.expressions import Expression
+from service.grading.compare import same
+from service.grading.motion import joint_counts
+from service.grading.samples import Lanes, Samples
+
+
+@dataclass(frozen=True)
+class WrongValue:
+    """Something handed in whose value is not the expected one.
+
+    ``actual`` and ``expected`` are ``(LANES,)``, angles in radians. ``expected_text`` is what would
+    be right, as the student would write it, or empty where it is not known as a formula.
+    """
+
+    expression: Expression
+    actual: Lanes
+    expected: Lanes
+    expected_text: str
+    samples: Samples
+    scale: float
+    angle: bool
+
+    @property
+    def correction(self) -> str:
+        """The sentence that gives the answer away."""
+        return f"It should be {self.expected_text}." if self.expected_text else ""
+
+    def equal(self, one: Lanes, other: Lanes) -> bool:
+        """Whether two values of this quantity are the same."""
+        return same(one, other, self.scale, self.angle)
+
+
+@dataclass(frozen=True)
+class WrongCell(WrongValue):
+    """A wrong table cell. ``joint`` is the row's joint, or None in a fixed row.
+
+    ``shared`` says that the joint's axis has a parallel neighbour, so that offsets along it add up.
+    """
+
+    column: str
+    joint: Joint | None
+    joints: tuple[Joint, ...]
+    shared: bool = False
+
+    @cached_property
+    def actual_coefficients(self) -> tuple[int, ...] | None:
+        """How often each joint variable is contained in what was written; None if not linearly."""
+        return self._coefficients(self.actual)
+
+    @cached_property
+    def expected_coefficients(self) -> tuple[int, ...]:
+        """How often each joint variable is contained in what was expected."""
+        return self._coefficients(self.expected) or (0,) * len(self.joints)
+
+    def _coefficients(self, values: Lanes) -> tuple[int, ...] | None:
+        angle = np.array([self.angle])
+        counts, linear = joint_counts(values[None], self.joints, self.samples, angle)
+        return tuple(int(count) for count in counts[0]) if linear[0] else None
+
+    @property
+    def same_motion(self) -> bool:
+        """Whether the cell moves with the joints as expected, so that only its constant is off."""
+        return self.actual_coefficients == self.expected_coefficients
+
+    @cached_property
+    def constants(self) -> tuple[Lanes, Lanes]:
+        """Actual and expected value without the joint variables that they share."""
+        motion = sum(
+            count * self.samples.values[joint.variable]
+            for count, joint in zip(self.expected_coefficients, self.joints, strict=True)
+        )
+        return self.actual - motion, self.expected - motion

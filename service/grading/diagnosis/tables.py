@@ -1,0 +1,277 @@
+"""Slips that run through a whole table.
+
+Each function is one belief that the student may have held. It offers the table as it would have
+been written without it; where that table describes the robot, the belief explains the answer.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.catalogue import Joint
+from service.grading.findings import Finding
+from service.grading.motion import joint_counts
+from service.grading.samples import Samples
+from service.grading.tables import IS_ANGLE
+from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D, Table
+from service.kinematics.dh import Convention
+
+# Four figures are lost when rounded angles are multiplied out over a whole arm.
+TOLERANCE = 1e-2
+
+SYMBOLS = ("a", "α", "d", "θ")
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenTable:
+    """A table that is wrong: ``values`` ``(rows, 4, lanes)``, angles in radians, all cells read.
+
+    ``motion`` is what the joint variables contribute to ``values``. ``reference`` is the
+    reference's table where it has as many rows, to tell what fell off the end.
+    """
+
+    values: Table
+    motion: Table
+    convention: Convention
+    reference: Table | None = None
+
+    @property
+    def constants(self) -> Table:
+        """The values without the joint variables."""
+        return self.values - self.motion
+
+    def at_few(self, count: int) -> "WrittenTable":
+        """The same table at few of its samples."""
+        values, motion = (Samples.few_of(cells, count) for cells in (self.values, self.motion))
+        return replace(self, values=values, motion=motion)
+
+    def changed(self, constants: Table) -> "WrittenTable":
+        """The same table with other constants."""
+        return replace(self, values=constants + self.motion)
+
+
+@dataclass(frozen=True, slots=True)
+class Repair:
+    """The table without one belief, and what to say of the belief."""
+
+    table: WrittenTable
+    finding: Finding
+
+
+Misconception = Callable[[WrittenTable], Iterator[Repair]]
+Validity = Callable[[NDArray[np.float64], Convention], NDArray[np.bool_]]
+
+
+def written_table(
+    values: Table,
+    convention: Convention,
+    reference: Table | None,
+    joints: tuple[Joint, ...],
+    samples: Samples,
+) -> WrittenTable:
+    """The table with the joint variables in each cell found out."""
+    cells = values.reshape(-1, values.shape[-1])
+    counts, _ = joint_counts(cells, joints, samples, np.tile(IS_ANGLE, len(values)))
+    motion = counts @ np.array([samples.values[joint.variable] for joint in joints])
+    same_size = reference is not None and len(reference) == len(values)
+    return WrittenTable(
+        values, motion.reshape(values.shape), convention, reference if same_size else None
+    )
+
+
+def other_convention(table: WrittenTable) -> Iterator[Repair]:
+    """The table was set up by the rules of the other convention."""
+    used, meant = Convention.MODIFIED, Convention.STANDARD
+    if table.convention is Convention.MODIFIED:
+        used, meant = meant, used
+    names = {Convention.STANDARD: "standard (distal)", Convention.MODIFIED: "modified (proximal)"}
+    yield Repair(
+        replace(table, convention=used),
+        Finding(
+            "other_convention",
+            f"This is a right table in the {names[used]} convention, but it was read in the "
+            f"{names[meant]} one: look which link's a and α belong in row i.",
+            f"In the {names[meant]} convention a and α move by one row.",
+        ),
+    )
+
+
+def link_columns_shifted(table: WrittenTable) -> Iterator[Repair]:
+    """The link's own columns, a and α or one of them, stand one row too early or too late."""
+    for columns in ([A, ALPHA], [A], [ALPHA]):
+        for step, where, end in ((-1, "late", -1), (1, "early", 0)):
+            named = " and ".join(SYMBOLS[column] for column in columns)
+            finding = Finding(
+                "link_columns_shifted",
+                f"{named} stand one row too {where}: check which link each of them describes.",
+                f"Move {named} {'up' if step < 0 else 'down'} by one row.",
+            )
+            constants = table.constants
+            constants[:, columns] = np.roll(constants[:, columns], step, axis=0)
+            yield Repair(table.changed(constants), finding)
+            if table.reference is not None:
+                completed = constants.copy()
+                completed[end, columns] = table.reference[end, columns]
+                yield Repair(table.changed(completed), finding)
+
+
+def columns_swapped(table: WrittenTable) -> Iterator[Repair]:
+    """What is measured on x was taken for what is measured on z: a for d, or α for θ.
+
+    In the whole table or in one row; the joint variables may have gone along or not.
+    """
+    every = list(range(len(table.values)))
+    for one, other in ((A, D), (ALPHA, THETA)):
+        for rows in (every, *([i] for i in every)):
+            where = f" in row {rows[0] + 1}" if rows != every else ""
+            finding = Finding(
+                "columns_swapped",
+                f"{SYMBOLS[one]} and {SYMBOLS[other]} are exchanged{where}: one is measured along "
+                f"or about x, the other along or about z.",
+                f"Exchange {SYMBOLS[one]} and {SYMBOLS[other]}{where}.",
+            )
+            constants = _exchanged(table.constants, rows, one, other)
+            yield Repair(table.changed(constants), finding)
+            motion = _exchanged(table.motion, rows, one, other)
+            yield Repair(replace(table, values=constants + motion, motion=motion), finding)
+
+
+def _exchanged(cells: Table, rows: list[int], one: int, other: int) -> Table:
+    exchanged = cells.copy()
+    exchanged[rows, one], exchanged[rows, other] = cells[rows, other], cells[rows, one]
+    return exchanged
+
+
+def row_order(table: WrittenTable) -> Iterator[Repair]:
+    """Two rows, or all of them, stand in the wrong order."""
+    rows = range(len(table.values))
+    orders = [_with_exchanged(rows, i, j) for i, j in combinations(rows, 2)]
+    if len(rows) > 2:
+        orders.append(list(reversed(rows)))
+    for order in orders:
+        moved = [str(i + 1) for i in rows if order[i] != i]
+        yield Repair(
+            replace(table, values=table.values[order], motion=table.motion[order]),
+            Finding(
+                "row_order",
+                f"Rows {' and '.join(moved) if len(moved) == 2 else ', '.join(moved)} stand in the "
+                f"wrong order: row i belongs to joint i, counted from the base.",
+            ),
+        )
+
+
+def _with_exchanged(rows: range, i: int, j: int) -> list[int]:
+    order = list(rows)
+    order[i], order[j] = j, i
+    return order
+
+
+def degrees_as_radians(table: WrittenTable) -> Iterator[Repair]:
+    """All angles were meant in degrees, where radians are read."""
+    if np.abs(table.constants[:, IS_ANGLE]).max() <= 2 * np.pi:
+        return
+    yield _angles_rescaled(
+        table,
+        np.pi / 180,
+        Finding(
+            "degrees_as_radians",
+            "The angles were read in radians, but they fit in degrees: write the unit (90deg or "
+            "90°), use pi, or hand the table in with the angle unit degrees.",
+        ),
+    )
+
+
+def radians_as_degrees(table: WrittenTable) -> Iterator[Repair]:
+    """All angles were meant in radians, where degrees are read."""
+    if np.abs(table.constants[:, IS_ANGLE]).max() > np.radians(2 * np.pi):
+        return
+    yield _angles_rescaled(
+        table,
+        180 / np.pi,
+        Finding(
+            "radians_as_degrees",
+            "The angles were read in degrees, but they fit in radians: use pi, or hand the table "
+            "in with the angle unit radians.",
+        ),
+    )
+
+
+def _angles_rescaled(table: WrittenTable, factor: float, finding: Finding) -> Repair:
+    constants = table.constants
+    constants[:, IS_ANGLE] *= factor
+    return Repair(table.changed(constants), finding)
+
+
+def column_sign(table: WrittenTable) -> Iterator[Repair]:
+    """One kind of parameter was measured in the wrong sense throughout."""
+    sense = ("along x", "about x", "along z", "about z")
+    for column in range(len(COLUMNS)):
+        constants = table.constants
+        constants[:, column] *= -1
+        yield Repair(
+            table.changed(constants),
+            Finding(
+                "column_sign",
+                f"{SYMBOLS[column]} has the wrong sign throughout: it is measured "
+                f"{sense[column]}, positive by the right-hand rule.",
+                f"Turn the sign of every {SYMBOLS[column]}.",
+            ),
+        )
+
+
+# A student may do two of these at once, or one of them and another slip.
+BASIC: tuple[Misconception, ...] = (other_convention, degrees_as_radians, radians_as_degrees)
+MISCONCEPTIONS: tuple[Misconception, ...] = (
+    *BASIC,
+    link_columns_shifted,
+    column_sign,
+    columns_swapped,
+    row_order,
+)
+
+
+def explanations(table: WrittenTable, valid: Validity, *, combine: bool) -> tuple[Finding, ...]:
+    """What explains the whole table: one belief, or else two of them where ``combine`` allows.
+
+    ``valid`` tells which tables describe the robot. A belief that would change nothing is no
+    explanation; of several with one code the first is told.
+    """
+    single = [(repair,) for repair in _repairs(table, MISCONCEPTIONS)]
+    found = _explaining(table, single, valid)
+    if not found and combine:
+        pairs = [
+            (first, second)
+            for i, basic in enumerate(BASIC)
+            for first in _repairs(table, (basic,))
+            for second in _repairs(first.table, MISCONCEPTIONS[i + 1 :])
+        ]
+        found = _explaining(table, pairs, valid)[:1]
+    told = {repair.finding.code: repair.finding for chain in reversed(found) for repair in chain}
+    if "other_convention" in told:
+        # To be one row off is the same thing seen from the other side.
+        told.pop("link_columns_shifted", None)
+    return tuple(reversed(told.values()))
+
+
+def _repairs(table: WrittenTable, misconceptions: Sequence[Misconception]) -> list[Repair]:
+    return [repair for misconception in misconceptions for repair in misconception(table)]
+
+
+def _explaining(
+    table: WrittenTable, chains: Sequence[tuple[Repair, ...]], valid: Validity
+) -> list[tuple[Repair, ...]]:
+    """The chains of repairs that change the table and end in a valid one."""
+    found: list[tuple[Repair, ...]] = []
+    for convention in Convention:
+        ending = [chain for chain in chains if chain[-1].table.convention is convention]
+        if not ending:
+            continue
+        tables = np.array([chain[-1].table.values for chain in ending])
+        explains = valid(tables, convention)
+        if convention is table.convention:
+            explains &= np.abs(tables - table.values).max(axis=(1, 2, 3)) > TOLERANCE
+        found.extend(ending[i] for i in np.flatnonzero(explains))
+    return found

@@ -1,0 +1,135 @@
+"""From what was handed in for one cell to the numbers that it gives at the samples."""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from service.expressions import LIMITS, Expression, ExpressionError, Kind, Note, Vocabulary, read
+from service.grading.compare import Numbers
+from service.grading.findings import Finding
+from service.grading.report import Severity, Verdict
+from service.grading.samples import LANES, Samples
+
+AngleUnit = Literal["radians", "degrees"]
+
+# Textbooks mark the joint variable so in every table; six notes about it would bury the others.
+EXPECTED_NOTES = frozenset({"joint_marker"})
+
+_DECIMAL = re.compile(r"\d\.|\.\d")
+
+# A 4×4 matrix of a six-joint arm, multiplied out and not simplified, takes a third of it.
+MAX_CHARACTERS = 12_000
+
+# Beyond these nobody measures a robot, and an angle has lost its digits to whole turns.
+BOUNDS: Mapping[Kind, float] = {"angle": 1e6, "length": 1e9, "number": 1e9}
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One cell as read: an expression, or why there is none.
+
+    Where nothing could be read, ``verdict`` says why; else it is yet to be found.
+    """
+
+    expression: Expression | None
+    verdict: Verdict = Verdict.CORRECT
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def readable(self) -> bool:
+        """Whether there is an expression to be judged."""
+        return self.expression is not None
+
+    @property
+    def may_be_rounded(self) -> bool:
+        """Whether a decimal number was written: then, and only then, can something be rounded."""
+        return self.expression is not None and bool(_DECIMAL.search(self.expression.source))
+
+
+@dataclass(slots=True)
+class Reader:
+    """Reads the cells of one submission.
+
+    Together they may hold so many characters and no more (``left``): reading is what costs time.
+    ``symbols`` are the letters met so far.
+    """
+
+    vocabulary: Vocabulary
+    samples: Samples
+    angle_unit: AngleUnit
+    left: int = MAX_CHARACTERS
+    symbols: set[str] = field(default_factory=set)
+
+    def read(self, raw: object, quantity: Kind) -> Entry:
+        """The entry for a JSON value. Whatever it is, the worst that comes back is unreadable."""
+        if raw is None or (isinstance(raw, str) and not raw.strip()):
+            return MISSING
+        if isinstance(raw, bool) or not isinstance(raw, str | int | float):
+            return unreadable(_wrong_type(raw))
+        if isinstance(raw, str) and len(raw) <= LIMITS.characters:
+            self.left -= len(raw)
+        if self.left < 0:
+            return unreadable(_TOO_MUCH)
+        try:
+            expression = read(raw, self.vocabulary, quantity=quantity, angle_unit=self.angle_unit)
+        except ExpressionError as error:
+            return unreadable(_from_error(error))
+        self.symbols |= expression.symbols
+        if not expression.notes:
+            return Entry(expression)
+        notes = (note for note in expression.notes if note.code not in EXPECTED_NOTES)
+        return Entry(expression, findings=tuple(map(_from_note, notes)))
+
+    def numbers(self, entries: Sequence[Entry], quantities: Sequence[Kind]) -> Numbers:
+        """The values of entries at the samples, ``(entries, LANES)``.
+
+        NaN where an entry has none: nothing could be read, or it is undefined or beyond all bounds
+        there.
+        """
+        numbers = np.full((len(entries), LANES), np.nan)
+        for values, entry in zip(numbers, entries, strict=True):
+            if entry.expression is not None:
+                values[:] = entry.expression.evaluate(self.samples.values, self.samples.memo)
+        bounds = np.array([BOUNDS[quantity] for quantity in quantities])
+        numbers[np.abs(numbers) > bounds[:, None]] = np.nan
+        return numbers
+
+
+_TOO_MUCH = Finding(
+    "too_long",
+    f"The answers hold more than {MAX_CHARACTERS} characters together; what follows is not read.",
+    reading=True,
+)
+
+MISSING = Entry(
+    None,
+    Verdict.MISSING,
+    (Finding("missing", "Nothing is written here; if the value is zero, write 0.", reading=True),),
+)
+
+
+def unreadable(finding: Finding) -> Entry:
+    """The entry for something that cannot be read, and why."""
+    return Entry(None, Verdict.UNREADABLE, (finding,))
+
+
+def _wrong_type(raw: object) -> Finding:
+    names = {bool: "true or false", list: "a list", dict: "an object"}
+    found = names.get(type(raw), "neither")
+    return Finding(
+        "wrong_type",
+        f"A cell holds one number or one formula as text; this is {found}.",
+        reading=True,
+    )
+
+
+def _from_error(error: ExpressionError) -> Finding:
+    suggestion = f"Did you mean {error.suggestion}?" if error.suggestion else ""
+    return Finding(error.code, error.message, suggestion, span=error.span, reading=True)
+
+
+def _from_note(note: Note) -> Finding:
+    return Finding(note.code, note.message, severity=Severity.INFO, span=note.span, reading=True)

@@ -1,0 +1,69 @@
+"""What a grader has to say, before it is decided how much of it the student is shown."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from service.grading.report import Feedback, Severity
+
+
+class FeedbackLevel(StrEnum):
+    """How much a report tells: everything, all but the correction, or only what could be read."""
+
+    FULL = "full"
+    VERDICTS = "verdicts"
+    SCORE = "score"
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """A message in two sentences: what to look at, and the correction itself.
+
+    ``code`` is stable, so that a class can be counted. ``reading`` marks what concerns the reading
+    of the text and not its worth: it gives nothing away and is told at every level.
+    """
+
+    code: str
+    look: str
+    correction: str = ""
+    severity: Severity = Severity.ERROR
+    span: tuple[int, int] | None = None
+    values: dict[str, float | str] | None = None
+    reading: bool = False
+
+    def shown(
+        self, level: FeedbackLevel, row: str | None = None, cell: str | None = None
+    ) -> Feedback | None:
+        """The message at this level, or None where the level keeps it back."""
+        if level is FeedbackLevel.SCORE and not self.reading:
+            return None
+        tells_all = level is FeedbackLevel.FULL or self.reading
+        message = f"{self.look} {self.correction}" if tells_all and self.correction else self.look
+        return Feedback(
+            code=self.code,
+            severity=self.severity,
+            message=message,
+            row=row,
+            cell=cell,
+            span=self.span,
+            values=self.values if level is FeedbackLevel.FULL else None,
+        )
+
+
+ROUNDED = Finding(
+    "rounded",
+    "Accepted, though rounded: write it exactly (pi/2, sqrt(2)/2) and nothing can be lost.",
+    severity=Severity.INFO,
+)
+
+
+def shown(
+    findings: tuple[Finding, ...],
+    level: FeedbackLevel,
+    row: str | None = None,
+    cell: str | None = None,
+) -> tuple[Feedback, ...]:
+    """The messages that the level lets through."""
+    if not findings:
+        return ()
+    feedback = (finding.shown(level, row, cell) for finding in findings)
+    return tuple(message for message in feedback if message is not None)

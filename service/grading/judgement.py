@@ -1,0 +1,212 @@
+"""A handed-in table held against what it should be, in the frames that it is judged in."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.catalogue import DhTableSpec, Joint, ReferenceTable
+from service.grading.choices import choices
+from service.grading.compare import Match, Numbers, matches
+from service.grading.findings import Finding
+from service.grading.frames import FrameReading, read_in_own_frames
+from service.grading.freedom import Freedom
+from service.grading.mechanism import Mechanism, mechanism_of
+from service.grading.protocol import Grading
+from service.grading.roles import Role, roles_of
+from service.grading.samples import LANES, Samples
+from service.grading.tables import (
+    IS_ANGLE,
+    HandedInRow,
+    aligned,
+    values_of,
+)
+from service.kinematics.chain import COLUMNS, Table
+from service.kinematics.dh import Convention
+from service.kinematics.frame_choice import NO_SUCH_CELL, WRONG_CELL
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedRow:
+    """A row that was handed in, or is missing (None), and what it should be: ``(4, LANES)``.
+
+    ``shared`` says that its axis has a parallel neighbour, so that offsets along it add up.
+    """
+
+    label: str
+    joint: Joint | None
+    row: HandedInRow | None
+    expected: Table
+    shared: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """A table held against what it should be, in the frames that it is judged in.
+
+    ``matches`` is the Match of each cell, ``(rows, 4)``; a missing row matches nowhere. ``extra``
+    are rows that answer to nothing; ``reached`` says that the rows lead to the given tool frame.
+    """
+
+    rows: tuple[JudgedRow, ...]
+    matches: NDArray[np.int_]
+    extra: tuple[int, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    reached: bool = True
+
+    @property
+    def lost(self) -> float:
+        """The share of the points that is lost beside those of wrong cells."""
+        return (len(self.extra) + (not self.reached)) / len(self.rows)
+
+    @property
+    def wrong(self) -> int:
+        """How many cells are not right."""
+        return int(np.count_nonzero(self.matches < Match.ROUNDED))
+
+
+def judged_table(
+    part: DhTableSpec, rows: tuple[HandedInRow, ...], convention: Convention, grading: Grading
+) -> Judgement:
+    """The table held against the reference, or against the valid table nearest to it."""
+    robot = grading.exercise.robot
+    reference = robot.tables.get(convention)
+    if reference is not None:
+        judgement = _judged_as_given(rows, reference, grading)
+        if part.frames == "given" or not (judgement.wrong or judgement.extra):
+            return judgement
+        in_own_frames = _judged_in_own_frames(part, rows, convention, grading)
+        # Of a table that is mostly wrong nobody can say which frames were meant; to follow it
+        # there would reward cells that any number fits.
+        mostly_wrong = in_own_frames.wrong > in_own_frames.matches.size / 2
+        return judgement if mostly_wrong else in_own_frames
+    return _judged_in_own_frames(part, rows, convention, grading)
+
+
+def _judged_as_given(
+    rows: tuple[HandedInRow, ...], reference: ReferenceTable, grading: Grading
+) -> Judgement:
+    """The table held against the reference's own."""
+    expected = reference.values(grading.samples.values, LANES)
+    rows = _without_idle_rows(rows, len(expected))
+    judged, extra = [], []
+    for i, j in _paired(rows, expected, grading):
+        if j is None:
+            extra.append(i or 0)
+            continue
+        joint = reference.joints[j] if j < len(reference.joints) else None
+        row = None if i is None else rows[i]
+        judged.append(JudgedRow(reference.labels[j], joint, row, expected[j]))
+    return Judgement(tuple(judged), _all_matches(judged, grading), tuple(extra))
+
+
+def _judged_in_own_frames(
+    part: DhTableSpec, rows: tuple[HandedInRow, ...], convention: Convention, grading: Grading
+) -> Judgement:
+    """The table held against the valid one nearest to it."""
+    joints = grading.exercise.robot.joints
+    roles = roles_in(rows, convention, grading)
+    reading = nearest_reading(roles, convention, freedom_of(part), grading)
+    judged = tuple(
+        JudgedRow(label, role.joint, role.row, expected, bool(shared))
+        for label, role, expected, shared in zip(
+            _labels(reading.roles), reading.roles, reading.expected, reading.shared, strict=True
+        )
+    )
+    findings = choices(reading.poses, joints, convention, grading.exercise)
+    matches = _all_matches(judged, grading)
+    if reading.cost >= NO_SUCH_CELL and not np.count_nonzero(matches < Match.ROUNDED):
+        findings = (_UNREACHED, *findings)
+    return Judgement(judged, matches, findings=findings, reached=_UNREACHED not in findings)
+
+
+_UNREACHED = Finding(
+    "tool_not_reached",
+    "Every row could stand in some table of this robot, but together they do not lead to the given "
+    "end-effector frame: compare the last frame with it.",
+)
+
+
+def roles_in(
+    rows: tuple[HandedInRow, ...], convention: Convention, grading: Grading
+) -> tuple[Role, ...]:
+    """Which handed-in row is for which joint."""
+    robot = grading.exercise.robot
+    own_table = robot.tables.get(convention)
+    wanted = len(robot.joints if own_table is None else own_table.rows)
+    return roles_of(_without_idle_rows(rows, wanted), robot.joints, grading.samples, wanted)
+
+
+def freedom_of(part: DhTableSpec) -> Freedom:
+    """What the part leaves to the student beyond the frames on the joints."""
+    return Freedom(
+        base=part.base == "free", tool=part.tool == "free", directions=part.directions == "free"
+    )
+
+
+def nearest_reading(
+    roles: tuple[Role, ...], convention: Convention, freedom: Freedom, grading: Grading
+) -> FrameReading:
+    """The reading of least cost: with the rows as they are, or with the tool row they lack."""
+    robot = grading.exercise.robot
+    mechanism = mechanism_at(grading, grading.samples)
+    own_table = robot.tables.get(convention)
+    lacks_row = own_table is not None and len(own_table.rows) > len(roles)
+    reading = read_in_own_frames(roles, robot.joints, convention, mechanism, freedom)
+    if reading.cost < WRONG_CELL or not lacks_row:
+        return reading
+    with_tool_row = (*roles, Role(None, None))
+    longer = read_in_own_frames(with_tool_row, robot.joints, convention, mechanism, freedom)
+    return longer if longer.cost + WRONG_CELL <= reading.cost else reading
+
+
+def mechanism_at(grading: Grading, samples: Samples) -> Mechanism:
+    """The reference mechanism at these samples."""
+    robot = grading.exercise.robot
+    return mechanism_of(robot.tables[robot.convention], samples, grading.exercise.length_scale)
+
+
+def _labels(roles: Sequence[Role]) -> list[str]:
+    """Row labels: the joint's number; "e", "e2" … for fixed rows behind the last, "0" before."""
+    last = max((i for i, role in enumerate(roles) if role.joint), default=-1)
+    return [
+        str(role.joint.index)
+        if role.joint
+        else f"e{i - last if i > last + 1 else ''}"
+        if i > last
+        else "0"
+        for i, role in enumerate(roles)
+    ]
+
+
+def _without_idle_rows(rows: tuple[HandedInRow, ...], wanted: int) -> tuple[HandedInRow, ...]:
+    """The rows without those at the end that are beyond the robot's and move nothing."""
+    while len(rows) > wanted and rows[-1].is_zero:
+        rows = rows[:-1]
+    return rows
+
+
+def _paired(
+    rows: tuple[HandedInRow, ...], expected: Table, grading: Grading
+) -> list[tuple[int | None, int | None]]:
+    """Which handed-in row answers which expected row; in order where the numbers agree."""
+    if len(rows) == len(expected):
+        return [(i, i) for i in range(len(rows))]
+    actual = values_of(rows)[:, None]
+    found = matches(actual, expected[None], column_scales(grading), IS_ANGLE[:, None])
+    return aligned((found >= Match.ROUNDED).sum(axis=-1).astype(np.float64))
+
+
+def column_scales(grading: Grading) -> Numbers:
+    """What each column is measured against."""
+    return np.where(IS_ANGLE, 1.0, grading.exercise.length_scale)
+
+
+def _all_matches(judged: Sequence[JudgedRow], grading: Grading) -> NDArray[np.int_]:
+    """The Match of each cell of each row, ``(rows, 4)``."""
+    nothing = np.full((len(COLUMNS), LANES), np.nan)
+    actual = np.array([nothing if row.row is None else row.row.values for row in judged])
+    rounded = [[False] * len(COLUMNS) if row.row is None else row.row.rounded for row in judged]
+    expected = np.array([row.expected for row in judged])
+    return matches(actual, expected, column_scales(grading), IS_ANGLE[:, None], rounded)

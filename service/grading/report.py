@@ -1,0 +1,133 @@
+"""The report: what a grading says, in the shape that the HTTP contract names.
+
+Plain frozen dataclasses; whoever sends them on leaves out the fields that are None.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Verdict(StrEnum):
+    """What became of a cell, a row or a part."""
+
+    CORRECT = "correct"
+    PARTIAL = "partial"
+    INCORRECT = "incorrect"
+    UNREADABLE = "unreadable"
+    MISSING = "missing"
+
+
+class Severity(StrEnum):
+    """How much a message matters: an error costs points, an info costs nothing."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    HINT = "hint"
+    INFO = "info"
+
+
+@dataclass(frozen=True, slots=True)
+class Feedback:
+    """One message. ``values`` is a counterexample.
+
+    ``span`` is [from, to) in the text of the cell, or in the whole text where it was pasted.
+    """
+
+    code: str
+    severity: Severity
+    message: str
+    row: str | None = None
+    cell: str | None = None
+    span: tuple[int, int] | None = None
+    values: dict[str, float | str] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class CellReport:
+    """One table cell or matrix entry."""
+
+    label: str
+    verdict: Verdict
+    feedback: tuple[Feedback, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class RowReport:
+    """One row: its cells share its points."""
+
+    label: str
+    verdict: Verdict
+    points: float
+    max_points: float
+    cells: tuple[CellReport, ...]
+    feedback: tuple[Feedback, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class PartReport:
+    """One part: its rows share its points."""
+
+    part: str
+    kind: str
+    verdict: Verdict
+    points: float
+    max_points: float
+    follow_through: bool
+    rows: tuple[RowReport, ...]
+    feedback: tuple[Feedback, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """The whole grading. ``score`` is points / max_points, 0..1.
+
+    ``gradable`` is false when nothing could be read, so that a site need not count the attempt.
+    """
+
+    exercise: str
+    version: str
+    gradable: bool
+    points: float
+    max_points: float
+    score: float
+    parts: tuple[PartReport, ...]
+
+
+def combined(verdicts: Iterable[Verdict]) -> Verdict:
+    """The verdict on a whole from those on its pieces: theirs where they agree.
+
+    Where they do not, some of it is right (partial), or else some of it was wrong (incorrect), or
+    else it could not be read.
+    """
+    found = set(verdicts)
+    if not found:
+        return Verdict.MISSING
+    if len(found) == 1:
+        return found.pop()
+    if found & {Verdict.CORRECT, Verdict.PARTIAL}:
+        return Verdict.PARTIAL
+    return Verdict.INCORRECT if Verdict.INCORRECT in found else Verdict.UNREADABLE
+
+
+def rounded_points(points: float) -> float:
+    """Points without the dust of floating-point sums."""
+    return round(points, 6)
+
+
+def row_report(
+    label: str,
+    max_points: float,
+    cells: tuple[CellReport, ...],
+    feedback: tuple[Feedback, ...] = (),
+) -> RowReport:
+    """A row from its cells, which share its points evenly."""
+    right = sum(cell.verdict is Verdict.CORRECT for cell in cells)
+    return RowReport(
+        label=label,
+        verdict=combined(cell.verdict for cell in cells),
+        points=rounded_points(max_points * right / len(cells)) if cells else 0.0,
+        max_points=rounded_points(max_points),
+        cells=cells,
+        feedback=feedback,
+    )

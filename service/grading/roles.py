@@ -1,0 +1,54 @@
+"""Which row of a handed-in table is for which joint."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import zip_longest
+
+import numpy as np
+
+from service.catalogue import Joint
+from service.grading.compare import Numbers
+from service.grading.motion import joint_counts
+from service.grading.samples import LANES, Samples
+from service.grading.tables import IS_ANGLE, HandedInRow, aligned, values_of
+from service.kinematics.chain import COLUMNS, THETA, D
+
+
+@dataclass(frozen=True, slots=True)
+class Role:
+    """A row and the joint it is for; a row without joint is fixed, a joint without row missing."""
+
+    row: HandedInRow | None
+    joint: Joint | None
+
+
+def variable_column(joint: Joint) -> int:
+    """The column that the joint's variable stands in."""
+    return D if joint.prismatic else THETA
+
+
+def roles_of(
+    rows: Sequence[HandedInRow], joints: tuple[Joint, ...], samples: Samples, wanted: int
+) -> tuple[Role, ...]:
+    """Which row is for which joint; ``wanted`` is how many rows the reference's table has.
+
+    As many rows as joints are taken in order. Otherwise the joint variables tell: the pairing in
+    order that meets most of them, rows left over being fixed ones. Where they do not tell, and
+    there are as many rows as wanted, these are the joints' rows and then the fixed ones.
+    """
+    in_order = tuple(Role(row, joint) for row, joint in zip_longest(rows, joints))
+    if len(rows) == len(joints):
+        return in_order
+    values = values_of(rows).reshape(-1, LANES)
+    counts, _ = joint_counts(values, joints, samples, np.tile(IS_ANGLE, len(rows)))
+    holds = np.abs(counts.reshape(len(rows), len(COLUMNS), len(joints))) > 0
+    scores: Numbers = np.asarray(0.25 + holds.any(axis=1))
+    for j, joint in enumerate(joints):
+        scores[:, j] += holds[:, variable_column(joint), j]
+    pairs = aligned(scores)
+    told = sum(scores[i, j] > 1 for i, j in pairs if i is not None and j is not None)
+    if told < len(joints) and len(rows) == wanted:
+        return in_order
+    return tuple(
+        Role(None if i is None else rows[i], None if j is None else joints[j]) for i, j in pairs
+    )

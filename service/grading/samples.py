@@ -1,0 +1,112 @@
+"""The values that answers are compared at: drawn anew for each submission, the same each time.
+
+The draw is a hash of exercise version and answers, so a student cannot foresee it, and a regrade
+repeats it to the last bit on every machine and with every version of numpy.
+"""
+
+import hashlib
+import json
+import math
+from collections.abc import Mapping, Set
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.catalogue import Exercise, Variable
+
+SAMPLES = 16
+LANES = 2 * SAMPLES
+
+Lanes = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Values of every symbol, each of shape ``(LANES,)``.
+
+    Lanes 0..15 are drawn freely. Lanes 16..31 repeat their link parameters with other joint values,
+    so that what a cell owes to the joints can be told from what it owes to the links.
+    ``in_degrees`` are the angles that the student reckons in degrees.
+    """
+
+    values: Mapping[str, Lanes]
+    in_degrees: Set[str] = frozenset()
+
+    @cached_property
+    def memo(self) -> dict[str, Lanes]:
+        """Where expressions keep the sines and cosines that they share at these samples."""
+        return {}
+
+    @cached_property
+    def solvers(self) -> dict[tuple[str, ...], tuple[Lanes, Lanes]]:
+        """Where the motion of joints is kept once it has been taken apart, by their variables."""
+        return {}
+
+    @property
+    def lanes(self) -> int:
+        """How many values each symbol has."""
+        return len(next(iter(self.values.values())))
+
+    def few(self, count: int) -> "Samples":
+        """The first ``count`` lanes of each half: enough to tell generic tables apart."""
+        return Samples({name: self.few_of(values, count) for name, values in self.values.items()})
+
+    @staticmethod
+    def few_of(values: Lanes, count: int) -> Lanes:
+        """Those lanes of values ``(..., LANES)``."""
+        return np.concatenate(
+            [values[..., :count], values[..., SAMPLES : SAMPLES + count]], axis=-1
+        )
+
+    def at(self, lane: int, names: Set[str]) -> dict[str, float]:
+        """The values of the named symbols in one lane, short enough to be read."""
+        return {
+            name: float(f"{self._shown(name, values[lane]):.4g}")
+            for name, values in self.values.items()
+            if name in names
+        }
+
+    def _shown(self, name: str, value: float) -> float:
+        return math.degrees(value) if name in self.in_degrees else value
+
+
+def draw(exercise: Exercise, answers: object, *, degrees: bool = False) -> Samples:
+    """The samples for these answers to this exercise."""
+    seed = exercise.version + _canonical([answers, degrees])
+    joints = [variable for variable in exercise.variables if variable.joint is not None]
+    others = [variable for variable in exercise.variables if variable.joint is None]
+    uniform = _uniform(seed, len(joints) * LANES + len(others) * SAMPLES)
+    split = len(joints) * LANES
+    of_joints = uniform[:split].reshape(len(joints), LANES)
+    of_others = np.tile(uniform[split:].reshape(len(others), SAMPLES), 2)
+    return Samples(
+        {
+            variable.name: _scaled(variable, row)
+            for variable, row in zip((*joints, *others), (*of_joints, *of_others), strict=True)
+        },
+        frozenset(v.name for v in exercise.variables if degrees and v.kind == "angle"),
+    )
+
+
+def _canonical(answers: object) -> str:
+    """The answers as text that does not depend on the order of keys.
+
+    What JSON itself refuses (nested beyond all bounds, a number of thousands of digits) has no
+    readable cell in that place; all of it shares one seed.
+    """
+    try:
+        return json.dumps(answers, sort_keys=True, separators=(",", ":"))
+    except (TypeError, ValueError, RecursionError):
+        return ""
+
+
+def _uniform(seed: str, count: int) -> Lanes:
+    """``count`` numbers in [0, 1) from an extendable hash of the seed."""
+    stream = hashlib.shake_128(seed.encode("utf-8", "surrogatepass")).digest(4 * count)
+    return np.frombuffer(stream, dtype="<u4") * 2.0**-32
+
+
+def _scaled(variable: Variable, uniform: Lanes) -> Lanes:
+    return variable.low + (variable.high - variable.low) * uniform

@@ -1,0 +1,45 @@
+"""Answer kind ``vector``: a list of lengths, angles and numbers."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from service.catalogue import VectorSpec
+from service.expressions import Kind
+from service.grading.compare import Match, Numbers
+from service.grading.expected import own_values
+from service.grading.lists import read_list
+from service.grading.matrices import UnreadableMatrixError
+from service.grading.protocol import Grading, PartTerms
+from service.grading.report import PartReport, Verdict
+from service.grading.rows import entry_rows
+from service.grading.values import WrittenValues, slips_of
+
+
+@dataclass(frozen=True, slots=True)
+class VectorKind:
+    """Grades a list component by component; angles compare modulo 2π."""
+
+    def grade(self, part: VectorSpec, answer: object, grading: Grading) -> PartReport:
+        """The report on a vector, one row for each component."""
+        terms = PartTerms(part.id, part.kind, part.points, part.all_or_nothing)
+        quantities: list[Kind] = [component.quantity for component in part.components]
+        try:
+            entries = read_list(answer, quantities, grading.reader)
+        except UnreadableMatrixError as error:
+            return terms.unread(Verdict.UNREADABLE, grading.show((error.finding,)))
+        expected = _expected(part, grading)
+        [formulas] = grading.exercise.formulas[part.id]
+        texts = [formula.text() for formula in formulas]
+        written = WrittenValues(entries, expected, quantities, texts)
+        found = written.matches(grading)
+        slips = slips_of(written, found < Match.ROUNDED, grading)
+        column = [[entry] for entry in entries]
+        return terms.report(entry_rows(column, found[:, None], slips, part.points, grading))
+
+
+def _expected(part: VectorSpec, grading: Grading) -> Numbers:
+    values = own_values(part.id, grading.exercise, grading.samples)
+    if values is None:
+        raise LookupError(f"part {part.id!r} has no formulas")
+    return np.asarray(values[0])

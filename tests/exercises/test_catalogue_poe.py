@@ -1,0 +1,192 @@
+"""Each robot of the catalogue against a product of exponentials that was read off its statement.
+
+The screw axes and home poses below were written by hand from the words of the statements (where an
+axis passes, which way it points, where the tool is with all joint variables 0), not from the
+tables. T = e^{[S1] q1} … e^{[Sn] qn} M is equation 2.31 of the Robot kinematics lecture notes; the
+exponentials are SciPy's.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.linalg import expm
+
+from service.catalogue import Exercise, Robot
+from service.kinematics.chain import pose as table_pose
+
+Vector = NDArray[np.float64]
+Numbers = Mapping[str, float]
+
+LANES = 8
+X, Y, Z = np.eye(3)
+ORIGIN = np.zeros(3)
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A joint at home: the twist (ω; v) that it gives to the points of space."""
+
+    turning: Vector
+    velocity: Vector
+
+    def matrix(self) -> Vector:
+        (x, y, z), v = self.turning, self.velocity
+        return np.array([[0, -z, y, v[0]], [z, 0, -x, v[1]], [-y, x, 0, v[2]], [0, 0, 0, 0]])
+
+
+def turn(direction: Vector, through: Vector = ORIGIN) -> Axis:
+    return Axis(direction, np.cross(through, direction))
+
+
+def slide(direction: Vector) -> Axis:
+    return Axis(ORIGIN, direction)
+
+
+def frame(x: Vector, z: Vector, at: Vector) -> Vector:
+    """A frame by the directions of its x and z axes and its origin."""
+    home = np.eye(4)
+    home[:3] = np.column_stack([x, np.cross(z, x), z, at])
+    return home
+
+
+Chain = tuple[list[Axis], Vector]
+
+
+def planar_rr(n: Numbers) -> Chain:
+    tip = X * (n["a1"] + n["a2"])
+    return [turn(Z), turn(Z, X * n["a1"])], frame(X, Z, tip)
+
+
+def planar_rrr(n: Numbers) -> Chain:
+    second = X * n["l1"]
+    third = second + X * n["l2"]
+    tip = third + X * n["l3"]
+    return [turn(Z), turn(Z, second), turn(Z, third)], frame(X, Z, tip)
+
+
+def planar_rpr(n: Numbers) -> Chain:
+    third, tip = X * n["L1"], X * (n["L1"] + n["L2"])
+    return [turn(Z), slide(X), turn(Z, third)], frame(X, Z, tip)
+
+
+def rrrp(n: Numbers) -> Chain:
+    elbow, wrist = X * n["l2"], X * (n["l2"] + n["l3"])
+    tool = wrist + Z * (n["l1"] - n["l4"])
+    return [turn(Z), turn(Z, elbow), turn(-Z, wrist), slide(-Z)], frame(X, -Z, tool)
+
+
+def spatial_rrr(n: Numbers) -> Chain:
+    second = X * n["R"]
+    third = second + X * n["L1"]
+    tip = third + X * n["L2"]
+    return [turn(Z), turn(-Y, second), turn(-Y, third)], frame(X, -Y, tip)
+
+
+def stanford(n: Numbers) -> Chain:
+    shoulder = Z * n.get("d1", 0.0)
+    boom = shoulder + Y * n["d2"]
+    wrist = [turn(Z, boom), turn(Y, boom), turn(Z, boom)]
+    return [turn(Z), turn(Y, shoulder), slide(Z), *wrist], frame(X, Z, boom + Z * n["d6"])
+
+
+def scara(n: Numbers) -> Chain:
+    elbow, wrist = X * n["a1"], X * (n["a1"] + n["a2"])
+    tool = wrist - Z * n["d4"]
+    return [turn(Z), turn(Z, elbow), slide(-Z), turn(-Z, wrist)], frame(X, -Z, tool)
+
+
+def cylindrical(n: Numbers) -> Chain:
+    return [turn(Z), slide(Z), slide(Y)], frame(X, Y, Z * n["d1"])
+
+
+def cartesian(_: Numbers) -> Chain:
+    return [slide(Z), slide(Y), slide(X)], frame(Z, X, ORIGIN)
+
+
+def spherical_wrist(n: Numbers) -> Chain:
+    return [turn(Z), turn(Y), turn(Z)], frame(X, Z, Z * n["d6"])
+
+
+def baxter(_: Numbers) -> Chain:
+    shoulder = X * 0.069 + Z * 0.27035
+    elbow = shoulder + X * 0.36435 - Z * 0.069
+    wrist = elbow + X * 0.37429 - Z * 0.010
+    hand = wrist + X * 0.229525
+    arm = [turn(Z), turn(Y, shoulder), turn(X, shoulder), turn(Y, elbow), turn(X, elbow)]
+    return [*arm, turn(Y, wrist), turn(X, wrist)], frame(-Z, X, hand)
+
+
+STATEMENTS: dict[str, Callable[[Numbers], Chain]] = {
+    "baxter-left-arm": baxter,
+    "planar-rpr-poe": planar_rpr,
+    "planar-rr": planar_rr,
+    "planar-rrr": planar_rrr,
+    "planar-rrr-drawn": planar_rrr,
+    "planar-rrr-standard": planar_rrr,
+    "rrrp": rrrp,
+    "rrrp-drawn": rrrp,
+    "rrrp-proximal": rrrp,
+    "scara": scara,
+    "scara-links": scara,
+    "spatial-rrr": spatial_rrr,
+    "spherical-wrist": spherical_wrist,
+    "stanford-arm": stanford,
+    "stanford-arm-d1": stanford,
+    "stanford-arm-drawn": stanford,
+    "stanford-arm-links": stanford,
+    "three-link-cartesian": cartesian,
+    "three-link-cylindrical": cylindrical,
+}
+
+
+def drawn(exercise: Exercise) -> dict[str, Vector]:
+    rng = np.random.default_rng(520)
+    return {v.name: rng.uniform(v.low, v.high, LANES) for v in exercise.variables}
+
+
+def exponentials(exercise: Exercise, values: Mapping[str, Vector]) -> Vector:
+    """T at each draw, ``(LANES, 4, 4)``."""
+    poses = np.empty((LANES, 4, 4))
+    for lane in range(LANES):
+        numbers = {name: float(drawn_values[lane]) for name, drawn_values in values.items()}
+        axes, poses[lane] = STATEMENTS[exercise.id](numbers)
+        for axis, joint in reversed(list(zip(axes, exercise.joints, strict=True))):
+            poses[lane] = expm(axis.matrix() * numbers[joint.variable]) @ poses[lane]
+    return poses
+
+
+def test_every_robot_of_the_catalogue_is_here(catalogue: Mapping[str, Exercise]) -> None:
+    assert {name for name, exercise in catalogue.items() if exercise.reference} == set(STATEMENTS)
+
+
+@pytest.mark.parametrize("exercise_id", STATEMENTS)
+def test_the_forward_kinematics_are_those_of_the_statement(
+    exercise_id: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    exercise = catalogue[exercise_id]
+    assert exercise.reference is not None
+    values = drawn(exercise)
+    expected = exponentials(exercise, values)
+    reached = exercise.reference.frame("tool", values, LANES)
+    np.testing.assert_allclose(reached, expected, rtol=0, atol=1e-12)
+    if isinstance(exercise.reference, Robot):
+        for table in exercise.reference.tables.values():
+            reached = table_pose(table.values(values, LANES), table.convention)
+            np.testing.assert_allclose(reached, expected, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("exercise_id", STATEMENTS)
+def test_the_screw_axes_are_those_of_the_statement(
+    exercise_id: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    exercise = catalogue[exercise_id]
+    assert exercise.reference is not None
+    values = drawn(exercise)
+    screws = exercise.reference.screws(values, LANES)
+    for lane in range(LANES):
+        axes, _ = STATEMENTS[exercise_id]({name: float(v[lane]) for name, v in values.items()})
+        expected = [np.concatenate([axis.turning, axis.velocity]) for axis in axes]
+        np.testing.assert_allclose(screws[:, lane], expected, rtol=0, atol=1e-12)

@@ -1,0 +1,133 @@
+"""Which other readings of a wrong table are as good as the slip that was made.
+
+On parallel axes, and around sliding joints, one slip can often be mended in another cell than the
+one that it was made in. No grader can know which was meant.
+"""
+
+from collections.abc import Sequence
+from itertools import product
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from tests.frame_choice.kinematics import Numbers, cell_values, evaluate, factors, inverse
+from tests.frame_choice.oracle import (
+    JOINTS,
+    LENGTHS,
+    TOLERANCE,
+    Texts,
+    Values,
+    difference,
+    reference_poses,
+    samples,
+)
+from tests.frame_choice.robots import ALPHA, STANDARD, THETA, A, D, Policy, Robot
+
+Place = tuple[int, int]
+TURNS = (0.0, np.pi, np.pi / 2, -np.pi / 2)
+STARTS = 8
+
+
+def mends(
+    robot: Robot, policy: Policy, texts: Texts, convention: str, cells: Sequence[Place]
+) -> bool:
+    """Whether other values of these few cells make the table valid.
+
+    Each cell becomes a constant for each set of lengths, with the joint variable, either way, in
+    its own column; found by least squares from a few starts.
+    """
+    values = samples(robot)
+    own = [robot.column(r) == c if r < len(robot.joints) else False for r, c in cells]
+    written = cell_values(texts, {name: value * 1.0 for name, value in values.items()})
+    starts = [
+        written[r, c].mean(axis=-1) if not mine else np.zeros(LENGTHS)
+        for (r, c), mine in zip(cells, own, strict=True)
+    ]
+    rng = np.random.default_rng(0)
+    for senses in product(*[(1.0, -1.0) if mine else (0.0,) for mine in own]):
+
+        def off(x: Numbers, senses: tuple[float, ...] = senses) -> Numbers:
+            constants = x.reshape(len(cells), LENGTHS)
+
+            def table(at: Values) -> Numbers:
+                numbers = cell_values(texts, at)
+                for (r, c), constant, sense in zip(cells, constants, senses, strict=True):
+                    shape = np.shape(numbers[r, c])
+                    value = constant.reshape(LENGTHS, *[1] * (len(shape) - 1))
+                    if sense:
+                        value = value + sense * at[robot.joints[r]]
+                    numbers[r, c] = value
+                return numbers
+
+            return difference(robot, policy, table, convention).ravel()
+
+        for attempt in range(STARTS):
+            start = np.concatenate(starts) + (attempt > 0) * rng.uniform(-2, 2, 2 * len(cells))
+            if attempt < len(TURNS):  # where all axes are parallel no gradient leads
+                angles = np.repeat([c in (ALPHA, THETA) for _, c in cells], LENGTHS)
+                start = np.where(angles, TURNS[attempt], start)
+            found = least_squares(off, start, method="trf", max_nfev=60)
+            if np.abs(found.fun).max() < TOLERANCE:
+                return True
+    return False
+
+
+def repairing_cells(robot: Robot, texts: Texts, convention: str) -> set[tuple[int, int]]:
+    """The cells of which another value alone would make the table valid, both ends given.
+
+    The pose depends on a cell through one factor, F = A⁻¹ T_reference C⁻¹ with what stands before
+    and behind it. The cell repairs the table if F is such a factor at every sample, the joint
+    variable in its own column and nowhere else.
+    """
+    values = samples(robot)
+    chain = factors(cell_values(texts, values), convention)
+    target = reference_poses(robot, (1,) * len(robot.joints))
+    before, behind = [np.broadcast_to(np.eye(4), target.shape)], []
+    for factor in chain:
+        before.append(before[-1] @ factor)
+    behind.append(np.broadcast_to(np.eye(4), target.shape))
+    for factor in chain[::-1]:
+        behind.append(factor @ behind[-1])
+    found = set()
+    for i in range(len(chain)):
+        wanted = inverse(before[i]) @ target @ inverse(behind[len(chain) - 1 - i])
+        row, in_x = i // 2, (i % 2 == 1) == (convention == STANDARD)
+        for column in (A, ALPHA) if in_x else (D, THETA):
+            if _fills(robot, texts, row, column, wanted, values):
+                found.add((row, column))
+    return found
+
+
+def _fills(
+    robot: Robot, texts: Texts, row: int, column: int, wanted: Numbers, values: Values
+) -> bool:
+    """Whether a value of this one cell makes its factor the wanted one, at all samples."""
+    axis = 0 if column in (A, ALPHA) else 2
+    first, second = (axis + 1) % 3, (axis + 2) % 3
+    other = evaluate(texts[row][{A: ALPHA, ALPHA: A, D: THETA, THETA: D}[column]], values)
+    angle = np.arctan2(wanted[..., second, first], wanted[..., first, first])
+    shift = wanted[..., axis, 3]
+    free, fixed = (shift, angle) if column in (A, D) else (angle, shift)
+    off = np.abs(wanted[..., axis, axis] - 1) + np.abs(wanted[..., first, 3])
+    off = off + np.abs(wanted[..., second, 3])
+    rest = fixed - other
+    if column in (A, D):
+        rest = _principal(rest)
+    if max(off.max(), np.abs(rest).max()) > TOLERANCE:
+        return False
+    senses = [0.0]
+    variable = np.zeros((LENGTHS, JOINTS))
+    if row < len(robot.joints) and column == robot.column(row):
+        senses, variable = [1.0, -1.0], values[robot.joints[row]]
+    for sense in senses:
+        constant = free - sense * variable
+        drift = constant - constant[:, :1]
+        drift = drift if column in (A, D) else _principal(drift)
+        if np.abs(drift).max() < TOLERANCE:
+            return True
+    return False
+
+
+def _principal(angle: Numbers) -> Numbers:
+    turned: Numbers = angle - 2 * np.pi * np.round(angle / (2 * np.pi))
+    return turned

@@ -1,0 +1,94 @@
+"""What must hold of grading where the frames are the student's own choice.
+
+Every valid table is accepted, no wrong one is, and the blame falls where the slip was made. Each
+test prints its figures; ``python -m tests.frame_choice --tables 1000`` prints them for each robot.
+"""
+
+import sys
+import zlib
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from tests.frame_choice.figures import HEAD, line
+from tests.frame_choice.robots import GIVEN, POLICIES, ROBOTS, conventions
+from tests.frame_choice.trials import Tally, run
+
+# For each robot and convention: how many tables, and how many of them also with slips.
+GIVEN_TABLES, GIVEN_SLIPS = 40, 12
+FREE_TABLES, FREE_SLIPS = 15, 6
+
+
+def tallied(only_given: bool) -> Tally:
+    total = Tally()
+    tables, slips = (GIVEN_TABLES, GIVEN_SLIPS) if only_given else (FREE_TABLES, FREE_SLIPS)
+    for robot in ROBOTS:
+        for convention in conventions(robot, GIVEN if only_given else POLICIES[-1]):
+            rng = np.random.default_rng(zlib.crc32(f"{robot.name} {convention}".encode()))
+            total.add(run(robot, convention, only_given, tables, rng, slips=slips, explain=False))
+    sys.stdout.write(f"{HEAD}\n{line('all robots', total)}\n")
+    return total
+
+
+@pytest.fixture(scope="module")
+def given() -> Tally:
+    """Base, end-effector frame and directions are given."""
+    return tallied(only_given=True)
+
+
+@pytest.fixture(scope="module")
+def free() -> Tally:
+    """Each other policy in turn."""
+    return tallied(only_given=False)
+
+
+@pytest.fixture(params=["given", "free"])
+def either(request: pytest.FixtureRequest) -> Tally:
+    tally: Tally = request.getfixturevalue(request.param)
+    return tally
+
+
+def shown(tally: Tally, chosen: Callable[[str], bool]) -> str:
+    """The first few tables that were judged otherwise."""
+    return "\n\n".join(str(miss) for miss in tally.misses if chosen(miss.what))[:4000]
+
+
+def test_every_valid_table_gets_full_marks_and_no_word_of_an_error(either: Tally) -> None:
+    assert either.counts["valid"] >= 450
+    assert either.counts["valid accepted"] == either.counts["valid"], shown(
+        either, lambda what: what.startswith("valid")
+    )
+
+
+def test_no_table_with_a_slip_gets_full_marks(either: Tally) -> None:
+    wrong = either.counts["slip"] + either.counts["two slips"]
+    caught = either.counts["slip caught"] + either.counts["two caught"]
+    assert wrong >= 300
+    assert caught == wrong, shown(either, lambda what: what.startswith("wrong"))
+
+
+def test_nothing_raises(either: Tally) -> None:
+    assert either.counts["crashed"] == 0, shown(either, lambda what: what == "crash")
+
+
+def test_a_slip_between_axes_that_are_not_parallel_is_blamed_on_its_cell(given: Tally) -> None:
+    """Where no other single cell would mend the table, so that the blame is nobody else's."""
+    assert given.counts["skew unshared"] >= 80
+    assert given.share("skew unshared exact", "skew unshared") >= 0.99, shown(
+        given, lambda what: what.startswith("one slip, skew")
+    )
+
+
+def test_a_slip_between_parallel_axes_is_blamed_on_one_row(given: Tally) -> None:
+    assert given.counts["parallel"] >= 150
+    assert given.share("parallel one row", "parallel") >= 0.90, shown(
+        given, lambda what: what.startswith("one slip, parallel")
+    )
+
+
+def test_two_slips_that_have_nothing_to_do_with_each_other_are_both_found(given: Tally) -> None:
+    assert given.counts["two unshared"] >= 150
+    assert given.share("two unshared found", "two unshared") >= 0.90, shown(
+        given, lambda what: what.startswith("two slips")
+    )

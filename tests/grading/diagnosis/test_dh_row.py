@@ -1,0 +1,93 @@
+"""Each belief about the row of a transform: one case that it explains, one it leaves alone."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from service.grading.compare import Numbers
+from service.grading.diagnosis import dh_row
+from service.grading.diagnosis.dh_row import MISCONCEPTIONS, RowCase, explain_row, violated
+from service.grading.findings import Finding
+from service.grading.samples import LANES
+from service.kinematics.dh import Convention, link_transforms
+from service.kinematics.transforms import Matrices, rot_x, rot_y, trans
+
+RNG = np.random.default_rng(10)
+A, ALPHA, D, THETA = ROW = RNG.uniform(0.3, 1.2, (4, LANES))
+ZERO = np.zeros(LANES)
+STANDARD, MODIFIED = Convention.STANDARD, Convention.MODIFIED
+
+
+def link(convention: Convention, *cells: Numbers) -> Matrices:
+    return link_transforms(convention, *cells)
+
+
+def case(written: list[Numbers], transform: Matrices, convention: Convention = STANDARD) -> RowCase:
+    return RowCase(np.array(written), transform, convention, 0.7)
+
+
+FULL = link(STANDARD, *ROW)
+# Without a twist and an offset both conventions have a row, and so has the inverse.
+FLAT = link(STANDARD, A, ZERO, ZERO, THETA)
+SCREW_ALONG_Z = link(STANDARD, ZERO, ZERO, D, THETA)
+
+Belief = Callable[[RowCase], Finding | None]
+PAIRS: list[tuple[Belief, RowCase, RowCase, str]] = [
+    (
+        dh_row.exchanged_parameters,
+        case([D, ALPHA, A, THETA], FULL),
+        case([D, ALPHA, A, -THETA], FULL),
+        "exchanged_parameters",
+    ),
+    (
+        dh_row.other_convention,
+        case([A, ALPHA, ZERO, ZERO], link(MODIFIED, A, ALPHA, ZERO, ZERO)),
+        case([A, -ALPHA, ZERO, ZERO], link(MODIFIED, A, ALPHA, ZERO, ZERO)),
+        "other_convention",
+    ),
+    (
+        dh_row.inverse_row,
+        case([ZERO, ZERO, -D, -THETA], SCREW_ALONG_Z),
+        case([-A, ZERO, ZERO, -THETA], FLAT),
+        "inverse_transform",
+    ),
+]
+
+
+@pytest.mark.parametrize(("belief", "explained", "left", "code"), PAIRS)
+def test_a_belief(belief: Belief, explained: RowCase, left: RowCase, code: str) -> None:
+    finding = belief(explained)
+    assert finding is not None
+    assert finding.code == code
+    assert belief(left) is None
+
+
+def test_every_belief_is_tested_and_tried() -> None:
+    assert {pair[0] for pair in PAIRS} == set(MISCONCEPTIONS)
+
+
+def test_a_right_row_is_left_alone() -> None:
+    assert explain_row(case(list(ROW), FULL)) is None
+
+
+@pytest.mark.parametrize(
+    ("transform", "codes"),
+    [
+        (FULL, []),
+        (trans(0.5, 0, 0.2) @ rot_y(0.3), ["dh_not_perpendicular"]),
+        (trans(0.5, 0.4, 0.2) @ rot_x(0.3), ["dh_not_intersecting"]),
+        (trans(0.5, 0.4, 0.2) @ rot_y(0.3), ["dh_not_perpendicular", "dh_not_intersecting"]),
+    ],
+)
+def test_which_condition_is_broken(transform: Matrices, codes: list[str]) -> None:
+    batch = np.broadcast_to(transform, (LANES, 4, 4))
+    findings = violated(batch, STANDARD, 0.7)
+    assert [finding.code for finding in findings] == codes
+    assert all("x1" in finding.look and "z0" in finding.look for finding in findings)
+
+
+def test_the_modified_convention_speaks_of_its_own_axes() -> None:
+    [finding] = violated(np.broadcast_to(rot_y(0.3), (LANES, 4, 4)), MODIFIED, 0.7)
+    assert "x0" in finding.look
+    assert "z1" in finding.look

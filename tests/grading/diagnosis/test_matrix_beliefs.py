@@ -1,0 +1,428 @@
+"""Beliefs about whole matrices: what each explains, and what it leaves alone.
+
+The poses are multiplied out by SymPy from elementary turns and shifts.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+import pytest
+import sympy as sp
+from sympy import Matrix
+
+from service.catalogue import Exercise
+from service.grading import FeedbackLevel, PartReport, Severity, Verdict
+from service.grading.diagnosis.matrices import explain
+from service.grading.diagnosis.matrix_case import Chain, MatrixCase
+from service.grading.diagnosis.products import as_entries
+from service.kinematics.dh import Convention
+from tests.grading.robots import PLANAR_RRR, SCARA, STANFORD, Robot
+from tests.grading.submitting import codes, full_marks, graded_pose, handed_in, part
+
+Build = Callable[[], Matrix]
+
+
+def turn_z(angle: sp.Expr) -> Matrix:
+    c, s = sp.cos(angle), sp.sin(angle)
+    return Matrix([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+
+
+def turn_x(angle: sp.Expr) -> Matrix:
+    c, s = sp.cos(angle), sp.sin(angle)
+    return Matrix([[1, 0, 0, 0], [0, c, -s, 0], [0, s, c, 0], [0, 0, 0, 1]])
+
+
+def shift(x: sp.Expr, z: sp.Expr) -> Matrix:
+    return Matrix([[1, 0, 0, x], [0, 1, 0, 0], [0, 0, 1, z], [0, 0, 0, 1]])
+
+
+def factors(robot: Robot) -> list[tuple[Matrix, Matrix]]:
+    """What each row does about and along z, and about and along x."""
+    rows = []
+    for a, alpha, d, theta in robot.rows:
+        length, offset, angle = (
+            sp.Integer(0) if cell == "0" else sp.Symbol(cell.removesuffix("*"))
+            for cell in (a, d, theta)
+        )
+        z = turn_z(angle) * shift(sp.Integer(0), offset)
+        rows.append((z, shift(length, sp.Integer(0)) * turn_x(sp.rad(int(alpha)))))
+    return rows
+
+
+def links(robot: Robot, modified: bool = False) -> list[Matrix]:
+    return [x * z if modified else z * x for z, x in factors(robot)]
+
+
+def product(matrices: Sequence[Matrix]) -> Matrix:
+    total = sp.eye(4)
+    for matrix in matrices:
+        total = (total * matrix).applyfunc(sp.expand)
+    return total
+
+
+def inverse_of(pose: Matrix) -> Matrix:
+    turned_back = pose[:3, :3].T
+    upper = turned_back.row_join((-turned_back * pose[:3, 3]).applyfunc(sp.trigsimp))
+    return upper.col_join(Matrix([[0, 0, 0, 1]]))
+
+
+def with_rotation(pose: Matrix, rotation: Matrix) -> Matrix:
+    changed = pose.copy()
+    changed[:3, :3] = rotation
+    return changed
+
+
+def with_position(pose: Matrix, position: Matrix) -> Matrix:
+    changed = pose.copy()
+    changed[:3, 3] = position
+    return changed
+
+
+def text(matrix: Matrix) -> list[list[str]]:
+    return [[str(entry).replace("**", "^") for entry in matrix.row(i)] for i in range(matrix.rows)]
+
+
+SCARA_LINKS, STANFORD_LINKS = links(SCARA), links(STANFORD)
+SCARA_POSE, STANFORD_POSE = product(SCARA_LINKS), product(STANFORD_LINKS)
+R = STANFORD_POSE[:3, :3]
+WHOLE = {(i, j) for i in range(3) for j in range(4)}
+ROTATION = {(i, j) for i in range(3) for j in range(3)}
+POSITION = {(i, 3) for i in range(3)}
+
+# Robot, what was handed in, the codes of the part's feedback, words of it, and what that explains.
+Slip = tuple[Robot, Matrix, list[str], str, set[tuple[int, int]]]
+SLIPS: dict[str, Slip] = {
+    "inverse": (
+        SCARA,
+        inverse_of(SCARA_POSE),
+        ["inverse_transform"],
+        "the inverse of the transform",
+        WHOLE,
+    ),
+    "transposed throughout": (
+        SCARA,
+        SCARA_POSE.T,
+        ["transposed_matrix"],
+        "transposed",
+        {(i, j) for i in range(4) for j in range(4)},
+    ),
+    "transposed rotation": (
+        STANFORD,
+        with_rotation(STANFORD_POSE, R.T),
+        ["transposed_rotation"],
+        "The rotation is transposed",
+        ROTATION,
+    ),
+    "reverse order": (
+        STANFORD,
+        product(STANFORD_LINKS[::-1]),
+        ["reversed_product"],
+        "A6·A5·A4·A3·A2·A1",
+        WHOLE,
+    ),
+    "other convention": (
+        STANFORD,
+        product(links(STANFORD, modified=True)),
+        ["other_convention"],
+        "link transform of the modified convention",
+        WHOLE,
+    ),
+    "stops early": (
+        STANFORD,
+        product(STANFORD_LINKS[:5]),
+        ["wrong_frame"],
+        "the pose of frame {5}. The pose of frame {6} is asked for. Go on with A6.",
+        WHOLE,
+    ),
+    "stops in the middle": (
+        STANFORD,
+        product(STANFORD_LINKS[:3]),
+        ["wrong_frame"],
+        "Go on with A4·A5·A6.",
+        WHOLE,
+    ),
+    "starts late": (
+        STANFORD,
+        product(STANFORD_LINKS[1:]),
+        ["wrong_base"],
+        "seen from frame {1}. The pose in frame {0} is asked for. Put A1 in front.",
+        WHOLE,
+    ),
+    "a link left out": (
+        STANFORD,
+        product([*STANFORD_LINKS[:3], *STANFORD_LINKS[4:]]),
+        ["missing_link"],
+        "the product without A4",
+        WHOLE,
+    ),
+    "another link left out": (
+        SCARA,
+        product([SCARA_LINKS[0], *SCARA_LINKS[2:]]),
+        ["missing_link"],
+        "the product without A2",
+        WHOLE,
+    ),
+    "one from the left": (
+        STANFORD,
+        product([STANFORD_LINKS[2], *STANFORD_LINKS[:2], *STANFORD_LINKS[3:]]),
+        ["premultiplied"],
+        "A3·A1·A2·A4·A5·A6",
+        WHOLE,
+    ),
+    "all from the left": (
+        STANFORD,
+        product(links(STANFORD, modified=True)[::-1]),
+        ["premultiplied"],
+        "all turns and shifts in reverse order",
+        WHOLE,
+    ),
+    "inverse of the reverse order": (
+        STANFORD,
+        product([inverse_of(link) for link in STANFORD_LINKS]),
+        ["inverse_transform", "reversed_product"],
+        "What was inverted is the product",
+        WHOLE,
+    ),
+    "position of another frame": (
+        STANFORD,
+        with_position(STANFORD_POSE, product(STANFORD_LINKS[:5])[:3, 3]),
+        ["wrong_frame"],
+        "The position comes from the pose of frame {5}",
+        POSITION,
+    ),
+    "rotation of another frame": (
+        STANFORD,
+        with_rotation(STANFORD_POSE, product(STANFORD_LINKS[:4])[:3, :3]),
+        ["wrong_frame"],
+        "The rotation comes from the pose of frame {4}",
+        ROTATION,
+    ),
+    "rotation and position, each its own way": (
+        STANFORD,
+        with_rotation(with_position(STANFORD_POSE, product(STANFORD_LINKS[:5])[:3, 3]), R.T),
+        ["transposed_rotation", "wrong_frame"],
+        "The position comes from",
+        WHOLE,
+    ),
+    "columns in another order": (
+        STANFORD,
+        with_rotation(STANFORD_POSE, R[:, [1, 0, 2]]),
+        ["columns_exchanged"],
+        "Your columns are its y, x, z axes.",
+        {(i, j) for i in range(3) for j in range(2)},
+    ),
+    "an axis turned over": (
+        STANFORD,
+        STANFORD_POSE * sp.diag(1, -1, 1, 1),
+        ["column_sign"],
+        "Column 2 has the wrong sign throughout: check which way the y axis of the last frame",
+        {(i, 1) for i in range(3)},
+    ),
+    "two axes turned over": (
+        STANFORD,
+        STANFORD_POSE * sp.diag(-1, -1, 1, 1),
+        ["column_sign"],
+        "Columns 1 and 2 have the wrong sign",
+        {(i, j) for i in range(3) for j in range(2)},
+    ),
+    "position from the tool to the base": (
+        STANFORD,
+        with_position(STANFORD_POSE, -STANFORD_POSE[:3, 3]),
+        ["column_sign"],
+        "check which way the position",
+        POSITION,
+    ),
+    "a base axis turned over": (
+        STANFORD,
+        sp.diag(1, 1, -1, 1) * STANFORD_POSE,
+        ["row_sign"],
+        "Row 3 has the wrong sign throughout: check which way the z axis of the first frame",
+        {(2, j) for j in range(4)},
+    ),
+    "bottom row": (
+        SCARA,
+        SCARA_POSE[:3, :].col_join(Matrix([[0, 0, 1, 0]])),
+        ["bottom_row"],
+        "It is 0 0 0 1.",
+        {(3, 2), (3, 3)},
+    ),
+    "bottom row and inverse": (
+        SCARA,
+        inverse_of(SCARA_POSE)[:3, :].col_join(Matrix([[1, 1, 1, 1]])),
+        ["bottom_row", "inverse_transform"],
+        "inverse",
+        WHOLE | {(3, 0), (3, 1), (3, 2)},
+    ),
+}
+
+
+def wrong_entries(report: PartReport) -> set[tuple[int, int]]:
+    return {
+        (i, j)
+        for i, row in enumerate(report.rows)
+        for j, cell in enumerate(row.cells)
+        if cell.verdict is Verdict.INCORRECT
+    }
+
+
+@pytest.mark.parametrize("slip", SLIPS.values(), ids=SLIPS.keys())
+def test_a_belief_explains_its_matrix(slip: Slip, catalogue: Mapping[str, Exercise]) -> None:
+    """It is said once, and the entries that it explains say nothing of their own."""
+    robot, matrix, expected, words, explained = slip
+    report = graded_pose(catalogue[robot.exercise], text(matrix))
+    assert [message.code for message in report.feedback] == expected
+    assert all(message.severity is Severity.ERROR for message in report.feedback)
+    assert words in " ".join(message.message for message in report.feedback)
+    wrong = wrong_entries(report)
+    assert wrong
+    assert wrong <= explained
+    assert all(not codes(report.rows[i].cells[j]) for i, j in wrong)
+    assert 0 < report.points < report.max_points
+
+
+@pytest.mark.parametrize("robot", [SCARA, STANFORD], ids=lambda robot: robot.exercise)
+def test_a_correct_matrix_draws_nothing(robot: Robot, catalogue: Mapping[str, Exercise]) -> None:
+    report = graded_pose(catalogue[robot.exercise], text(product(links(robot))))
+    assert full_marks(report)
+    assert report.feedback == ()
+    assert not any(codes(cell) for row in report.rows for cell in row.cells)
+
+
+def test_the_correction_is_kept_back(catalogue: Mapping[str, Exercise]) -> None:
+    answers = {"pose": text(product(STANFORD_LINKS[::-1]))}
+    exercise = catalogue[STANFORD.exercise]
+    [told] = part(handed_in(exercise, answers, feedback=FeedbackLevel.VERDICTS), "pose").feedback
+    assert "Multiply" not in told.message
+    assert part(handed_in(exercise, answers, feedback=FeedbackLevel.SCORE), "pose").feedback == ()
+
+
+def test_a_frame_of_the_other_convention_is_named_so(catalogue: Mapping[str, Exercise]) -> None:
+    """The modified frame {2} of the SCARA arm lies where joint 2 turns."""
+    z1, x1 = factors(SCARA)[0]
+    z2, _ = factors(SCARA)[1]
+    report = graded_pose(catalogue[SCARA.exercise], text(product([z1, x1, z2])))
+    [message] = report.feedback
+    assert message.code == "wrong_frame"
+    assert "the pose of frame {2} of the modified convention" in message.message
+
+
+def changed(pose: Matrix, entries: Mapping[tuple[int, int], str]) -> list[list[str]]:
+    matrix = text(pose)
+    for (i, j), entry in entries.items():
+        matrix[i][j] = entry
+    return matrix
+
+
+# Robot, what is changed, the codes of the part's feedback, the codes of each changed entry.
+SINGLE: dict[str, tuple[Robot, dict[tuple[int, int], str], list[str], list[str]]] = {
+    "one sign": (SCARA, {(2, 3): "d3 + d4"}, [], ["sign"]),
+    "signs apart": (
+        STANFORD,
+        {(0, 0): f"-({STANFORD_POSE[0, 0]})", (1, 1): f"-({STANFORD_POSE[1, 1]})"},
+        [],
+        ["sign", "sign"],
+    ),
+    "one entry of the rotation": (SCARA, {(0, 0): "c1"}, ["rotation_not_orthonormal"], ["value"]),
+    "one entry that is explained": (SCARA, {(0, 0): "sin(q1 + q2 - q4)"}, [], ["sine_for_cosine"]),
+    "one entry of the position": (SCARA, {(0, 3): "a1"}, [], ["value"]),
+    "a position of zeros": (
+        SCARA,
+        {(0, 3): "0", (1, 3): "0", (2, 3): "0"},
+        [],
+        ["value", "value", "value"],
+    ),
+    "a left-handed frame": (SCARA, {(2, 2): "1"}, ["left_handed_rotation"], ["sign"]),
+    "no rotation at all": (
+        SCARA,
+        {(0, 0): "a1 + 3", (2, 2): "2"},
+        ["rotation_not_orthonormal"],
+        ["value", "value"],
+    ),
+    "a part that is unreadable": (SCARA, {(0, 0): "?", (1, 1): "c1"}, [], ["value"]),
+    "a part without a value": (SCARA, {(0, 0): "1/0"}, [], ["undefined"]),
+}
+
+
+@pytest.mark.parametrize("case", SINGLE.values(), ids=SINGLE.keys())
+def test_what_is_wrong_in_places_is_said_there(
+    case: tuple[Robot, dict[tuple[int, int], str], list[str], list[str]],
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    robot, entries, of_part, of_entries = case
+    report = graded_pose(catalogue[robot.exercise], changed(product(links(robot)), entries))
+    assert [message.code for message in report.feedback] == of_part
+    wrong = sorted(wrong_entries(report))
+    assert [codes(report.rows[i].cells[j]) for i, j in wrong] == [[code] for code in of_entries]
+    assert not any(message.severity is Severity.ERROR for message in report.feedback)
+
+
+def test_a_rotation_says_which_column_to_check(catalogue: Mapping[str, Exercise]) -> None:
+    pose = changed(SCARA_POSE, {(0, 0): "c1"})
+    [message] = graded_pose(catalogue[SCARA.exercise], pose).feedback
+    assert message.severity is Severity.HINT
+    assert "the length of column 1 is not 1" in message.message
+    skewed = changed(SCARA_POSE, {(0, 1): "c1", (1, 1): "s1"})
+    [message] = graded_pose(catalogue[SCARA.exercise], skewed).feedback
+    assert "columns 1 and 2 are not at right angles" in message.message
+
+
+def test_beliefs_that_change_nothing_are_not_held(catalogue: Mapping[str, Exercise]) -> None:
+    """The links of a planar arm turn about one direction: their order leaves the rotation as is."""
+    pose = product([x * z for z, x in factors(PLANAR_RRR)])
+    slightly_off = changed(pose, {(0, 0): "cos(q1 + q2 + q3) + 0*q1 + c1/5000"})
+    report = graded_pose(catalogue[PLANAR_RRR.exercise], slightly_off)
+    assert report.feedback == ()
+    assert wrong_entries(report) == {(0, 0)}
+
+
+HALF = np.pi
+IDLE = [0.0, 0.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        [[0.4, 0.3, 0.2, 0.5], IDLE, [0.1, -0.7, 0.3, 0.9]],
+        [[0.4, HALF, 0.2, 0.0], [0.1, 0.0, 0.3, 0.0]],
+        [IDLE, [0.4, 0.3, 0.2, 0.5]],
+        [[0.3, HALF, 0.2, HALF]],
+    ],
+)
+def test_an_alternative_that_is_right_explains_nothing(rows: list[list[float]]) -> None:
+    """Links that may be left out, exchanged or transposed, and an answer a little off."""
+    lengths = np.linspace(1.0, 2.0, 8)
+    table = np.array(rows)[..., None] * np.array(
+        [lengths, 0 * lengths + 1, lengths, 0 * lengths + 1]
+    )
+    chain = Chain(table, Convention.STANDARD, tuple("0123"[: len(rows) + 1]))
+    expected = as_entries(chain.from_base[-1])
+    case = MatrixCase(
+        actual=expected * (1 + 1e-5),
+        expected=expected,
+        scale=np.ones((4, 4)),
+        wrong=np.ones((4, 4), dtype=np.bool_),
+        rigid=True,
+        chains=(chain,),
+    )
+    assert [found.finding.code for found in explain(case)] == ["bottom_row"]
+
+
+def test_patience_ends(catalogue: Mapping[str, Exercise]) -> None:
+    """Where much is unexplained, the rest is compared and no more; it is found where little is."""
+    exercise = catalogue[SCARA.exercise]
+    late = {(2, 2): "cos(0)*cos(pi/2)*c1", (2, 3): "-d3 + d4"}
+    nonsense = "c1*s1*c2*s2*c4*s4*a1*a2*d3*d4*c1*s1*c2*s2*c4"
+    for long, code in (("c1", "term_sign"), (nonsense, "value")):
+        early = {(i, j): long for i in range(2) for j in range(4)}
+        report = graded_pose(exercise, changed(SCARA_POSE, early | late))
+        assert codes(report.rows[2].cells[3]) == [code]
+
+
+def test_without_position_the_rotation_is_still_explained(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    matrix = text(with_rotation(STANFORD_POSE, R.T))
+    for i in range(3):
+        matrix[i][3] = "?"
+    report = graded_pose(catalogue[STANFORD.exercise], matrix)
+    assert [message.code for message in report.feedback] == ["transposed_rotation"]

@@ -1,0 +1,104 @@
+"""Each belief about a screw axis: one axis that it explains, one that it leaves alone."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from service.grading.compare import Numbers
+from service.grading.diagnosis import screws
+from service.grading.diagnosis.screws import MISCONCEPTIONS, WrongScrew, explain_screw
+from service.grading.findings import Finding
+from service.grading.samples import LANES
+
+RNG = np.random.default_rng(9)
+LENGTH = RNG.uniform(0.3, 0.9, LANES)
+PITCH = RNG.uniform(0.1, 0.4, LANES)
+
+
+def axis(*numbers: Numbers | float) -> Numbers:
+    return np.array([np.zeros(LANES) + number for number in numbers])
+
+
+# The axis along z through (l, 0, 0), from the base; the tool lies at (2l, 0, 0).
+TURN = axis(0, 0, 1, 0, -LENGTH, 0)
+TURN_SEEN_FROM_TOOL = axis(0, 0, 1, 0, LENGTH * 2 - LENGTH, 0)
+SCREW = axis(0, 0, 1, 0, -LENGTH, PITCH)
+SLIDE = axis(0, 0, 0, 1, 0, 0)
+
+
+def case(actual: Numbers, expected: Numbers = TURN, elsewhere: Numbers | None = None) -> WrongScrew:
+    return WrongScrew(actual, expected, elsewhere, "space", 0.5)
+
+
+Belief = Callable[[WrongScrew], Finding | None]
+# An axis seen from a third place, so that the other frame is told from the sign of the moment.
+ELSEWHERE = axis(0, 0, 1, 0.2, LENGTH, 0)
+PAIRS: list[tuple[Belief, WrongScrew, WrongScrew, str]] = [
+    (
+        screws.other_frame,
+        case(ELSEWHERE, TURN, ELSEWHERE),
+        case(axis(0, 0, 1, 0.3, 0, 0), TURN, ELSEWHERE),
+        "body_for_space",
+    ),
+    (
+        screws.moment_sign,
+        case(axis(0, 0, 1, 0, LENGTH, PITCH), SCREW),
+        case(axis(0, 0, 1, 0, LENGTH, -PITCH), SCREW),
+        "moment_sign",
+    ),
+    (screws.axis_reversed, case(-SCREW, SCREW), case(-SLIDE + 0.1, SLIDE), "axis_reversed"),
+    (screws.not_normalised, case(3 * TURN), case(axis(0, 0, 3, 0, -LENGTH, 0)), "not_normalised"),
+    (
+        screws.sliding_as_turning,
+        case(axis(1, 0, 0, 0, 0, 0), SLIDE),
+        case(axis(0, 1, 0, 0, 0, 0), SLIDE),
+        "infinite_pitch",
+    ),
+    (
+        screws.turning_as_sliding,
+        case(axis(0, 0, 0, 0, 0, 1)),
+        case(axis(0, 0, 0, 0, 1, 0)),
+        "infinite_pitch",
+    ),
+    (
+        screws.exchanged_halves,
+        case(axis(0, -LENGTH, 0, 0, 0, 1)),
+        case(axis(0, LENGTH, 0, 0, 0, 1)),
+        "exchanged_halves",
+    ),
+    (
+        screws.point_for_velocity,
+        case(axis(0, 0, 1, LENGTH, 0, 0.4)),
+        case(axis(0, 0, 1, 0, LENGTH, 0)),
+        "point_for_velocity",
+    ),
+    (
+        screws.pitch,
+        case(axis(0, 0, 1, 0, -LENGTH, 0), SCREW),
+        case(axis(0, 0, 1, 0, LENGTH, 0), SCREW),
+        "pitch",
+    ),
+]
+
+
+@pytest.mark.parametrize(("belief", "explained", "left", "code"), PAIRS)
+def test_a_belief(belief: Belief, explained: WrongScrew, left: WrongScrew, code: str) -> None:
+    finding = belief(explained)
+    assert finding is not None
+    assert finding.code == code
+    assert finding.look
+    assert belief(left) is None
+
+
+def test_every_belief_is_tested_and_tried() -> None:
+    assert {pair[0] for pair in PAIRS} == set(MISCONCEPTIONS)
+
+
+@pytest.mark.parametrize("right", [TURN, SCREW, SLIDE])
+def test_a_right_axis_is_left_alone(right: Numbers) -> None:
+    assert explain_screw(case(right, right, TURN_SEEN_FROM_TOOL)) is None
+
+
+def test_an_axis_without_values_is_left_alone() -> None:
+    assert explain_screw(case(TURN * np.nan)) is None

@@ -1,0 +1,163 @@
+"""An answer that equals the expected one always counts, and one that does not never does.
+
+Each claim is tried a thousand times; a harmless change elsewhere draws new samples each time.
+"""
+
+from collections.abc import Callable, Mapping
+
+import pytest
+
+from service.catalogue import Exercise
+from service.grading import Verdict
+from tests.grading.robots import EXACT, PLANAR_RRR, ROBOTS, RRRP, SCARA, STANFORD, Robot
+from tests.grading.submitting import cell, graded_pose, graded_table, not_correct
+
+TIMES = 250  # for each of the four robots
+
+# The poses in closed form; of the Stanford arm only the bottom row.
+POSES: dict[str, tuple[tuple[str, ...], ...]] = {
+    PLANAR_RRR.exercise: (
+        ("c123", "-s123", "0", "l1 c1 + l2 c12 + l3 c123"),
+        ("s123", "c123", "0", "l1 s1 + l2 s12 + l3 s123"),
+        ("0", "0", "1", "0"),
+        ("0", "0", "0", "1"),
+    ),
+    RRRP.exercise: (
+        ("cos(q1+q2-q3)", "sin(q1+q2-q3)", "0", "l2 c1 + l3 c12"),
+        ("sin(q1+q2-q3)", "-cos(q1+q2-q3)", "0", "l2 s1 + l3 s12"),
+        ("0", "0", "-1", "l1 - l4 - q4"),
+        ("0", "0", "0", "1"),
+    ),
+    SCARA.exercise: (
+        ("cos(q1+q2-q4)", "sin(q1+q2-q4)", "0", "a1 c1 + a2 c12"),
+        ("sin(q1+q2-q4)", "-cos(q1+q2-q4)", "0", "a1 s1 + a2 s12"),
+        ("0", "0", "-1", "-d3 - d4"),
+        ("0", "0", "0", "1"),
+    ),
+    STANFORD.exercise: (("0",) * 4, ("0",) * 4, ("0",) * 4, ("0", "0", "0", "1")),
+}
+ZERO = "sin(q1)^2 + cos(q1)^2 - 1"
+# Some of the entries (row, column) of each pose that are 0 for every joint value.
+ZEROS = {
+    "planar-rrr": [(0, 2), (1, 2), (2, 0), (2, 3), (3, 1)],
+    "rrrp": [(0, 2), (1, 2), (2, 0), (3, 0), (3, 2)],
+    "scara": [(0, 2), (1, 2), (2, 1), (3, 1), (3, 2)],
+    "stanford-arm": [(3, 0), (3, 1), (3, 2)],
+}
+
+
+def pose_with(exercise: str, text: str, time: int) -> list[list[object]]:
+    """The pose with ``text`` in place of each 0; its last entry is a 1 spelled anew each time."""
+    matrix: list[list[object]] = [list(line) for line in POSES[exercise]]
+    for i, j in ZEROS[exercise]:
+        matrix[i][j] = text
+    matrix[3][3] = f"{time} - {time - 1}"
+    return matrix
+
+
+@pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.exercise)
+def test_a_zero_written_as_an_identity_is_always_right_in_a_pose(
+    robot: Robot, catalogue: Mapping[str, Exercise], figure: Callable[[str], None]
+) -> None:
+    right = 0
+    for time in range(TIMES):
+        report = graded_pose(catalogue[robot.exercise], pose_with(robot.exercise, ZERO, time))
+        wrong = not_correct(report)
+        right += not any((str(i + 1), str(j + 1)) in wrong for i, j in ZEROS[robot.exercise])
+    figure(f"{robot.exercise}: {ZERO} for an expected 0 is right in {right} of {TIMES} gradings")
+    assert right == TIMES
+
+
+@pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.exercise)
+def test_a_zero_written_as_an_identity_is_always_right_in_a_table(
+    robot: Robot, catalogue: Mapping[str, Exercise]
+) -> None:
+    right = 0
+    for time in range(TIMES):
+        rows = [[ZERO if text == "0" else text for text in row] for row in EXACT.rows(robot)]
+        rows[0][3] = f"{robot.joints[0]} + {time} - {time}"
+        right += not not_correct(graded_table(catalogue[robot.exercise], rows))
+    assert right == TIMES
+
+
+@pytest.mark.parametrize("small", ["0.05", "1e-4", "-0.000002"])
+@pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.exercise)
+def test_a_small_number_for_a_zero_is_always_wrong_in_a_pose(
+    robot: Robot,
+    small: str,
+    catalogue: Mapping[str, Exercise],
+    figure: Callable[[str], None],
+) -> None:
+    times = TIMES if small == "0.05" else TIMES // 10
+    wrong = 0
+    for time in range(times):
+        report = graded_pose(catalogue[robot.exercise], pose_with(robot.exercise, small, time))
+        found = not_correct(report)
+        wrong += all(
+            found.get((str(i + 1), str(j + 1))) is Verdict.INCORRECT
+            for i, j in ZEROS[robot.exercise]
+        )
+    figure(f"{robot.exercise}: {small} for an expected 0 is wrong in {wrong} of {times} gradings")
+    assert wrong == times
+
+
+def test_a_small_number_beside_large_entries_is_always_wrong(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    """The other entries are a thousand times the robot's size, and so is no excuse."""
+    exercise = catalogue[RRRP.exercise]
+    for time in range(100):
+        matrix = pose_with(RRRP.exercise, "0.05", time)
+        matrix[0][3] = "1000000*l1"
+        matrix[2][3] = "1000000"
+        report = graded_pose(exercise, matrix)
+        assert all(
+            cell(report, str(i + 1), str(j + 1)).verdict is Verdict.INCORRECT
+            for i, j in ZEROS[RRRP.exercise]
+        )
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "cos(q2 - 2*pi)*l1 - l1*cos(q2)",
+        "sin(2*q1) - 2*sin(q1)*cos(q1)",
+        "tan(q2)*cos(q2) - sin(q2)",
+        "c12 - c1 c2 + s1 s2",
+        "(l1+l2)^2 - l1^2 - l2^2 - 2 l1 l2",
+        "sqrt(l1^2) - abs(l1)",
+        "atan2(sin(1), cos(1)) - 1",
+        "1/3 + 1/3 + 1/3 - 1",
+        "acos(cos(l1)) - l1",
+        "1000000*(s1^2 + c1^2) - 1000000",
+    ],
+)
+def test_identities_that_give_zero(text: str, catalogue: Mapping[str, Exercise]) -> None:
+    exercise = catalogue[PLANAR_RRR.exercise]
+    for time in range(20):
+        matrix = pose_with(PLANAR_RRR.exercise, text, time)
+        assert not_correct(graded_pose(exercise, matrix)) == {}
+
+
+@pytest.mark.parametrize(
+    "text", ["1e16", "1e17", "1e20", "1e300", "2*pi*1e20", "q1*1e17", "q1 + 1e18"]
+)
+@pytest.mark.parametrize("column", [1, 3])
+def test_a_huge_number_of_turns_is_not_every_angle_at_once(
+    text: str, column: int, catalogue: Mapping[str, Exercise]
+) -> None:
+    """Beyond 1e16 rad a number says nothing about the direction any more: no angle is right."""
+    rows = [list(row) for row in EXACT.rows(STANFORD)]
+    for row in rows:
+        row[column] = text
+    report = graded_table(catalogue[STANFORD.exercise], rows)
+    assert len(not_correct(report)) == len(rows), not_correct(report)
+
+
+@pytest.mark.parametrize("turns", ["2*pi", "-360deg", "720°", "6*pi"])
+def test_whole_turns_do_not_matter(turns: str, catalogue: Mapping[str, Exercise]) -> None:
+    rows = [
+        (a, f"{alpha} + {turns}", d, f"{theta} - {turns}")
+        for a, alpha, d, theta in EXACT.rows(STANFORD)
+    ]
+    assert not_correct(graded_table(catalogue[STANFORD.exercise], rows)) == {}

@@ -1,0 +1,101 @@
+"""What is understood of a pasted table or matrix, cell by cell, before it is graded."""
+
+from collections.abc import Mapping
+
+import pytest
+
+from service.catalogue import Exercise
+from service.grading.preview import preview_pasted
+
+TABLE = "\n".join(
+    [
+        "i, theta (deg), d, a, alpha (deg)",
+        "1, q1*, l1, l2, 0",
+        "2, q2, 0, l3 +, 180",
+        "3, q3, l4, , 0",
+    ]
+)
+
+
+@pytest.fixture
+def arm(catalogue: Mapping[str, Exercise]) -> Exercise:
+    return catalogue["rrrp"]
+
+
+def test_a_table_cell_by_cell(arm: Exercise) -> None:
+    shown = preview_pasted(TABLE, arm, "table")
+    assert shown.problem is None
+    assert not shown.ok
+    assert [[cell.column for cell in row] for row in shown.rows] == [
+        ["a", "alpha", "d", "theta"]
+    ] * 3
+    assert [row[0].row for row in shown.rows] == ["1", "2", "3"]
+    a, alpha, d, theta = shown.rows[0]
+    assert (a.text, a.latex, a.symbols) == ("l2", "l_{2}", ("l2",))
+    assert a.mathml.startswith("<math")
+    assert (alpha.text, d.text, theta.text) == ("0", "l1", "q1")
+    assert TABLE[slice(*theta.span)] == theta.typed == "q1*"
+    assert shown.rows[1][1].text == "180deg"
+
+
+def test_a_problem_has_its_place_and_the_repair(arm: Exercise) -> None:
+    cell = preview_pasted(TABLE, arm, "table").rows[1][0]
+    assert cell.problem is not None
+    assert (cell.problem.code, cell.problem.suggestion) == ("trailing_operator", "l3")
+    assert TABLE[slice(*cell.problem.span)] == "+"
+    assert (cell.text, cell.latex, cell.mathml, cell.symbols) == ("", "", "", ())
+
+
+def test_an_empty_cell_is_neither(arm: Exercise) -> None:
+    cell = preview_pasted(TABLE, arm, "table").rows[2][0]
+    assert (cell.typed, cell.text, cell.problem) == ("", "", None)
+
+
+def test_notes_of_cells_and_of_the_whole(arm: Exercise) -> None:
+    text = "[c1 -s1 0 sin12; 1 2 3 4]"
+    shown = preview_pasted(text, arm, "pose")
+    assert [note.code for note in shown.notes] == ["blank_before_sign"]
+    [note] = shown.rows[0][3].notes
+    assert (note.code, text[slice(*note.span)]) == ("shorthand", "sin12")
+    assert shown.ok
+
+
+def test_a_row_of_another_length(arm: Exercise) -> None:
+    shown = preview_pasted("a, alpha, d, theta\n0, 0, 0", arm, "table")
+    [[row]] = shown.rows
+    assert row.problem is not None
+    assert (row.problem.code, row.typed) == ("row_length", "0, 0, 0")
+
+
+def test_a_matrix_of_any_size(arm: Exercise) -> None:
+    shown = preview_pasted("[[1, q1], [2, 3]]", arm, "pose")
+    assert [[(cell.row, cell.column, cell.text) for cell in row] for row in shown.rows] == [
+        [("1", "1", "1"), ("1", "2", "q1")],
+        [("2", "1", "2"), ("2", "2", "3")],
+    ]
+
+
+@pytest.mark.parametrize("part", ["table", "pose"])
+def test_no_grid_is_one_problem(part: str, arm: Exercise) -> None:
+    shown = preview_pasted("[[1, 2]", arm, part)
+    assert shown.problem is not None
+    assert (shown.problem.code, shown.problem.span, shown.rows) == (
+        "unbalanced_bracket",
+        (0, 1),
+        (),
+    )
+    assert not shown.ok
+
+
+def test_degrees_as_the_submission_says(arm: Exercise) -> None:
+    text = "0, 90, 0, q1\n0, 0, 0, q2"
+    assert preview_pasted(text, arm, "table", "degrees").rows[0][1].text == "90deg"
+    assert preview_pasted(text, arm, "table").rows[0][1].text == "90"
+    assert (
+        preview_pasted("[cos(90) 1; 2 3]", arm, "pose", "degrees").rows[0][0].text == "cos(90deg)"
+    )
+
+
+def test_a_part_that_does_not_exist(arm: Exercise) -> None:
+    with pytest.raises(LookupError, match="'rrrp' has no part 'tabel'"):
+        preview_pasted("1,2", arm, "tabel")

@@ -1,0 +1,54 @@
+"""One slip in a table costs one cell, and says what it was."""
+
+from collections.abc import Callable, Mapping
+
+import pytest
+
+from service.catalogue import Exercise
+from service.grading import Severity, Verdict
+from tests.grading.robots import COLUMNS, EXACT, ROBOTS, Robot
+from tests.grading.slips import Slip, slips
+from tests.grading.submitting import cell, graded_table, not_correct, row
+
+CELLS = [
+    (robot, i, j) for robot in ROBOTS for i in range(len(robot.rows)) for j in range(len(COLUMNS))
+]
+
+
+@pytest.mark.parametrize(
+    ("robot", "i", "j"),
+    CELLS,
+    ids=[f"{robot.exercise} {robot.labels[i]}.{COLUMNS[j]}" for robot, i, j in CELLS],
+)
+def test_a_slip_costs_its_own_cell_only(
+    robot: Robot, i: int, j: int, given_frames: Mapping[str, Exercise]
+) -> None:
+    for slip in slips(robot, i, j):
+        check(slip, given_frames[robot.exercise])
+
+
+def check(slip: Slip, exercise: Exercise) -> None:
+    rows = [list(cells) for cells in EXACT.rows(slip.robot)]
+    rows[slip.row][slip.column] = slip.text
+    report = graded_table(exercise, rows, angle_unit=slip.angle_unit)
+
+    label, column = slip.robot.labels[slip.row], COLUMNS[slip.column]
+    assert not_correct(report) == {(label, column): slip.verdict}, slip
+    share = report.max_points / len(rows)
+    assert report.verdict is Verdict.PARTIAL, slip
+    assert report.points == pytest.approx(report.max_points - share / 4), slip
+    assert row(report, label).verdict is Verdict.PARTIAL, slip
+    assert row(report, label).points == pytest.approx(share * 3 / 4), slip
+
+    [feedback] = cell(report, label, column).feedback
+    assert (feedback.code, feedback.severity) == (slip.code, Severity.ERROR), slip
+    assert (feedback.row, feedback.cell) == (label, column), slip
+    assert feedback.message.strip().endswith((".", "?")), slip
+
+
+def test_each_table_is_tried_with_many_slips(figure: Callable[[str], None]) -> None:
+    for robot in ROBOTS:
+        cells = [(i, j) for known, i, j in CELLS if known is robot]
+        count = sum(len(list(slips(robot, i, j))) for i, j in cells)
+        figure(f"{robot.exercise}: {count} single-cell slips, each graded alone")
+        assert count > 8 * len(cells)
