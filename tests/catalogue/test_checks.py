@@ -110,9 +110,7 @@ SAID: dict[tuple[str, str], list[str]] = {
     ],
     ('kind = "transform"\n', ""): ["parts[1] (line 24): *: write kind = *, one of dh_table, *"],
     ('id = "pose"', 'id = "The Pose"'): ["parts[1].id (line 25): *: write small letters *"],
-    ("joints =", "links = 3\njoints ="): [
-        "robot.links (line 8): *: the keys here are structure, *"
-    ],
+    ("joints =", "links = 3\njoints ="): ["robot.links (line 8): *: the keys here are *"],
 }
 
 

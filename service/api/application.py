@@ -1,0 +1,85 @@
+"""The application: routes, limits and headers put together."""
+
+import gc
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from importlib.metadata import version
+from typing import Any
+
+from fastapi import FastAPI
+from starlette.middleware.cors import CORSMiddleware
+from starlette.types import ASGIApp
+
+from service.api import exercises, grading, health, preview, problems
+from service.api import solutions as model_solutions
+from service.api.documented import any_other_failure, with_problem_schema
+from service.api.edge import Edge
+from service.api.lookup import Catalogue
+from service.submissions import MAX_BODY_SIZE
+
+DESCRIPTION = """
+Grades Denavit-Hartenberg tables, transforms and forward kinematics, row by row, and says why.
+
+A student's mistake is never an error of the request: whatever an answer holds, a report comes back.
+Every other failure is `application/problem+json` (RFC 9457).
+"""
+
+
+@asynccontextmanager
+async def _settled(_: FastAPI) -> AsyncIterator[None]:
+    """Take what the start has built out of the garbage collector's rounds.
+
+    A body of many small lists sets off full rounds; over the program itself, too, they took twice
+    as long as reading the body.
+    """
+    gc.collect()
+    gc.freeze()
+    yield
+
+
+class _Api(FastAPI):
+    """FastAPI with its outermost layers outside the framework's own error pages and limit."""
+
+    def __init__(self, cors_origins: tuple[str, ...]) -> None:
+        self._cors_origins = cors_origins
+        super().__init__(
+            title="DH Grader",
+            version=version("dh-grader"),
+            description=DESCRIPTION,
+            redoc_url=None,
+            redirect_slashes=False,
+            max_body_size=MAX_BODY_SIZE,
+            lifespan=_settled,
+        )
+
+    def build_middleware_stack(self) -> ASGIApp:
+        """The framework's layers, then the edge, then CORS: a page may read problems as well."""
+        app: ASGIApp = Edge(super().build_middleware_stack())
+        if self._cors_origins:
+            app = CORSMiddleware(
+                app,
+                allow_origins=self._cors_origins,
+                allow_methods=["GET", "POST"],
+                allow_headers=["Content-Type"],
+            )
+        return app
+
+    def openapi(self) -> dict[str, Any]:
+        """The description of the interface, with the schema of every problem."""
+        return with_problem_schema(super().openapi())
+
+
+def application(
+    catalogue: Catalogue, cors_origins: tuple[str, ...] = (), *, solutions: bool = False
+) -> FastAPI:
+    """The HTTP service for these exercises; pages of ``cors_origins`` may call it.
+
+    With ``solutions`` it shows the model solutions to whoever asks.
+    """
+    app = _Api(cors_origins)
+    problems.install(app)
+    for module in (exercises, grading, preview, health):
+        app.include_router(module.routes(catalogue), responses=any_other_failure())
+    shown = model_solutions.routes(catalogue, shown=solutions)
+    app.include_router(shown, responses=any_other_failure())
+    return app

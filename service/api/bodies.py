@@ -1,0 +1,53 @@
+"""Reading a request's body once, straight into its model."""
+
+from email.message import Message
+from http import HTTPStatus
+from typing import TypeVar
+
+from fastapi import Request
+from pydantic import BaseModel, ValidationError
+
+from service.api.problems import ProblemError, invalid
+from service.submissions import MalformedError, read_json
+
+M = TypeVar("M", bound=BaseModel)
+
+
+async def body_as(model: type[M], request: Request) -> M:
+    """The body as this model; any Content-Type will do where it can be read as JSON.
+
+    Forms and scripts that forget the header are common, and nothing here acts on a cookie that
+    another site could borrow. Raises ProblemError: 400 for what is no JSON, 415 where the header
+    says that it was not meant to be, 422 for another shape.
+    """
+    try:
+        value = read_json(await request.body())
+    except MalformedError as error:
+        raise _malformed(error, request.headers.get("content-type", "")) from error
+    try:
+        return model.model_validate(value)
+    except ValidationError as error:
+        details = error.errors(include_url=False, include_input=False, include_context=False)
+        raise invalid(details, list(model.model_fields)) from error
+
+
+def _malformed(error: MalformedError, content_type: str) -> ProblemError:
+    if content_type and not _is_json(content_type):
+        return ProblemError(
+            HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
+            "The body is not JSON; send a JSON object, as application/json.",
+        )
+    place = {} if error.line is None else {"line": error.line, "column": error.column or 1}
+    return ProblemError(
+        HTTPStatus.BAD_REQUEST,
+        str(error),
+        "malformed-json",
+        "The body is not JSON",
+        [{"detail": error.reason, **place}],
+    )
+
+
+def _is_json(content_type: str) -> bool:
+    header = Message()
+    header["content-type"] = content_type
+    return header.get_content_subtype().rpartition("+")[2] == "json"

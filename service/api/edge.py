@@ -1,0 +1,43 @@
+"""What holds for every request and answer, around the framework."""
+
+from fastapi import Request
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from service.api.problems import too_large
+from service.submissions import MAX_BODY_SIZE
+
+
+class Edge:
+    """Hardens answers, has HEAD answered as GET, and refuses a body that says it is too large.
+
+    The framework's own limit counts the bytes as they come; where a length is declared, nothing
+    need be read, and an address that takes no body refuses it as well.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one ASGI connection."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+
+        async def hardened(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                MutableHeaders(scope=message)["X-Content-Type-Options"] = "nosniff"
+            await send(message)
+
+        if _declared_size(scope) > MAX_BODY_SIZE:
+            answer = too_large().response(Request(scope).url.path)
+            await answer(scope, receive, hardened)
+            return
+        # The server still knows that it was HEAD, and sends the headers alone.
+        inner = {**scope, "method": "GET"} if scope["method"] == "HEAD" else scope
+        await self.app(inner, receive, hardened)
+
+
+def _declared_size(scope: Scope) -> int:
+    declared = Headers(scope=scope).get("content-length", "")
+    return int(declared) if declared.isascii() and declared.isdigit() else 0

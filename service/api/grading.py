@@ -1,0 +1,49 @@
+"""The route that grades."""
+
+from http import HTTPStatus
+
+from fastapi import APIRouter, Request, Response
+
+from service.api.bodies import body_as
+from service.api.documented import answer, refusals, request_body
+from service.api.lookup import Catalogue, exercise_or_404, require_parts
+from service.formats import json
+from service.grading import Report, grade
+from service.submissions import GradeRequest
+
+JSON = "application/json"
+
+
+def routes(catalogue: Catalogue) -> APIRouter:
+    """The route that grades."""
+    router = APIRouter(prefix="/v1/exercises", tags=["grading"])
+
+    # On the event loop and not in a thread: a grading is a millisecond of pure Python, which
+    # threads cannot share, and a hop there and back costs a tenth of that. The limits on a body
+    # keep the longest below 50 ms.
+    @router.post(
+        "/{exercise_id}/grade",
+        openapi_extra=request_body(GradeRequest, "grade-request"),
+        responses={
+            200: answer(Report, "grade-response"),
+            **refusals(
+                HTTPStatus.BAD_REQUEST,
+                HTTPStatus.NOT_FOUND,
+                HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
+                HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
+                HTTPStatus.UNPROCESSABLE_ENTITY,
+            ),
+        },
+    )
+    async def grade_answers(exercise_id: str, request: Request) -> Response:
+        """Grade answers, row by row and cell by cell. Nothing is recorded.
+
+        Whatever a student wrote, the answer is a report: what cannot be read is `unreadable` there,
+        with the reason, and everything else is graded. The same answers give the same report.
+        """
+        exercise = exercise_or_404(catalogue, exercise_id)
+        body = await body_as(GradeRequest, request)
+        require_parts(exercise, {part: ("answers", part) for part in body.answers})
+        return Response(json.rendered(grade(exercise, body.submission())), media_type=JSON)
+
+    return router

@@ -1,0 +1,48 @@
+"""Finding what a request names, or saying what there is instead."""
+
+from collections.abc import Iterable, Mapping
+from http import HTTPStatus
+
+from service.api.problems import ProblemError, invalid
+from service.catalogue import Exercise
+from service.submissions import UnknownExerciseError, find_exercise
+
+Catalogue = Mapping[str, Exercise]
+
+
+def exercise_or_404(catalogue: Catalogue, exercise_id: str) -> Exercise:
+    """The exercise named in a path. Raises ProblemError."""
+    try:
+        return find_exercise(catalogue, exercise_id)
+    except UnknownExerciseError as error:
+        raise ProblemError(
+            HTTPStatus.NOT_FOUND, str(error), "unknown-exercise", "There is no such exercise"
+        ) from error
+
+
+def require_exercise(catalogue: Catalogue, exercise_id: str) -> Exercise:
+    """The exercise named in a body, in its field ``exercise``. Raises ProblemError."""
+    try:
+        return find_exercise(catalogue, exercise_id)
+    except UnknownExerciseError as error:
+        raise invalid(
+            [{"type": "unknown", "loc": ("exercise",), "msg": str(error)[:-1]}]
+        ) from error
+
+
+def require_parts(exercise: Exercise, locations: Mapping[str, tuple[str, ...]]) -> None:
+    """Check that the exercise has these parts, each named at its location in the body.
+
+    Raises ProblemError naming those that there are.
+    """
+    known = ", ".join(part.id for part in exercise.parts)
+    message = f"{exercise.id} has no such part; its parts are {known}"
+    unknown = [place for part, place in locations.items() if exercise.part(part) is None]
+    if unknown:
+        raise _unknown_parts(unknown, message)
+
+
+def _unknown_parts(unknown: Iterable[tuple[str, ...]], message: str) -> ProblemError:
+    problem = invalid([{"type": "unknown", "loc": place, "msg": message} for place in unknown])
+    problem.name, problem.title = "unknown-part", "The exercise has no such part"
+    return problem

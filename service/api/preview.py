@@ -1,0 +1,143 @@
+"""The route that shows how a text is read, while the student still types."""
+
+from http import HTTPStatus
+from typing import Final, Literal
+
+from fastapi import APIRouter, Request, Response
+from pydantic import BaseModel, ConfigDict, Field
+
+from service.api.bodies import body_as
+from service.api.documented import answer, refusals, request_body
+from service.api.lookup import Catalogue, require_exercise, require_parts
+from service.api.problems import invalid
+from service.expressions import (
+    ExpressionError,
+    Kind,
+    Symbol,
+    Vocabulary,
+    joint_variable,
+    read,
+)
+
+JOINTS: Final = range(1, 10)
+
+# For a text that belongs to no exercise: what a robotics textbook's formulas are written in.
+GENERIC: Final = Vocabulary(
+    [
+        *(joint_variable(i) for i in JOINTS),
+        *(Symbol(f"alpha{i}", "angle") for i in JOINTS),
+        *(Symbol(f"{letter}{i}", "length") for letter in "adl" for i in JOINTS),
+    ]
+)
+
+
+class PreviewRequest(BaseModel):
+    """A text, and where it is meant to stand."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    text: str = Field(description="One entry, as the student writes it.")
+    exercise: str | None = Field(
+        None,
+        description="The exercise whose symbols the text may use. Without it: joint angles theta1 "
+        "(or q1) to theta9, link twists alpha1 to alpha9, lengths a1, d1, l1 to a9, d9, l9.",
+    )
+    part: str | None = Field(None, description="The part that the text is for; needs `exercise`.")
+    angle_unit: Literal["radians", "degrees"] = Field(
+        "radians", description="What a bare number means where an angle is asked for."
+    )
+    quantity: Kind = Field(
+        "number", description="What is asked for there; matters for a bare number in degrees."
+    )
+
+
+class PreviewNote(BaseModel):
+    """Something worth knowing about how the text was read; ``span`` is [from, to) in it."""
+
+    code: str
+    message: str
+    span: tuple[int, int]
+
+
+class PreviewError(PreviewNote):
+    """Why the text cannot be read."""
+
+    suggestion: str | None = Field(None, description="The whole text, repaired.")
+
+
+class PreviewAnswer(BaseModel):
+    """How the text was read, or why it was not: with `ok` false there is only `error`."""
+
+    ok: bool
+    text: str | None = None
+    latex: str | None = None
+    mathml: str | None = None
+    symbols: list[str] | None = Field(None, description="The symbols used, by canonical name.")
+    notes: list[PreviewNote] | None = None
+    error: PreviewError | None = None
+
+
+def preview(body: PreviewRequest, vocabulary: Vocabulary) -> PreviewAnswer:
+    """How the text reads in this vocabulary."""
+    try:
+        expression = read(body.text, vocabulary, quantity=body.quantity, angle_unit=body.angle_unit)
+    except ExpressionError as error:
+        return PreviewAnswer(
+            ok=False,
+            error=PreviewError(
+                code=error.code,
+                message=error.message,
+                span=error.span,
+                suggestion=error.suggestion,
+            ),
+        )
+    return PreviewAnswer(
+        ok=True,
+        text=expression.text(),
+        latex=expression.latex(),
+        mathml=expression.mathml(),
+        symbols=sorted(expression.symbols),
+        notes=[
+            PreviewNote(code=note.code, message=note.message, span=note.span)
+            for note in expression.notes
+        ],
+    )
+
+
+def routes(catalogue: Catalogue) -> APIRouter:
+    """The route that previews."""
+    router = APIRouter(prefix="/v1", tags=["preview"])
+
+    @router.post(
+        "/preview",
+        openapi_extra=request_body(PreviewRequest, "preview-request"),
+        responses={
+            200: answer(PreviewAnswer, "preview-response"),
+            **refusals(
+                HTTPStatus.BAD_REQUEST,
+                HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
+                HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
+                HTTPStatus.UNPROCESSABLE_ENTITY,
+            ),
+        },
+    )
+    async def preview_text(request: Request) -> Response:
+        """Show how a text is read: normal text, LaTeX, MathML; or why not, and what was meant."""
+        body = await body_as(PreviewRequest, request)
+        shown = preview(body, _vocabulary(catalogue, body))
+        content = shown.model_dump_json(exclude_none=True)
+        return Response(content, media_type="application/json")
+
+    return router
+
+
+def _vocabulary(catalogue: Catalogue, body: PreviewRequest) -> Vocabulary:
+    if body.exercise is None:
+        if body.part is not None:
+            message = "A part belongs to an exercise; name the exercise as well"
+            raise invalid([{"type": "alone", "loc": ("part",), "msg": message}])
+        return GENERIC
+    exercise = require_exercise(catalogue, body.exercise)
+    if body.part is not None:
+        require_parts(exercise, {body.part: ("part",)})
+    return exercise.vocabulary

@@ -1,0 +1,173 @@
+"""Every answer that is not a success: RFC 9457 problem details."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import FastAPI, Request, Response
+from fastapi.exceptions import RequestValidationError
+from pydantic import BaseModel, Field
+from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
+
+from service.submissions import MAX_BODY_SIZE
+
+MEDIA_TYPE = "application/problem+json"
+MAX_ERRORS = 20
+
+Detail = Mapping[str, str | int]
+
+
+class Reason(BaseModel):
+    """One of several reasons."""
+
+    detail: str
+    pointer: str | None = Field(
+        None, description="Where in the body, as a JSON pointer (RFC 6901), or which parameter."
+    )
+    line: int | None = None
+    column: int | None = None
+
+
+class ProblemDocument(BaseModel):
+    """RFC 9457 problem details."""
+
+    type: str = Field(description="`about:blank`, or a stable URN that a program can tell by.")
+    title: str
+    status: int
+    detail: str
+    instance: str = Field(description="The path that was asked for.")
+    errors: list[Reason] | None = None
+
+
+@dataclass(eq=False)
+class ProblemError(Exception):
+    """A request that cannot be answered. ``name`` makes the type; empty for the bare status."""
+
+    status: HTTPStatus
+    detail: str
+    name: str = ""
+    title: str = ""
+    errors: Sequence[Detail] = ()
+    headers: Mapping[str, str] | None = None
+
+    def response(self, instance: str) -> Response:
+        """The problem as an answer to a request for the path ``instance``."""
+        document: dict[str, Any] = {
+            "type": f"urn:dh-grader:problem:{self.name}" if self.name else "about:blank",
+            "title": self.title or self.status.phrase,
+            "status": int(self.status),
+            "detail": self.detail,
+            "instance": instance,
+        }
+        if self.errors:
+            document["errors"] = list(self.errors)
+        # Escaped to ASCII: whatever the request held can be written out.
+        content = json.dumps(document).encode("ascii")
+        return Response(content, self.status, self.headers, MEDIA_TYPE)
+
+
+def too_large() -> ProblemError:
+    """A body over the limit. The connection ends, so that the rest of it is not read."""
+    return ProblemError(
+        HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
+        f"A request may hold {MAX_BODY_SIZE // 1024} KiB; this one is larger.",
+        "body-too-large",
+        "The request is too large",
+        headers={"Connection": "close"},
+    )
+
+
+def invalid(details: Sequence[Mapping[str, Any]], fields: Sequence[str] = ()) -> ProblemError:
+    """The problem for pydantic's findings in a body; ``fields`` are those that a body may have."""
+    errors = [
+        {"pointer": _pointer(detail["loc"]), "detail": _message(detail, fields)}
+        for detail in details[:MAX_ERRORS]
+    ]
+    return ProblemError(
+        HTTPStatus.UNPROCESSABLE_ENTITY,
+        " ".join(f"{error['pointer']}: {error['detail']}" for error in errors[:3]),
+        "invalid-request",
+        "The request does not have the right shape",
+        errors,
+    )
+
+
+def _pointer(location: Sequence[str | int]) -> str:
+    """A JSON pointer as a URI fragment, as RFC 9457 writes it; overlong keys are cut."""
+    steps = (str(step)[:60].replace("~", "~0").replace("/", "~1") for step in location)
+    return "#" + "".join(f"/{step}" for step in steps)
+
+
+def _message(detail: Mapping[str, Any], fields: Sequence[str]) -> str:
+    if detail["type"] == "extra_forbidden" and fields:
+        return f"This field is not known; the fields are {', '.join(fields)}."
+    if detail["type"] == "missing":
+        return "This field is missing."
+    if detail["type"] in ("model_type", "model_attributes_type"):
+        return "The body must be a JSON object."
+    message: str = detail["msg"]
+    return message if message.endswith((".", "?")) else f"{message}."
+
+
+def install(app: FastAPI) -> None:
+    """Have the app answer every failure, its framework's own included, with a problem."""
+    app.add_exception_handler(ProblemError, _on_problem)
+    app.add_exception_handler(HTTPException, _on_http_exception)
+    app.add_exception_handler(RequestValidationError, _on_invalid_request)
+    app.add_exception_handler(ClientDisconnect, _on_disconnect)
+    app.add_exception_handler(Exception, _on_exception)
+
+
+async def _on_problem(request: Request, error: Exception) -> Response:
+    assert isinstance(error, ProblemError)
+    return error.response(request.url.path)
+
+
+async def _on_http_exception(request: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
+        return _on_other_method(request, error)
+    if error.status_code == HTTPStatus.REQUEST_ENTITY_TOO_LARGE:
+        return too_large().response(request.url.path)
+    status = HTTPStatus(error.status_code)
+    detail = str(error.detail)
+    if status is HTTPStatus.NOT_FOUND and detail == status.phrase:
+        detail = "Nothing is at this address; GET /v1/exercises lists the exercises."
+    return ProblemError(status, detail, headers=error.headers).response(request.url.path)
+
+
+def _on_other_method(request: Request, error: HTTPException) -> Response:
+    """Answers OPTIONS, and names what else there is: HEAD goes wherever GET does."""
+    methods = set((error.headers or {}).get("Allow", "").replace(" ", "").split(",")) - {""}
+    methods |= {"HEAD", "OPTIONS"} if "GET" in methods else {"OPTIONS"}
+    allow = {"Allow": ", ".join(sorted(methods))}
+    if request.method == "OPTIONS":
+        return Response(status_code=HTTPStatus.NO_CONTENT, headers=allow)
+    detail = f"{request.method[:20]} does nothing here; this address takes {allow['Allow']}."
+    problem = ProblemError(HTTPStatus.METHOD_NOT_ALLOWED, detail, headers=allow)
+    return problem.response(request.url.path)
+
+
+async def _on_invalid_request(request: Request, error: Exception) -> Response:
+    assert isinstance(error, RequestValidationError)
+    details = [{**detail, "loc": detail["loc"][1:]} for detail in error.errors()]
+    return invalid(details).response(request.url.path)
+
+
+async def _on_disconnect(request: Request, _: Exception) -> Response:
+    """The client has gone and reads no answer; this only keeps it from counting as our failure."""
+    detail = "The request ended before its body was complete."
+    return ProblemError(HTTPStatus.BAD_REQUEST, detail).response(request.url.path)
+
+
+async def _on_exception(request: Request, _: Exception) -> Response:
+    """Says nothing of what happened; the server logs the traceback."""
+    problem = ProblemError(
+        HTTPStatus.INTERNAL_SERVER_ERROR,
+        "The service failed at this request. Nothing is wrong with the answer itself; "
+        "the failure has been logged.",
+    )
+    return problem.response(request.url.path)

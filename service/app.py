@@ -1,0 +1,20 @@
+"""`uvicorn service.app:app`: the service as the environment sets it up."""
+
+from fastapi import FastAPI
+
+from service.api.application import application
+from service.catalogue import CatalogueError, open_catalogue
+from service.settings import SettingsError, load_settings
+
+
+def create() -> FastAPI:
+    """The service. Ends the process with the reason where a setting or exercise is unusable."""
+    try:
+        settings = load_settings()
+        catalogue = open_catalogue(settings.exercises_dir, reload=settings.reload_exercises)
+        return application(catalogue, settings.cors_origins, solutions=settings.solutions)
+    except (SettingsError, CatalogueError) as error:
+        raise SystemExit(f"dh-grader cannot start:\n{error}") from error
+
+
+app = create()

@@ -1,0 +1,7 @@
+"""What an author wants to know of an exercise before students see it."""
+
+from service.authoring.examine import examine
+from service.authoring.remarks import Level, Remark
+from service.authoring.template import UnusableIdError, template
+
+__all__ = ["Level", "Remark", "UnusableIdError", "examine", "template"]

@@ -1,0 +1,28 @@
+"""All that is looked at in an exercise."""
+
+from collections.abc import Callable, Iterator
+
+from service.authoring.duplicates import duplicate_parts
+from service.authoring.expectations import failed_checks, missing_checks
+from service.authoring.freedom import lost_freedom
+from service.authoring.model_answer import model_answer
+from service.authoring.ranges import badly_scaled
+from service.authoring.remarks import Remark
+from service.authoring.symbols import ambiguous_symbols, unused_symbols
+from service.catalogue import Exercise
+
+EXAMINATIONS: tuple[Callable[[Exercise], Iterator[Remark]], ...] = (
+    model_answer,
+    failed_checks,
+    missing_checks,
+    ambiguous_symbols,
+    unused_symbols,
+    badly_scaled,
+    duplicate_parts,
+    lost_freedom,
+)
+
+
+def examine(exercise: Exercise) -> list[Remark]:
+    """All remarks on an exercise: failures, and warnings."""
+    return [remark for look in EXAMINATIONS for remark in look(exercise)]

@@ -1,0 +1,56 @@
+"""A reference robot that moves in fewer ways than its joints suggest."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from service.authoring.remarks import Remark, warning
+from service.catalogue import Exercise
+from service.catalogue.reading import TRIALS, trial_values
+from service.kinematics.jacobian import coincident, rank
+from service.kinematics.screws import exponential, moved
+from service.kinematics.transforms import identity
+
+WAYS = 6
+
+
+def lost_freedom(exercise: Exercise) -> Iterator[Remark]:
+    """Joints of the reference on one axis, or more joints than ways to move."""
+    robot = exercise.reference
+    if robot is None:
+        return
+    values = trial_values(exercise.variables)
+    jacobian = _jacobian(exercise, np.asarray(robot.screws(values, TRIALS)))
+    pairs = np.argwhere(np.triu(coincident(jacobian)))
+    for i, j in pairs.tolist():
+        one, other = robot.joints[i], robot.joints[j]
+        motion = "slide in one direction" if one.prismatic else "turn about one line"
+        yield warning(
+            "robot",
+            f"joints {one.index} and {other.index} {motion}, so the arm has lost a degree of "
+            f"freedom; check the rows between them",
+        )
+    ways, joints = rank(jacobian), len(robot.joints)
+    if ways < min(joints, WAYS) and not len(pairs):
+        yield warning(
+            "robot",
+            f"the {joints} joints move the tool in {ways} ways only, wherever they stand; check "
+            f"the rows, or say in the statement that the arm is redundant",
+        )
+
+
+def _jacobian(exercise: Exercise, axes: np.ndarray) -> np.ndarray:
+    """The space Jacobian ``(lanes, 6, joints)``, lengths in the exercise's typical length.
+
+    Source: Lynch and Park, *Modern Robotics*, eq. 5.11.
+    """
+    values = trial_values(exercise.variables)
+    reached = identity((TRIALS,))
+    columns = []
+    for joint, axis in zip(exercise.joints, axes, strict=True):
+        column = moved(reached, axis)
+        if not joint.prismatic:
+            column[:, 3:] /= exercise.length_scale
+        columns.append(column)
+        reached = reached @ exponential(axis, values[joint.variable])
+    return np.stack(columns, axis=-1)

@@ -1,0 +1,81 @@
+"""`dh-grader exercises`: the catalogue, its solutions, and the making of more exercises."""
+
+from typing import Annotated
+
+import typer
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from service.catalogue import Exercise
+from service.cli import check, new
+from service.cli.terminal import catalogue_or_exit, give_up, stdout
+from service.submissions import UnknownExerciseError, find_exercise
+
+commands = typer.Typer(help="The catalogue of exercises.", no_args_is_help=True)
+
+
+@commands.command("list")
+def list_exercises() -> None:
+    """List the exercises."""
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="dim")
+    for column in ("id", "title", "joints", "parts (points)"):
+        table.add_column(column, overflow="fold", no_wrap=column in ("id", "joints"))
+    for exercise in catalogue_or_exit().values():
+        parts = ", ".join(f"{part.id} ({part.points:g})" for part in exercise.parts)
+        table.add_row(exercise.id, exercise.title, exercise.structure or "", parts)
+    stdout().print(table)
+
+
+@commands.command("show")
+def show_exercise(
+    exercise_id: Annotated[str, typer.Argument(metavar="ID", show_default=False)],
+    solution: Annotated[
+        bool, typer.Option("--solution", help="Show the model solution instead.")
+    ] = False,
+    latex: Annotated[
+        bool, typer.Option("--latex", help="Show the model solution in LaTeX.")
+    ] = False,
+) -> None:
+    """Show one exercise: its statement, symbols and parts. No answer, unless it is asked for."""
+    try:
+        exercise = find_exercise(catalogue_or_exit(), exercise_id)
+    except UnknownExerciseError as error:
+        give_up(f"{error} Known are: {', '.join(error.known)}.")
+    console = stdout()
+    if solution or latex:
+        # Only here: SymPy takes half a second to import.
+        from service.cli.solution import write
+
+        write(exercise, console, latex=latex)
+        return
+    console.print(Text(exercise.title, "bold"))
+    name = ", ".join(filter(None, (exercise.id, exercise.structure)))
+    console.print(Text(f"{name}. {exercise.source}", "dim"))
+    console.print()
+    console.print(Text(_paragraphs(exercise.statement)))
+    console.print()
+    console.print(Text("Symbols", "bold"))
+    console.print(Padding(_symbols(exercise), (0, 0, 0, 2), expand=False))
+    console.print()
+    console.print(Text("Parts", "bold"))
+    for part in exercise.parts:
+        heading = f"{part.id}: {part.title} ({part.kind}, {part.points:g} points)"
+        console.print(Padding(Text(heading), (0, 0, 0, 2), expand=False))
+        console.print(Padding(Text(part.prompt, "dim"), (0, 0, 0, 4), expand=False))
+
+
+def _paragraphs(statement: str) -> str:
+    """The statement with its line breaks left to the terminal."""
+    return "\n\n".join(" ".join(block.split()) for block in statement.split("\n\n"))
+
+
+def _symbols(exercise: Exercise) -> Table:
+    table = Table.grid(padding=(0, 2, 0, 0))
+    for variable in exercise.variables:
+        table.add_row(variable.name, variable.unit, variable.description)
+    return table
+
+
+commands.command("check")(check.command)
+commands.command("new")(new.command)

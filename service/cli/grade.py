@@ -1,0 +1,171 @@
+"""`dh-grader grade`: submissions in files, graded here and now."""
+
+import io
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.text import Text
+
+from service.catalogue import Exercise
+from service.cli.submission_files import UnusableFileError, read_submission
+from service.cli.terminal import UNUSABLE, catalogue_or_exit, complain, give_up, stdout
+from service.formats import json as json_format
+from service.formats import text as text_format
+from service.grading import FeedbackLevel, Report, UnknownPartError, grade
+from service.submissions import UnknownExerciseError, find_exercise, nearest
+
+BELOW_PASS_MARK = 1
+
+
+class Format(StrEnum):
+    """How a report is written."""
+
+    TEXT = "text"
+    JSON = "json"
+
+
+@dataclass(frozen=True, slots=True)
+class Graded:
+    """What became of one file: a report, or the reason why there is none."""
+
+    file: Path
+    report: Report | None
+    error: str = ""
+
+
+def command(
+    files: Annotated[list[Path], typer.Argument(metavar="FILE", show_default=False)],
+    exercise: Annotated[
+        str, typer.Option(metavar="ID", help="The exercise that is answered.", show_default=False)
+    ],
+    part: Annotated[
+        str | None,
+        typer.Option(metavar="P", help="Grade this part only; a file may hold its answer alone."),
+    ] = None,
+    output_format: Annotated[
+        Format,
+        typer.Option(
+            "--format",
+            help="For people, or for programs: json prints exactly the report, and for several "
+            'files a list with {"file", "report"} or {"file", "error"} for each.',
+        ),
+    ] = Format.TEXT,
+    output: Annotated[
+        Path | None, typer.Option(metavar="F", help="Write to this file instead.")
+    ] = None,
+    pass_mark: Annotated[float, typer.Option(min=0, max=1, help="The score to reach, of 1.")] = 0.8,
+    feedback: Annotated[
+        FeedbackLevel | None,
+        typer.Option(
+            help="How much to tell: everything, all but the correction, or only marks and what "
+            "could not be read. By default what the file asks for, else full."
+        ),
+    ] = None,
+) -> None:
+    """Grade submissions: JSON or TOML files of the same shape as the HTTP body.
+
+    Exit code 0: every file reaches the pass mark.
+
+    Exit code 1: one is below it.
+
+    Exit code 2: a file, exercise or part is unusable; other files are graded all the same.
+    """
+    chosen = _restricted(_exercise(exercise), part)
+    graded = [_graded(file, chosen, part, feedback) for file in files]
+    for result in graded:
+        if result.error:
+            complain(f"{result.file}: {result.error}")
+    if output_format is Format.JSON:
+        _deliver(_as_json(graded), output)
+    elif output is None:
+        _write_text(graded, stdout())
+    else:
+        page = io.StringIO()
+        _write_text(graded, Console(file=page, width=80, highlight=False, markup=False))
+        _deliver(page.getvalue().encode("utf-8", "replace"), output)
+    raise SystemExit(max(_exit_code(result, pass_mark) for result in graded))
+
+
+def _exercise(exercise_id: str) -> Exercise:
+    try:
+        return find_exercise(catalogue_or_exit(), exercise_id)
+    except UnknownExerciseError as error:
+        give_up(f"{error} Known are: {', '.join(error.known)}.")
+
+
+def _restricted(exercise: Exercise, part_id: str | None) -> Exercise:
+    """The exercise with this part only, so that the score is the part's."""
+    if part_id is None:
+        return exercise
+    part = exercise.part(part_id)
+    if part is None:
+        known = [part.id for part in exercise.parts]
+        suggestion = nearest(part_id, known)
+        hint = f" Did you mean {suggestion!r}?" if suggestion else ""
+        give_up(f"{exercise.id} has no part {part_id!r}.{hint} Its parts are: {', '.join(known)}.")
+    return replace(exercise, parts=(part,))
+
+
+def _graded(
+    file: Path, exercise: Exercise, part: str | None, feedback: FeedbackLevel | None
+) -> Graded:
+    try:
+        submission = read_submission(file, part).submission()
+        if feedback is not None:
+            submission = replace(submission, feedback=feedback)
+        return Graded(file, grade(exercise, submission))
+    except UnusableFileError as error:
+        return Graded(file, None, str(error))
+    except UnknownPartError as error:
+        known = ", ".join(error.known)
+        name = text_format.visible(error.unknown[:60])
+        return Graded(file, None, f"answers {name!r}, but {exercise.id} has only {known}")
+
+
+def _exit_code(result: Graded, pass_mark: float) -> int:
+    if result.report is None:
+        return UNUSABLE
+    # Scores are rounded to six digits, so 1/3 passes a pass mark of 0.33333333.
+    return 0 if result.report.score >= pass_mark - 5e-7 else BELOW_PASS_MARK
+
+
+def _as_json(graded: Sequence[Graded]) -> bytes:
+    """The report alone for one file; nothing if it could not be used."""
+    if len(graded) == 1:
+        report = graded[0].report
+        return b"" if report is None else json_format.rendered(report, indent=2) + b"\n"
+    return b"[\n" + b",\n".join(map(_entry, graded)) + b"\n]\n"
+
+
+def _entry(result: Graded) -> bytes:
+    file = json.dumps(str(result.file)).encode()
+    if result.report is None:
+        return b'{"file": %b, "error": %b}' % (file, json.dumps(result.error).encode())
+    return b'{"file": %b, "report": %b}' % (file, json_format.rendered(result.report))
+
+
+def _write_text(graded: Iterable[Graded], console: Console) -> None:
+    several = len(list(graded)) > 1
+    for result in graded:
+        if several and result.report is not None:
+            console.print(Text(f"== {text_format.visible(str(result.file))}", "bold"))
+        if result.report is not None:
+            text_format.write(result.report, console)
+        if several and result.report is not None:
+            console.print()
+
+
+def _deliver(content: bytes, output: Path | None) -> None:
+    if output is None:
+        typer.echo(content, nl=False)
+        return
+    try:
+        output.write_bytes(content)
+    except OSError as error:
+        give_up(f"{output}: cannot be written: {error.strerror}")

@@ -1,0 +1,45 @@
+"""The commands put together."""
+
+import sys
+from importlib.metadata import version
+from typing import Annotated
+
+import typer
+
+from service.cli import exercises, grade, serve
+
+program = typer.Typer(
+    name="dh-grader",
+    help="Grades Denavit-Hartenberg tables, transforms and forward kinematics, and says why.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+program.add_typer(exercises.commands, name="exercises")
+program.command("grade")(grade.command)
+program.command("serve")(serve.command)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"dh-grader {version('dh-grader')}")
+        raise typer.Exit
+
+
+@program.callback()
+def _options(
+    show_version: Annotated[
+        bool,
+        typer.Option("--version", help="Show the version.", callback=_show_version, is_eager=True),
+    ] = False,
+) -> None:
+    pass
+
+
+def main() -> None:
+    """Run the command line of this process."""
+    # What a stream cannot show is replaced, not a reason to stop half-way through a report.
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")
+    program(prog_name="dh-grader")

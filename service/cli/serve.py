@@ -1,0 +1,36 @@
+"""`dh-grader serve`: the service on this machine."""
+
+from typing import Annotated
+
+import typer
+
+from service.catalogue import CatalogueError, open_catalogue
+from service.cli.terminal import give_up, settings_or_exit
+
+
+def command(
+    host: Annotated[
+        str | None, typer.Option(help="The address to listen on; 0.0.0.0 for all. [127.0.0.1]")
+    ] = None,
+    port: Annotated[
+        int | None, typer.Option(min=0, max=65535, help="The port; 0 takes a free one. [8000]")
+    ] = None,
+) -> None:
+    """Start the service; the environment variables DH_GRADER_… set it up."""
+    settings = settings_or_exit()
+    try:
+        catalogue = open_catalogue(settings.exercises_dir, reload=settings.reload_exercises)
+    except CatalogueError as error:
+        give_up(str(error))
+    # Only here: the web framework is half of the program's weight, and grading needs none of it.
+    import uvicorn
+
+    from service.api.application import application
+
+    uvicorn.run(
+        application(catalogue, settings.cors_origins, solutions=settings.solutions),
+        host=settings.host if host is None else host,
+        port=settings.port if port is None else port,
+        log_level=settings.log_level,
+        server_header=False,
+    )

@@ -1,0 +1,34 @@
+"""A model solution at the terminal."""
+
+from collections.abc import Iterator
+
+from rich.console import Console
+from rich.text import Text
+
+from service.catalogue import Exercise
+from service.solutions import Shown, Solution, solve
+
+
+def write(exercise: Exercise, console: Console, *, latex: bool) -> None:
+    """Print what is right in each part, each link transform and the pose."""
+    solution = solve(exercise)
+    for heading, shown in _sections(solution):
+        console.print(Text(heading, "bold"))
+        # Unbroken, so that it can be copied and pasted.
+        console.print(Text(shown.latex if latex else shown.text), soft_wrap=True)
+        console.print()
+    if solution.notation:
+        console.print(Text("Shorthand", "bold"))
+        for name, meaning in solution.notation.items():
+            console.print(Text(f"{name} = {meaning}"))
+
+
+def _sections(solution: Solution) -> Iterator[tuple[str, Shown]]:
+    for part in solution.parts:
+        yield f"{part.part}: {part.title} ({part.kind})", part.shown
+    answered = [part.shown.text for part in solution.parts]
+    if not any(part.kind == "link_transforms" for part in solution.parts):
+        for label, shown in solution.links.items():
+            yield f"Link transform A{label}", shown
+    if solution.pose is not None and solution.pose.text not in answered:
+        yield "Pose of the tool in the base frame", solution.pose

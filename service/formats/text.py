@@ -1,0 +1,181 @@
+"""A report for a person at a terminal: each part as a table, its messages beneath, a total.
+
+Marks, not colours, carry the meaning, so it reads the same in a file or without colour.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Final
+
+from rich.console import Console
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from service.grading import CellReport, Feedback, PartReport, Report, Severity, Verdict
+
+STYLES: Final[Mapping[Verdict, str]] = {
+    Verdict.CORRECT: "green",
+    Verdict.PARTIAL: "yellow",
+    Verdict.INCORRECT: "red",
+    Verdict.UNREADABLE: "magenta",
+    Verdict.MISSING: "bright_black",
+}
+_SIGNS: Final[Mapping[Verdict, str]] = {
+    Verdict.CORRECT: "✓",
+    Verdict.PARTIAL: "~",
+    Verdict.INCORRECT: "✗",
+    Verdict.UNREADABLE: "?",
+    Verdict.MISSING: "–",
+}
+_ASCII: Final = str.maketrans("✓✗–", "+x-")
+# Longer lines are hard to read however wide the terminal is.
+_WIDEST: Final = 100
+
+
+def write(report: Report, console: Console) -> None:
+    """Print the report; a console whose encoding lacks the marks gets plain ASCII for them."""
+    _Page(console).report(report)
+
+
+def visible(text: str) -> str:
+    """The text with every control and invisible character replaced: it may come from anyone."""
+    return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
+
+
+def points(earned: float, most: float) -> str:
+    """Points out of the most there are: ``1.5 / 2``."""
+    return f"{_number(earned)} / {_number(most)}"
+
+
+def _number(value: float) -> str:
+    return f"{value:.2f}".rstrip("0").rstrip(".")
+
+
+class _Page:
+    """One report on one console."""
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        self._width = min(console.width, _WIDEST)
+        self._ascii = not _can_write("✓✗–", console.encoding)
+
+    def report(self, report: Report) -> None:
+        for part in report.parts:
+            self._part(part)
+        # Not rounded up to a mark that was not reached.
+        percent = int(report.score * 1000 + 1e-6) / 10
+        total = f"{points(report.points, report.max_points)} points, {percent:g} %"
+        self._print(Text.assemble((f"Total for {visible(report.exercise)}: ", "bold"), total))
+        if not report.gradable:
+            self._print(Text("Nothing in this submission could be read."))
+        if any(part.rows for part in report.parts):
+            signs = [Verdict.CORRECT, Verdict.INCORRECT, Verdict.UNREADABLE, Verdict.MISSING]
+            legend = "   ".join(f"{self._sign(verdict)} {verdict}" for verdict in signs)
+            self._print(Text(legend, "dim"))
+
+    def _part(self, part: PartReport) -> None:
+        self._print(
+            Text.assemble(
+                (visible(part.part), "bold"),
+                f" ({part.kind}): ",
+                (part.verdict.value, STYLES[part.verdict]),
+                f", {points(part.points, part.max_points)} points",
+                ", counted with your own earlier answer" if part.follow_through else "",
+            )
+        )
+        if part.rows:
+            self._print(Padding(self._table(part), (0, 0, 0, 2), expand=False))
+        for places, message, verdict in _messages(part):
+            self._message(places, message, verdict)
+        self._print(Text())
+
+    def _table(self, part: PartReport) -> Table:
+        table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="dim")
+        table.add_column("row")
+        widest = max((row.cells for row in part.rows), key=len)
+        for cell in widest:
+            table.add_column(cell.label, justify="center")
+        table.add_column("points", justify="right", no_wrap=True)
+        for row in part.rows:
+            marks = [Text(self._sign(cell.verdict), STYLES[cell.verdict]) for cell in row.cells]
+            blanks = [Text()] * (len(widest) - len(marks))
+            table.add_row(row.label, *marks, *blanks, points(row.points, row.max_points))
+        return table
+
+    def _message(self, places: str, message: Feedback, verdict: Verdict) -> None:
+        """A message, its lines beneath each other to the right of its mark."""
+        costs = message.severity is Severity.ERROR
+        mark = self._sign(verdict) if costs else message.severity.value
+        text = Text.assemble((f"{places}: " if places else "", "bold"), visible(message.message))
+        if message.values:
+            text.append(f" {_counterexample(message.values)}", "dim")
+        grid = Table.grid(padding=(0, 1))
+        grid.add_column(no_wrap=True)
+        grid.add_column()
+        grid.add_row(Text(mark, STYLES[verdict] if costs else "cyan"), text)
+        self._print(Padding(grid, (0, 0, 0, 2), expand=False))
+
+    def _sign(self, verdict: Verdict) -> str:
+        sign = _SIGNS[verdict]
+        return sign.translate(_ASCII) if self._ascii else sign
+
+    def _print(self, what: Text | Padding) -> None:
+        self._console.print(what, width=self._width)
+
+
+def _messages(part: PartReport) -> Iterator[tuple[str, Feedback, Verdict]]:
+    """The part's messages, those that say the same drawn together with all their places."""
+    if part.verdict is Verdict.MISSING and not part.feedback and not part.rows:
+        nothing = Feedback("missing", Severity.ERROR, "Nothing was handed in.")
+        yield "", nothing, Verdict.MISSING
+    together: dict[tuple[str, str], tuple[list[Feedback], Verdict]] = {}
+    for message, verdict in _all_feedback(part):
+        key = (message.message, str(message.values))
+        together.setdefault(key, ([], verdict))[0].append(message)
+    for messages, verdict in together.values():
+        yield _places(messages), messages[0], verdict
+
+
+def _all_feedback(part: PartReport) -> Iterator[tuple[Feedback, Verdict]]:
+    yield from ((message, part.verdict) for message in part.feedback)
+    for row in part.rows:
+        yield from ((message, row.verdict) for message in row.feedback)
+        yield from _cell_feedback(row.cells)
+
+
+def _cell_feedback(cells: Iterable[CellReport]) -> Iterator[tuple[Feedback, Verdict]]:
+    for cell in cells:
+        yield from ((message, cell.verdict) for message in cell.feedback)
+
+
+def _places(messages: Iterable[Feedback]) -> str:
+    """Where the messages belong: ``row 1 d, theta; row 2``."""
+    cells: dict[str, list[str]] = {}
+    for message in messages:
+        if message.row is not None:
+            named = cells.setdefault(visible(message.row), [])
+            if message.cell is not None:
+                named.append(visible(message.cell))
+    return "; ".join(f"row {row}{_columns(named)}" for row, named in cells.items())
+
+
+def _columns(labels: list[str]) -> str:
+    if not labels:
+        return ""
+    noun = "" if not labels[0].isdigit() else "column " if len(labels) == 1 else "columns "
+    return f" {noun}{', '.join(labels)}"
+
+
+def _counterexample(values: Mapping[str, float | str]) -> str:
+    """``(with q1 = 0.4, yours gives 1.2)``, from the values of one sample."""
+    at = ", ".join(f"{name} = {value}" for name, value in values.items() if name != "yours")
+    yours = f"yours gives {values['yours']}" if "yours" in values else ""
+    return visible(f"({', '.join(filter(None, [at and f'with {at}', yours]))})")
+
+
+def _can_write(text: str, encoding: str) -> bool:
+    try:
+        text.encode(encoding)
+    except (UnicodeEncodeError, LookupError):
+        return False
+    return True

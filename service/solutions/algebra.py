@@ -1,0 +1,86 @@
+"""Formulas of an exercise -> SymPy: the tree is walked, and no text is ever given to SymPy."""
+
+from collections.abc import Mapping
+from decimal import Decimal
+from fractions import Fraction
+
+import sympy
+
+from service.catalogue import Exercise, FormulaGrid
+from service.expressions import Expression
+from service.expressions.tree import (
+    Binary,
+    Call,
+    Negation,
+    Node,
+    Number,
+    Operator,
+    Pi,
+    Unit,
+    Variable,
+)
+
+_FUNCTIONS: Mapping[str, sympy.Function] = {
+    "sin": sympy.sin,
+    "cos": sympy.cos,
+    "tan": sympy.tan,
+    "asin": sympy.asin,
+    "acos": sympy.acos,
+    "atan": sympy.atan,
+    "atan2": sympy.atan2,
+    "sqrt": sympy.sqrt,
+    "abs": sympy.Abs,
+    "exp": sympy.exp,
+}
+
+
+class Algebra:
+    """One exercise's formulas in SymPy; a symbol whose range is positive is positive there."""
+
+    def __init__(self, exercise: Exercise) -> None:
+        self.symbols: Mapping[str, sympy.Symbol] = {
+            variable.name: sympy.Symbol(variable.name, positive=True)
+            if variable.low > 0
+            else sympy.Symbol(variable.name, real=True)
+            for variable in exercise.variables
+        }
+
+    def of(self, formula: Expression) -> sympy.Expr:
+        """The formula as it stands; numbers stay exact."""
+        return self._node(formula.tree)
+
+    def matrix(self, grid: FormulaGrid) -> sympy.Matrix:
+        """A grid of formulas as a matrix."""
+        return sympy.Matrix([[self.of(formula) for formula in row] for row in grid])
+
+    def _node(self, node: Node) -> sympy.Expr:
+        match node:
+            case Number(literal=literal):
+                exact = Fraction(Decimal(literal))
+                return sympy.Rational(exact.numerator, exact.denominator)
+            case Pi():
+                return sympy.pi
+            case Variable(symbol):
+                return self.symbols[symbol.name]
+            case Unit(operand, unit):
+                return self._node(operand) * (sympy.pi / 180 if unit == "deg" else 1)
+            case Negation(operand):
+                return -self._node(operand)
+            case Call(function, arguments):
+                return _FUNCTIONS[function](*map(self._node, arguments))
+            case Binary(operator, left, right):
+                return _joined(operator, self._node(left), self._node(right))
+
+
+def _joined(operator: Operator, left: sympy.Expr, right: sympy.Expr) -> sympy.Expr:
+    match operator:
+        case "+":
+            return left + right
+        case "-":
+            return left - right
+        case "*":
+            return left * right
+        case "/":
+            return left / right
+        case "^":
+            return left**right

@@ -1,0 +1,117 @@
+"""The reference robot as a product of motions."""
+
+from collections.abc import Sequence
+from itertools import chain
+
+import sympy
+
+from service.catalogue import Exercise, Robot, ScrewRobot
+from service.catalogue.robot import FormulaRow
+from service.kinematics.dh import Convention
+from service.solutions.algebra import Algebra
+from service.solutions.motions import Fixed, Motion, Shift, Turn, X, Z, inverse, rotation_about
+
+Frame = int | str
+
+
+def link(row: FormulaRow, convention: Convention, algebra: Algebra) -> list[Motion]:
+    """The motions of one row of a table."""
+    a, alpha, d, theta = map(algebra.of, row)
+    along_z: list[Motion] = [Turn(Z, theta), Shift(d * Z)]
+    along_x: list[Motion] = [Shift(a * X), Turn(X, alpha)]
+    return along_z + along_x if convention is Convention.STANDARD else along_x + along_z
+
+
+def between(
+    exercise: Exercise, start: Frame, end: Frame, algebra: Algebra, *, home: bool = False
+) -> list[Motion]:
+    """The motions that lead from one frame of the robot to another.
+
+    Frames are "base", "tool" and the numbers of the robot's own table. ``home`` takes all joint
+    variables as 0. Raises LookupError where there is no robot.
+    """
+    motions = _steps(exercise, algebra)
+    first, last = (_place(exercise, frame, len(motions)) for frame in (start, end))
+    steps = list(chain.from_iterable(motions[min(first, last) : max(first, last)]))
+    ordered = steps if first <= last else inverse(steps)
+    return [at_home(motion, exercise, algebra) for motion in ordered] if home else ordered
+
+
+def _steps(exercise: Exercise, algebra: Algebra) -> list[list[Motion]]:
+    """The motions from each frame to the next."""
+    match exercise.reference:
+        case Robot(tables=tables, convention=convention):
+            return [link(row, convention, algebra) for row in tables[convention].rows]
+        case ScrewRobot() as robot:
+            return [_exponentials(robot, algebra)]
+        case _:
+            raise LookupError(f"exercise {exercise.id!r} has no robot")
+
+
+def _place(exercise: Exercise, frame: Frame, steps: int) -> int:
+    if isinstance(frame, str):
+        return {"base": 0, "tool": steps}[frame]
+    return frame - exercise.joints[0].index + 1
+
+
+def _exponentials(robot: ScrewRobot, algebra: Algebra) -> list[Motion]:
+    """e^{[S_1]θ_1} … e^{[S_n]θ_n} M, each turn through the point of its axis nearest 0."""
+    motions: list[Motion] = []
+    for joint, axis in zip(robot.joints, algebra.matrix(robot.axes).tolist(), strict=True):
+        amount = algebra.symbols[joint.variable]
+        omega, v = sympy.Matrix(axis[:3]), sympy.Matrix(axis[3:])
+        if omega.is_zero_matrix:
+            motions.append(Shift(amount * v))
+            continue
+        point, pitch = omega.cross(v), omega.dot(v)
+        turn = Turn(omega.as_immutable(), amount)
+        motions += [Shift(point), turn, Shift(pitch * amount * omega - point)]
+    home = algebra.matrix(robot.home)
+    return [*motions, Shift(home[:3, 3]), Fixed(home[:3, :3])]
+
+
+def at_home(motion: Motion, exercise: Exercise, algebra: Algebra) -> Motion:
+    """The motion with all joint variables 0."""
+    zero = {algebra.symbols[joint.variable]: sympy.S.Zero for joint in exercise.joints}
+    match motion:
+        case Turn(axis, angle):
+            return Turn(axis, angle.subs(zero))
+        case Shift(by):
+            return Shift(by.subs(zero))
+        case Fixed():
+            return motion
+
+
+def joint_axes(
+    exercise: Exercise, algebra: Algebra
+) -> tuple[Sequence[sympy.Matrix], Sequence[sympy.Matrix]]:
+    """The direction of each joint's axis and a point on it, at home in the base frame, 3×1 each.
+
+    Only for a robot with a table. Raises LookupError where there is none.
+    """
+    robot = exercise.robot
+    table = robot.tables[robot.convention]
+    rotation, position = sympy.eye(3), sympy.zeros(3, 1)
+    directions, points = [], []
+    for row, _ in zip(table.rows, robot.joints, strict=False):
+        steps = link(row, robot.convention, algebra)
+        # A standard row begins on its joint's axis; a modified one comes to it by a and α.
+        at = 0 if robot.convention is Convention.STANDARD else 2
+        for i, motion in enumerate(steps):
+            if i == at:
+                directions.append(rotation * Z)
+                points.append(position)
+            rotation, position = _moved(rotation, position, at_home(motion, exercise, algebra))
+    return directions, points
+
+
+def _moved(
+    rotation: sympy.Matrix, position: sympy.Matrix, motion: Motion
+) -> tuple[sympy.Matrix, sympy.Matrix]:
+    match motion:
+        case Shift(by):
+            return rotation, position + rotation * by
+        case Turn(axis, angle):
+            return rotation * rotation_about(axis, angle), position
+        case Fixed(fixed):
+            return rotation * fixed, position

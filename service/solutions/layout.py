@@ -1,0 +1,106 @@
+"""An answer as it is posted, as text that may be pasted, and as LaTeX."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from service.expressions.latex import to_latex
+from service.expressions.text import to_text
+from service.expressions.tree import Node
+from service.kinematics.chain import COLUMNS
+from service.kinematics.dh import Convention
+
+# As the column is headed: in a modified table a and α carry the index i−1.
+_HEADERS = {
+    Convention.STANDARD: ("i", r"a_i", r"\alpha_i", r"d_i", r"\theta_i"),
+    Convention.MODIFIED: ("i", r"a_{i-1}", r"\alpha_{i-1}", r"d_i", r"\theta_i"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """One answer. ``answer`` is its JSON value; ``text`` and ``latex`` may be pasted instead.
+
+    ``answer`` is None where the answer is longer than what may be handed in.
+    """
+
+    answer: object
+    text: str
+    latex: str
+
+
+def matrix(nodes: Sequence[Sequence[Node]]) -> Shown:
+    """A matrix: nested lists, MATLAB's brackets, and a LaTeX matrix."""
+    cells = [[to_text(node) for node in row] for row in nodes]
+    widths = [max(map(len, column)) + 2 for column in zip(*cells, strict=True)]
+    lines = [
+        "".join(f"{cell}, ".ljust(width) for cell, width in zip(row, widths, strict=True))
+        for row in cells
+    ]
+    return Shown(
+        cells, "[" + ";\n ".join(line.rstrip(", ") for line in lines) + "]", _latex_matrix(nodes)
+    )
+
+
+def listed(nodes: Sequence[Node]) -> Shown:
+    """A list of values: in LaTeX a column."""
+    cells = list(map(to_text, nodes))
+    return Shown(cells, f"[{', '.join(cells)}]", _latex_matrix([[node] for node in nodes]))
+
+
+def table(
+    rows: Sequence[Sequence[Node]], labels: Sequence[str], convention: Convention, *, named: bool
+) -> Shown:
+    """A DH table: rows by column, a Markdown table, and a LaTeX tabular.
+
+    The answer names its convention where that is ``named``.
+    """
+    cells = [[to_text(node) for node in row] for row in rows]
+    answer: dict[str, object] = {"rows": [dict(zip(COLUMNS, row, strict=True)) for row in cells]}
+    if named:
+        answer["convention"] = convention.value
+    return Shown(answer, _markdown(labels, cells), _tabular(labels, rows, convention))
+
+
+def row(nodes: Sequence[Node], label: str, convention: Convention) -> Shown:
+    """One row of a DH table, set as a table of its own."""
+    cells = list(map(to_text, nodes))
+    answer = dict(zip(COLUMNS, cells, strict=True))
+    return Shown(answer, _markdown([label], [cells]), _tabular([label], [nodes], convention))
+
+
+def no_row() -> Shown:
+    """That a transform has no row."""
+    return Shown({"none": True}, "none", r"\text{none}")
+
+
+def too_long() -> Shown:
+    """That there is an answer, but none that could be handed in."""
+    return Shown(None, "longer than an answer may be", r"\text{longer than an answer may be}")
+
+
+def product(labels: Sequence[str]) -> Shown:
+    """A matrix as the product of link transforms, where written out it would be too long."""
+    latex = " ".join(f"A_{{{label}}}" for label in labels)
+    return Shown(None, " ".join(f"A{label}" for label in labels), latex)
+
+
+def _markdown(labels: Sequence[str], cells: Sequence[Sequence[str]]) -> str:
+    lines = [["i", *COLUMNS], *([label, *row] for label, row in zip(labels, cells, strict=True))]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    lines.insert(1, ["-" * width for width in widths])
+    return "\n".join(f"| {' | '.join(map(str.ljust, line, widths))} |" for line in lines)
+
+
+def _tabular(labels: Sequence[str], rows: Sequence[Sequence[Node]], convention: Convention) -> str:
+    lines = [_HEADERS[convention]] + [
+        (label if label.isdigit() else rf"\mathrm{{{label}}}", *map(to_latex, row))
+        for label, row in zip(labels, rows, strict=True)
+    ]
+    body = [" & ".join(f"${cell}$" for cell in line) + r" \\" for line in lines]
+    content = "\n".join([body[0], r"\hline", *body[1:]])
+    return f"\\begin{{tabular}}{{c|cccc}}\n{content}\n\\end{{tabular}}"
+
+
+def _latex_matrix(nodes: Sequence[Sequence[Node]]) -> str:
+    lines = " \\\\\n".join(" & ".join(map(to_latex, row)) for row in nodes)
+    return f"\\begin{{bmatrix}}\n{lines}\n\\end{{bmatrix}}"

@@ -1,0 +1,163 @@
+"""Rigid motions as a product of turns and shifts, multiplied out into a textbook's form.
+
+A general simplifier spends seconds on six joints and leaves no textbook's form. The form comes of
+the order of the work instead:
+
+- Quarter turns about a coordinate axis are constant, and C Rot(u, φ) = Rot(C u, φ) C for a constant
+  C; so they go to the right end, and 90° twists leave no trace but the axes that they turn.
+- Turns about one axis with only shifts between them are done at once: their angles add up, which
+  gives c12 and c123 without a product of sines and cosines that would have to be drawn together.
+- The factors are applied from the right and products of brackets are not expanded, which gives
+  c1 (c2 (c4 c5 c6 − s4 s6) − s2 s5 c6) − … as a wrist's matrix is printed.
+
+Vectors are 3×1, rotations 3×3 matrices of SymPy; angles in radians.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import sympy
+
+X = sympy.ImmutableMatrix([1, 0, 0])
+Y = sympy.ImmutableMatrix([0, 1, 0])
+Z = sympy.ImmutableMatrix([0, 0, 1])
+ORIGIN = sympy.ImmutableMatrix([0, 0, 0])
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """A turn about the unit vector ``axis`` through the origin."""
+
+    axis: sympy.Matrix
+    angle: sympy.Expr
+
+    def inverse(self) -> "Turn":
+        """The turn back."""
+        return Turn(self.axis, -self.angle)
+
+
+@dataclass(frozen=True, slots=True)
+class Shift:
+    """A translation."""
+
+    by: sympy.Matrix
+
+    def inverse(self) -> "Shift":
+        """The shift back."""
+        return Shift(-self.by)
+
+
+@dataclass(frozen=True, slots=True)
+class Fixed:
+    """A rotation by a matrix that no joint variable enters."""
+
+    rotation: sympy.Matrix
+
+    def inverse(self) -> "Fixed":
+        """The rotation back."""
+        return Fixed(self.rotation.T)
+
+
+Motion = Turn | Shift | Fixed
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """Where a product of motions leads: a rotation and a position."""
+
+    rotation: sympy.Matrix
+    position: sympy.Matrix
+
+    def matrix(self) -> sympy.Matrix:
+        """The homogeneous transform, 4×4."""
+        upper = self.rotation.row_join(self.position)
+        return upper.col_join(sympy.Matrix([[0, 0, 0, 1]]))
+
+
+@dataclass(frozen=True, slots=True)
+class Normal:
+    """A product with its constant rotation at the right end.
+
+    First the shift ``start``, then turns, each with the shift after it, then the rotation ``end``.
+    """
+
+    start: sympy.Matrix
+    turns: tuple[tuple[Turn, sympy.Matrix], ...]
+    end: sympy.Matrix
+
+
+def inverse(motions: Sequence[Motion]) -> list[Motion]:
+    """The product that undoes ``motions``."""
+    return [motion.inverse() for motion in reversed(motions)]
+
+
+def multiplied(motions: Iterable[Motion]) -> Pose:
+    """The pose that the product of ``motions`` from left to right leads to."""
+    normal = normalised(motions)
+    rotation, position = normal.end, ORIGIN
+    for run in reversed(_runs(normal.turns)):
+        whole = rotation_about(run[-1][0].axis, run[-1][0].angle)
+        rotation = whole * rotation
+        position = whole * (run[-1][1] + position)
+        for turn, shift in run[:-1]:
+            position += rotation_about(turn.axis, turn.angle) * shift
+    return Pose(rotation, normal.start + position)
+
+
+def normalised(motions: Iterable[Motion]) -> Normal:
+    """The same product with quarter turns and fixed rotations moved to the right end."""
+    constant = sympy.eye(3)
+    shifts, turns = [ORIGIN], list[Turn]()
+    for motion in motions:
+        match motion:
+            case Shift(by):
+                shifts[-1] += constant * by
+            case Fixed(rotation):
+                constant *= rotation
+            case Turn(axis, angle):
+                rest, quarters = _split(axis, angle)
+                if rest != 0:
+                    turns.append(_upright(Turn(constant * axis, rest)))
+                    shifts.append(ORIGIN)
+                constant *= quarters
+    return Normal(shifts[0], tuple(zip(turns, shifts[1:], strict=True)), constant)
+
+
+def _split(axis: sympy.Matrix, angle: sympy.Expr) -> tuple[sympy.Expr, sympy.Matrix]:
+    """The angle without its quarter turns, and those as a rotation."""
+    constant, rest = angle.as_independent(*angle.free_symbols, as_Add=True)
+    if axis not in (X, Y, Z) or not (2 * constant / sympy.pi).is_Integer:
+        return angle, sympy.eye(3)
+    return rest, rotation_about(axis, constant)
+
+
+def _upright(turn: Turn) -> Turn:
+    """The same turn about the axis or its opposite, whichever has its first number positive."""
+    first = next(number for number in turn.axis if number != 0)
+    return Turn(-turn.axis, -turn.angle) if first.could_extract_minus_sign() else turn
+
+
+def _runs(
+    turns: Sequence[tuple[Turn, sympy.Matrix]],
+) -> list[list[tuple[Turn, sympy.Matrix]]]:
+    """Turns about one axis that follow each other, each by the angle turned since the run began."""
+    runs: list[list[tuple[Turn, sympy.Matrix]]] = []
+    for turn, shift in turns:
+        if runs and runs[-1][-1][0].axis == turn.axis:
+            so_far = runs[-1][-1][0].angle
+            runs[-1].append((Turn(turn.axis, so_far + turn.angle), shift))
+        else:
+            runs.append([(turn, shift)])
+    return runs
+
+
+def rotation_about(axis: sympy.Matrix, angle: sympy.Expr) -> sympy.Matrix:
+    """Rot(u, φ) = cos φ I + sin φ [u] + (1 − cos φ) u uᵀ.
+
+    Source: Lynch and Park, *Modern Robotics*, eq. 3.51 (Rodrigues' formula).
+    """
+    x, y, z = axis
+    skew = sympy.Matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    along = axis * axis.T
+    cos, sin = sympy.cos(angle), sympy.sin(angle)
+    return cos * (sympy.eye(3) - along) + sin * skew + along

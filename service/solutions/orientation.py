@@ -1,0 +1,104 @@
+"""Euler angles as formulas.
+
+A rotation that already is a product of turns in the sequence asked for gives its own angles: a
+spherical wrist is ZYZ with its joint angles. Any other is written with atan2 of its entries.
+"""
+
+from collections.abc import Iterable, Sequence
+from itertools import product
+
+import sympy
+
+from service.solutions.motions import (
+    Motion,
+    Normal,
+    X,
+    Y,
+    Z,
+    multiplied,
+    normalised,
+    rotation_about,
+)
+
+Angles = tuple[sympy.Expr, sympy.Expr, sympy.Expr]
+
+_AXES = {"X": X, "Y": Y, "Z": Z}
+_QUARTERS = (0, sympy.pi / 2, sympy.pi, -sympy.pi / 2)
+
+
+def euler_angles(motions: Iterable[Motion], sequence: str, axes: str) -> Angles:
+    """The angles of the rotation of ``motions`` in a sequence such as "ZYZ".
+
+    ``axes`` is "moving" or "fixed"; turns about fixed axes are those about moving ones in reverse.
+    """
+    steps = list(motions)
+    if axes == "fixed":
+        first, second, third = euler_angles(steps, sequence[::-1], "moving")
+        return third, second, first
+    direct = _own_angles(normalised(steps), sequence)
+    return direct or _by_entries(multiplied(steps).rotation, sequence)
+
+
+def _own_angles(normal: Normal, sequence: str) -> Angles | None:
+    """The angles turned about the axes of the sequence, where no other turn is made."""
+    angles = [sympy.S.Zero] * 3
+    at = 0
+    for turn, _ in normal.turns:
+        while at < 3 and _AXES[sequence[at]] != turn.axis:
+            at += 1
+        if at == 3:
+            return None
+        angles[at] += turn.angle
+    for quarters in product(*[(0,)] * at, *[_QUARTERS] * (3 - at)):
+        rotation = sympy.eye(3)
+        for letter, angle in zip(sequence, quarters, strict=True):
+            rotation *= rotation_about(_AXES[letter], angle)
+        if rotation == normal.end:
+            first, second, third = (a + b for a, b in zip(angles, quarters, strict=True))
+            return first, second, third
+    return None
+
+
+def _by_entries(rotation: sympy.Matrix, sequence: str) -> Angles:
+    """The angles by atan2, the second one in [0, π] or in [−π/2, π/2].
+
+    Source: Spong, Hutchinson, Vidyasagar, *Robot Modeling and Control*, §2.5.1 for ZYZ and §2.5.2
+    for ZYX; the other sequences follow by renaming the axes, with a sign where that turns a
+    right-handed frame into a left-handed one.
+    """
+    i, j = "XYZ".index(sequence[0]), "XYZ".index(sequence[1])
+    k = 3 - i - j
+    sign = 1 if (j - i) % 3 == 1 else -1
+    R = rotation
+    if sequence[0] == sequence[2]:
+        return (
+            sympy.atan2(R[j, i], -sign * R[k, i]),
+            sympy.atan2(_root(R[i, j], R[i, k]), R[i, i]),
+            sympy.atan2(R[i, j], sign * R[i, k]),
+        )
+    return (
+        sympy.atan2(-sign * R[j, k], R[k, k]),
+        sympy.atan2(sign * R[i, k], _root(R[i, i], R[i, j])),
+        sympy.atan2(-sign * R[i, j], R[i, i]),
+    )
+
+
+def _root(*sides: sympy.Expr) -> sympy.Expr:
+    return sympy.sqrt(sum((side**2 for side in sides), sympy.S.Zero))
+
+
+def as_angle(sine: sympy.Expr, cosine: sympy.Expr) -> sympy.Expr:
+    """The angle with this sine and cosine: φ itself for sin φ and cos φ, with any signs."""
+    for angle in _candidates((sine, cosine)):
+        if sympy.sin(angle) == sine and sympy.cos(angle) == cosine:
+            return angle
+    return sympy.atan2(sine, cosine)
+
+
+def _candidates(values: Sequence[sympy.Expr]) -> Iterable[sympy.Expr]:
+    found = set().union(*(value.atoms(sympy.sin, sympy.cos) for value in values))
+    arguments = sorted((call.args[0] for call in found), key=str)
+    for angle in (sympy.S.Zero, *arguments):
+        for quarter in _QUARTERS:
+            yield angle + quarter
+            yield quarter - angle

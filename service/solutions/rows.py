@@ -1,0 +1,42 @@
+"""The DH row of a transform as formulas."""
+
+import numpy as np
+import sympy
+
+from service.catalogue import DhRowSpec, Exercise, grid_values
+from service.catalogue.reading import TRIALS, trial_values
+from service.kinematics.dh import Convention
+from service.kinematics.dh_row import gap, slant
+from service.solutions.algebra import Algebra
+from service.solutions.orientation import as_angle
+
+# What rounding may leave of a condition that holds.
+_EXACT = 1e-9
+_MOST_STEPS = 60
+
+
+def dh_row(part: DhRowSpec, exercise: Exercise, algebra: Algebra) -> list[sympy.Expr] | None:
+    """The row (a, α, d, θ) of the part's transform, or None where it has none.
+
+    Read off the link transforms' own entries (Spong, Hutchinson, Vidyasagar, *Robot Modeling and
+    Control*, eq. 3.10; Craig, *Introduction to Robotics*, eq. 3.6).
+    """
+    grid = exercise.formulas[part.id]
+    numbers = np.moveaxis(grid_values(grid, trial_values(exercise.variables), TRIALS), -1, 0)
+    broken = [slant(numbers, part.convention), gap(numbers, part.convention)]
+    if np.abs(broken).max() > _EXACT:
+        return None
+    T = algebra.matrix(grid)
+    x, y, z = T[:3, 3]
+    if part.convention is Convention.STANDARD:
+        a, d = x * T[0, 0] + y * T[1, 0], z
+        alpha, theta = as_angle(T[2, 1], T[2, 2]), as_angle(T[1, 0], T[0, 0])
+    else:
+        a, d = x, y * T[1, 2] + z * T[2, 2]
+        alpha, theta = as_angle(-T[1, 2], T[2, 2]), as_angle(-T[0, 1], T[0, 0])
+    return [_simplified(a), alpha, _simplified(d), theta]
+
+
+def _simplified(length: sympy.Expr) -> sympy.Expr:
+    """Such as l for l cos² φ + l sin² φ; a long formula would take seconds, and stays."""
+    return sympy.trigsimp(sympy.expand(length)) if length.count_ops() < _MOST_STEPS else length

@@ -1,0 +1,225 @@
+"""SymPy -> the syntax tree of a student's formula, in a textbook's order and shorthand.
+
+The trees are printed by service.expressions like any formula. A shorthand such as c12 stands in
+them as a symbol of that name, and only where a student's c12 would be read as just that.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from decimal import Decimal
+from fractions import Fraction
+from functools import reduce
+
+import sympy
+
+from service.catalogue import Exercise
+from service.expressions import ExpressionError, Symbol, Vocabulary, read
+from service.expressions.text import to_text
+from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, Unit, Variable
+
+_NAMES: Mapping[type, str] = {
+    sympy.sin: "sin",
+    sympy.cos: "cos",
+    sympy.tan: "tan",
+    sympy.asin: "asin",
+    sympy.acos: "acos",
+    sympy.atan: "atan",
+    sympy.atan2: "atan2",
+    sympy.Abs: "abs",
+    sympy.exp: "exp",
+}
+_TRIGONOMETRIC = (sympy.sin, sympy.cos, sympy.tan)
+# These fractions are written as such; another has a decimal point where its digits end.
+_PLAIN_DENOMINATORS = (1, 2, 3, 4)
+_MOST_DECIMALS = 20
+
+# Beyond this many nodes a formula has more characters than are read of an answer.
+_MOST_NODES = 1000
+
+Place = tuple[int, list[int], bool, str]
+
+
+class TooLongError(Exception):
+    """A formula that would be longer than any answer may be."""
+
+
+class Writer:
+    """Writes one exercise's formulas.
+
+    ``used`` collects the shorthand that has occurred, with what it stands for.
+    """
+
+    def __init__(self, exercise: Exercise) -> None:
+        self.used: dict[str, str] = {}
+        self._vocabulary = exercise.vocabulary
+        self._symbols = {symbol.name: symbol for symbol in exercise.vocabulary.symbols}
+        ordered = sorted(exercise.variables, key=lambda variable: variable.joint or 0)
+        self._order = {variable.name: i for i, variable in enumerate(ordered)}
+
+    def number(self, expression: sympy.Expr) -> Node:
+        """The formula of a number or a length. Raises TooLongError."""
+        if _size(expression, {}) > _MOST_NODES:
+            raise TooLongError
+        return self._node(_without_negative_brackets(expression))
+
+    def _node(self, expression: sympy.Expr) -> Node:
+        if isinstance(expression, sympy.Add):
+            return _signed_sum(sorted(expression.args, key=self._in_sum), self._node)
+        if isinstance(expression, sympy.Symbol):
+            return Variable(self._symbols[expression.name])
+        if isinstance(expression, sympy.Pow):
+            return self._power(*expression.args)
+        if expression == sympy.pi:
+            return Pi()
+        if isinstance(expression, sympy.Mul | sympy.Rational):
+            return self._product(expression)
+        return self._call(expression)
+
+    def angle(self, expression: sympy.Expr) -> Node:
+        """The formula of an angle.
+
+        A number that is neither a multiple of π nor of a symbol says that it is in radians, so that
+        it means the same to those who work in degrees.
+        """
+
+        def term(value: sympy.Expr) -> Node:
+            node = self._node(value)
+            return Unit(node, "rad") if value.is_Rational and value != 0 else node
+
+        terms = sympy.Add.make_args(expression)
+        ordered = sorted(
+            terms, key=lambda each: (_negative(each), each.is_number, *self._in_sum(each))
+        )
+        return _signed_sum(ordered, term)
+
+    def _product(self, expression: sympy.Expr) -> Node:
+        factor, rest = expression.as_coeff_Mul()
+        if factor < 0:
+            return _negated(self._node(-expression))
+        whole = factor.q in _PLAIN_DENOMINATORS or _decimal(factor) is None
+        above, below = (
+            ([sympy.Integer(factor.p)], [sympy.Integer(factor.q)]) if whole else ([factor], [])
+        )
+        for each in sympy.Mul.make_args(rest):
+            divides = isinstance(each, sympy.Pow) and _negative(each.exp)
+            (below if divides else above).append(1 / each if divides else each)
+        upper = self._chain([each for each in above if each != 1])
+        lower = [each for each in below if each != 1]
+        return Binary("/", upper, self._chain(lower)) if lower else upper
+
+    def _chain(self, factors: Sequence[sympy.Expr]) -> Node:
+        """The product of factors that are no fractions, in order."""
+        nodes = [
+            _number(each) if isinstance(each, sympy.Rational) else self._node(each)
+            for each in sorted(factors, key=self._place)
+        ]
+        return reduce(lambda left, right: Binary("*", left, right), nodes or [_number(sympy.S.One)])
+
+    def _power(self, base: sympy.Expr, exponent: sympy.Expr) -> Node:
+        if _negative(exponent):
+            return Binary("/", _number(sympy.S.One), self._node(base**-exponent))
+        if exponent == sympy.Rational(1, 2):
+            return Call("sqrt", (self._node(base),))
+        return Binary("^", self._node(base), self._node(exponent))
+
+    def _call(self, expression: sympy.Expr) -> Node:
+        name = _NAMES[expression.func]
+        if not isinstance(expression, _TRIGONOMETRIC):
+            return Call(name, tuple(map(self._node, expression.args)))
+        call = Call(name, (self.angle(expression.args[0]),))
+        short = self._shorthand(name, sympy.Add.make_args(expression.args[0]))
+        if short is None or not _reads_as(short, call, self._vocabulary):
+            return call
+        self.used[short] = to_text(call)
+        return Variable(Symbol(short, "number"))
+
+    def _shorthand(self, function: str, terms: Sequence[sympy.Expr]) -> str | None:
+        """Such as c12 for the cosine of a sum of joint angles."""
+        symbols = [self._symbols.get(str(term)) for term in terms]
+        joints = [symbol.joint for symbol in symbols if symbol and symbol.joint is not None]
+        if function == "tan" or len(joints) < len(terms):
+            return None
+        return function[0] + "".join(map(str, sorted(joints)))
+
+    def _in_sum(self, term: sympy.Expr) -> tuple[bool, list[Place], list[int], str]:
+        """Added before subtracted, lengths alone before others, then by the first joints."""
+        places = sorted(map(self._place, sympy.Mul.make_args(term)))
+        orders = sorted(self._order[symbol.name] for symbol in term.free_symbols)
+        return _negative(term), [place for place in places if place[0] > 1], orders, str(term)
+
+    def _place(self, factor: sympy.Expr) -> Place:
+        """Numbers, then symbols, then sines and cosines by their joints, then brackets."""
+        base = factor.base if isinstance(factor, sympy.Pow) else factor
+        rank = 3
+        if base.is_number:
+            rank = 0
+        elif isinstance(base, sympy.Symbol):
+            rank = 1
+        elif isinstance(base, _TRIGONOMETRIC):
+            rank = 2
+        orders = sorted(self._order[symbol.name] for symbol in base.free_symbols)
+        return rank, orders, isinstance(base, sympy.sin), str(base)
+
+
+def _signed_sum(terms: Sequence[sympy.Expr], write: Callable[[sympy.Expr], Node]) -> Node:
+    signed = [(_negative(term), write(-term if _negative(term) else term)) for term in terms]
+    negative, first = signed[0]
+    result = _negated(first) if negative else first
+    for negative, node in signed[1:]:
+        result = Binary("-" if negative else "+", result, node)
+    return result
+
+
+def _negative(term: sympy.Expr) -> bool:
+    return bool(term.as_coeff_Mul()[0] < 0)
+
+
+def _size(expression: sympy.Expr, known: dict[sympy.Expr, int]) -> int:
+    """How many nodes the formula has, written out; parts that occur again are counted once."""
+    if expression not in known:
+        known[expression] = 1 + sum(_size(part, known) for part in expression.args)
+    return known[expression]
+
+
+def _negated(node: Node) -> Node:
+    """The node with a minus in front, as it is typed: −c1 s2 and not −(c1 s2)."""
+    if isinstance(node, Binary) and node.operator in ("*", "/"):
+        return Binary(node.operator, _negated(node.left), node.right)
+    return Negation(node)
+
+
+def _without_negative_brackets(expression: sympy.Expr) -> sympy.Expr:
+    """The same with −s2 (a + b) for s2 (−a − b)."""
+
+    def turned(product: sympy.Expr) -> sympy.Expr:
+        factors = [
+            -each if isinstance(each, sympy.Add) and all(map(_negative, each.args)) else each
+            for each in product.args
+        ]
+        changed = sum(a is not b for a, b in zip(factors, product.args, strict=True))
+        return sympy.Mul(*factors, sympy.S.NegativeOne**changed)
+
+    return expression.replace(lambda each: isinstance(each, sympy.Mul), turned)
+
+
+def _number(value: sympy.Rational) -> Node:
+    """A whole number, or one whose decimals end; not negative."""
+    literal = str(value.p) if value.q == 1 else _decimal(value)
+    assert literal is not None
+    return Number(float(literal), literal)
+
+
+def _decimal(value: sympy.Rational) -> str | None:
+    """The decimals, or None where they do not end."""
+    exact = Fraction(int(value.p), int(value.q))
+    for digits in range(_MOST_DECIMALS + 1):
+        scaled = exact * 10**digits
+        if scaled.denominator == 1:
+            return f"{Decimal(scaled.numerator).scaleb(-digits):f}"
+    return None
+
+
+def _reads_as(text: str, tree: Node, vocabulary: Vocabulary) -> bool:
+    try:
+        return read(text, vocabulary).tree == tree
+    except ExpressionError:
+        return False

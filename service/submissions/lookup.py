@@ -1,0 +1,33 @@
+"""Finding an exercise by its id."""
+
+import difflib
+from collections.abc import Iterable, Mapping
+
+from service.catalogue import Exercise
+
+# Comparing takes time that grows with the length, and nobody mistypes a name of this length.
+_LONGEST = 64
+
+
+class UnknownExerciseError(LookupError):
+    """No exercise has this id; ``suggestion`` is the nearest that there is, or None."""
+
+    def __init__(self, exercise_id: str, known: tuple[str, ...]) -> None:
+        self.known = known
+        self.suggestion = nearest(exercise_id, known)
+        hint = f" Did you mean {self.suggestion!r}?" if self.suggestion else ""
+        super().__init__(f"There is no exercise {exercise_id[:_LONGEST]!r}.{hint}")
+
+
+def find_exercise(catalogue: Mapping[str, Exercise], exercise_id: str) -> Exercise:
+    """The exercise with this id. Raises UnknownExerciseError."""
+    try:
+        return catalogue[exercise_id]
+    except KeyError:
+        raise UnknownExerciseError(exercise_id, tuple(catalogue)) from None
+
+
+def nearest(name: str, known: Iterable[str]) -> str | None:
+    """The known name that this one was probably meant to be, or None."""
+    matches = difflib.get_close_matches(name[:_LONGEST].lower(), list(known), n=1, cutoff=0.5)
+    return matches[0] if matches else None

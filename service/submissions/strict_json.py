@@ -1,0 +1,113 @@
+"""JSON from strangers: bounded, with the place of a mistake, and nothing silently dropped.
+
+A number that JSON or a float cannot hold (NaN, 1e999, a thousand digits) is handed on as its text:
+it stands in some student's cell, and the grading says so there while it grades every other cell.
+"""
+
+import json
+import math
+import re
+from collections import Counter
+from collections.abc import Iterable
+from itertools import chain
+from typing import Final
+
+MAX_BODY_SIZE: Final = 256 * 1024
+# The deepest answer, a list of matrices, needs five levels.
+MAX_DEPTH: Final = 64
+
+_DIGITS_OF_A_FLOAT: Final = 308
+_SURROGATE_ESCAPE: Final = re.compile(r"\\u[dD][89a-fA-F]")
+_LONE_SURROGATE: Final = re.compile(r"[\ud800-\udfff]")
+
+
+class MalformedError(ValueError):
+    """A text that is not the JSON it should be; ``line`` and ``column`` count from 1."""
+
+    def __init__(self, reason: str, line: int | None = None, column: int | None = None) -> None:
+        super().__init__(reason)
+        self.reason = reason
+        self.line = line
+        self.column = column
+
+    def __str__(self) -> str:
+        """The reason, with its place where there is one."""
+        if self.line is None:
+            return self.reason
+        return f"{self.reason} (line {self.line}, column {self.column})"
+
+
+def read_json(data: bytes) -> object:
+    """The value of a JSON text in UTF-8.
+
+    Raises MalformedError for anything else, for a key that stands twice in one object, and for
+    nesting deeper than ``MAX_DEPTH``. A lone surrogate becomes U+FFFD.
+    """
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise MalformedError(f"This is not UTF-8 text: byte {error.start + 1} is wrong.") from error
+    if not text.strip():
+        raise MalformedError("There is nothing here; a JSON object is expected.")
+    try:
+        value: object = _DECODER.decode(text)
+    except json.JSONDecodeError as error:
+        raise MalformedError(f"{error.msg}.", error.lineno, error.colno) from error
+    except RecursionError:
+        raise _too_deep() from None
+    # Few brackets cannot stand deep, which spares nearly every body the walk.
+    if text.count("[") + text.count("{") > MAX_DEPTH and nested_deeper(value, MAX_DEPTH):
+        raise _too_deep()
+    return _whole(value) if _SURROGATE_ESCAPE.search(text) else value
+
+
+def nested_deeper(value: object, depth: int) -> bool:
+    """Whether lists and objects stand in each other more than ``depth`` deep."""
+    level: list[object] = [value]
+    for _ in range(depth):
+        level = list(chain.from_iterable(map(_inside, level)))
+        if not level:
+            return False
+    return any(isinstance(inmost, dict | list) for inmost in level)
+
+
+def _inside(value: object) -> Iterable[object]:
+    if isinstance(value, dict):
+        return value.values()
+    return value if isinstance(value, list) else ()
+
+
+def _too_deep() -> MalformedError:
+    return MalformedError(f"Lists and objects stand more than {MAX_DEPTH} deep in each other.")
+
+
+def _unique(pairs: list[tuple[str, object]]) -> dict[str, object]:
+    """An object; JSON leaves open which of two equal keys counts, so neither is chosen."""
+    result = dict(pairs)
+    if len(result) != len(pairs):
+        [(repeated, _)] = Counter(key for key, _ in pairs).most_common(1)
+        raise MalformedError(f"The key {json.dumps(repeated[:60])} stands twice in one object.")
+    return result
+
+
+def _integer(digits: str) -> int | str:
+    return int(digits) if len(digits) <= _DIGITS_OF_A_FLOAT else digits
+
+
+def _float(text: str) -> float | str:
+    value = float(text)
+    return value if math.isfinite(value) else text
+
+
+def _whole(value: object) -> object:
+    """The value with U+FFFD for each lone surrogate, which no encoding can write out again."""
+    if isinstance(value, str):
+        return _LONE_SURROGATE.sub("\N{REPLACEMENT CHARACTER}", value)
+    if isinstance(value, dict):
+        return {_whole(key): _whole(child) for key, child in value.items()}
+    return [_whole(child) for child in value] if isinstance(value, list) else value
+
+
+_DECODER: Final = json.JSONDecoder(
+    object_pairs_hook=_unique, parse_int=_integer, parse_float=_float, parse_constant=str
+)

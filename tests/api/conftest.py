@@ -1,0 +1,48 @@
+import asyncio
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import httpx
+import pytest
+from fastapi import FastAPI
+
+from service.api.application import application
+from service.catalogue import Exercise, load_catalogue, shipped_folder
+
+
+class InProcess(httpx.BaseTransport):
+    """Lets a plain httpx.Client call an app; a failure inside is a 500, as behind a server."""
+
+    def __init__(self, app: FastAPI) -> None:
+        self._inner = httpx.ASGITransport(app, raise_app_exceptions=False)
+
+    def handle_request(self, request: httpx.Request) -> httpx.Response:
+        request.read()
+        return asyncio.run(self._answer(request))
+
+    async def _answer(self, request: httpx.Request) -> httpx.Response:
+        response = await self._inner.handle_async_request(request)
+        content = await response.aread()
+        return httpx.Response(response.status_code, headers=response.headers, content=content)
+
+
+@pytest.fixture(scope="session")
+def catalogue() -> Mapping[str, Exercise]:
+    return load_catalogue(shipped_folder())
+
+
+@pytest.fixture(scope="session")
+def app(catalogue: Mapping[str, Exercise]) -> FastAPI:
+    return application(catalogue)
+
+
+@pytest.fixture(scope="session")
+def client(app: FastAPI) -> Iterator[httpx.Client]:
+    with httpx.Client(transport=InProcess(app), base_url="http://service") as client:
+        yield client
+
+
+@pytest.fixture
+def client_of() -> Any:
+    """Makes a client of any app."""
+    return lambda app: httpx.Client(transport=InProcess(app), base_url="http://service")

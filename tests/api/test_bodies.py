@@ -1,0 +1,112 @@
+"""Bodies that are not what a request must be; the same for every route that reads one."""
+
+import json
+
+import httpx
+import pytest
+
+GRADE = "/v1/exercises/planar-rrr/grade"
+PREVIEW = "/v1/preview"
+
+
+@pytest.mark.parametrize(
+    ("body", "pointer"),
+    [
+        ([], "#"),
+        ("text", "#"),
+        (None, "#"),
+        ({}, "#/answers"),
+        ({"answers": []}, "#/answers"),
+        ({"answers": None}, "#/answers"),
+        ({"answers": {}, "angle_unit": "grad"}, "#/angle_unit"),
+        ({"answers": {}, "angle_unit": None}, "#/angle_unit"),
+        ({"answers": {}, "feedback": "all"}, "#/feedback"),
+        ({"answers": {}, "angle_units": "degrees"}, "#/angle_units"),
+    ],
+)
+def test_a_wrong_shape_is_a_422_that_points_there(
+    client: httpx.Client, body: object, pointer: str
+) -> None:
+    response = client.post(GRADE, content=json.dumps(body))
+    assert response.status_code == 422
+    assert response.headers["content-type"] == "application/problem+json"
+    problem = response.json()
+    assert problem["status"] == 422
+    assert [error["pointer"] for error in problem["errors"]] == [pointer]
+
+
+def test_an_unknown_field_is_answered_with_the_known_ones(client: httpx.Client) -> None:
+    problem = client.post(GRADE, json={"answers": {}, "angle_units": "degrees"}).json()
+    assert "answers, angle_unit, feedback" in problem["errors"][0]["detail"]
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"  ",
+        b"{",
+        b"{'answers': {}}",
+        b'{"answers": {}',
+        b'{"answers": {},}',
+        b'{"answers": {}} {}',
+        b'\xff\xfe{"answers": {}}',
+        b'{"answers": "\xff"}',
+        b'{"answers": {"table": 1, "table": 2}}',
+        b'{"answers": {"table": ' + b"[" * 10_000 + b"]" * 10_000 + b"}}",
+        b'{"answers": {"table": ' + b'{"a":' * 10_000 + b"1" + b"}" * 10_000 + b"}}",
+        b'{"answers": {"table": ' + b"[" * 500 + b"]" * 500 + b"}}",
+        b"[" * 100_000,
+    ],
+)
+@pytest.mark.parametrize("url", [GRADE, PREVIEW])
+def test_what_is_no_json_is_a_400(client: httpx.Client, url: str, content: bytes) -> None:
+    response = client.post(url, content=content, headers={"Content-Type": "application/json"})
+    assert response.status_code == 400
+    assert response.headers["content-type"] == "application/problem+json"
+    assert response.json()["type"] == "urn:dh-grader:problem:malformed-json"
+    assert len(response.content) < 1000
+
+
+def test_a_syntax_error_has_its_place(client: httpx.Client) -> None:
+    problem = client.post(GRADE, content=b'{\n  "answers": {"table" 1}}').json()
+    assert (problem["errors"][0]["line"], problem["errors"][0]["column"]) == (2, 23)
+    assert "line 2, column 23" in problem["detail"]
+
+
+@pytest.mark.parametrize(
+    "content_type",
+    ["application/json", "application/json; charset=utf-8", "application/x-www-form-urlencoded",
+     "text/plain;charset=UTF-8", "application/vnd.course+json", "", "nonsense"],
+)  # fmt: skip
+def test_json_is_read_under_any_content_type(client: httpx.Client, content_type: str) -> None:
+    headers = {"Content-Type": content_type} if content_type else {}
+    response = client.post(GRADE, content=b'{"answers": {}}', headers=headers)
+    assert response.status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("content_type", "status"),
+    [
+        ("multipart/form-data; boundary=x", 415),
+        ("application/x-www-form-urlencoded", 415),
+        ("application/problem+json", 400),
+    ],
+)
+def test_what_neither_is_nor_claims_to_be_json_is_a_415(
+    client: httpx.Client, content_type: str, status: int
+) -> None:
+    headers = {"Content-Type": content_type}
+    assert client.post(GRADE, content=b"answers=1", headers=headers).status_code == status
+
+
+def test_a_byte_order_mark_is_no_mistake(client: httpx.Client) -> None:
+    assert client.post(GRADE, content='\ufeff{"answers": {}}'.encode()).status_code == 200
+
+
+def test_control_characters_in_names_come_back_escaped(client: httpx.Client) -> None:
+    content = b'{"answers": {"\\ud800\\u0000\\u001b[31m": 1}}'
+    response = client.post(GRADE, content=content)
+    assert response.status_code == 422
+    assert response.content.isascii()
+    assert b"\x1b" not in response.content

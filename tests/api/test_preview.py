@@ -1,0 +1,76 @@
+from typing import Any
+
+import httpx
+import pytest
+
+
+def preview(client: httpx.Client, **body: Any) -> dict[str, Any]:
+    response = client.post("/v1/preview", json=body)
+    assert response.status_code == 200, response.text
+    result: dict[str, Any] = response.json()
+    return result
+
+
+def test_a_text_comes_back_as_it_is_read(client: httpx.Client) -> None:
+    shown = preview(client, text="l1 c12", exercise="planar-rrr", part="pose")
+    assert shown["ok"] is True
+    assert shown["symbols"] == ["l1", "q1", "q2"]
+    assert shown["text"].replace(" ", "") == "l1*cos(q1+q2)"
+    assert "\\cos" in shown["latex"]
+    assert shown["mathml"].startswith("<math")
+    assert "error" not in shown
+
+
+def test_a_text_that_cannot_be_read_says_where_and_what_was_meant(client: httpx.Client) -> None:
+    shown = preview(client, text="l1 + ", exercise="planar-rrr")
+    assert set(shown) == {"ok", "error"}
+    assert shown["ok"] is False
+    error = shown["error"]
+    assert set(error) == {"code", "message", "span", "suggestion"}
+    assert "l1 + "[slice(*error["span"])].strip() == "+"
+    assert error["suggestion"] == "l1"
+
+
+def test_without_an_exercise_the_usual_letters_are_known(client: httpx.Client) -> None:
+    shown = preview(client, text="a1 cos(q1) + d9 s9 + l2 sin(alpha3)")
+    assert shown["symbols"] == ["a1", "alpha3", "d9", "l2", "theta1", "theta9"]
+    assert preview(client, text="zz1")["ok"] is False
+
+
+def test_the_unit_decides_what_a_bare_number_is(client: httpx.Client) -> None:
+    as_angle = preview(client, text="90", angle_unit="degrees", quantity="angle")
+    as_length = preview(client, text="90", angle_unit="degrees", quantity="length")
+    assert as_angle["text"] == "90deg"
+    assert as_length["text"] == "90"
+
+
+@pytest.mark.parametrize("text", ["", " ", "x" * 100_000, "(" * 10_000, "\0", "1e999", "\u202e"])
+def test_every_text_gets_an_answer(client: httpx.Client, text: str) -> None:
+    assert preview(client, text=text)["ok"] is False
+
+
+def test_a_lone_surrogate_gets_an_answer(client: httpx.Client) -> None:
+    response = client.post("/v1/preview", content=b'{"text": "\\udc00"}')
+    assert response.status_code == 200
+    assert response.json()["ok"] is False
+
+
+@pytest.mark.parametrize(
+    ("body", "pointer", "hint"),
+    [
+        ({"text": "1", "exercise": "planar-rrrr"}, "#/exercise", "'planar-rrr'"),
+        ({"text": "1", "exercise": "planar-rrr", "part": "tabel"}, "#/part", "table, pose"),
+        ({"text": "1", "part": "table"}, "#/part", "exercise"),
+        ({"text": 1}, "#/text", "string"),
+        ({"text": "1", "quantity": "mass"}, "#/quantity", "'angle'"),
+        ({}, "#/text", "missing"),
+    ],
+)
+def test_a_wrong_request_is_a_422_that_points_there(
+    client: httpx.Client, body: object, pointer: str, hint: str
+) -> None:
+    response = client.post("/v1/preview", json=body)
+    assert response.status_code == 422
+    [error] = response.json()["errors"]
+    assert error["pointer"] == pointer
+    assert hint in error["detail"]

@@ -1,0 +1,55 @@
+"""What the README and the page on frame choice show is what a newcomer gets."""
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+ROOT = Path(__file__).parents[2]
+CURL = re.compile(r"^\$ curl -s http://127\.0\.0\.1:8000(\S+) -d @(\S+)$", re.MULTILINE)
+
+
+def json_blocks(page: str) -> list[dict[str, Any]]:
+    text = (ROOT / page).read_text(encoding="utf-8")
+    return [json.loads(block) for block in re.findall(r"```json\n(.*?)```", text, re.DOTALL)]
+
+
+def test_the_readme_s_curl_gets_the_answer_that_it_prints(client: httpx.Client) -> None:
+    ((url, file),) = CURL.findall((ROOT / "README.md").read_text(encoding="utf-8"))
+    (printed,) = json_blocks("README.md")
+    # As curl sends it: a form's content type, whatever the body is.
+    answered = client.post(
+        url,
+        content=(ROOT / file).read_bytes(),
+        headers={"Content-Type": "application/x-www-form-urlencoded"},
+    )
+    assert answered.status_code == 200
+    assert answered.json() == {**printed, "version": answered.json()["version"]}
+
+
+def test_the_worked_example_of_frame_choice_gets_full_marks(client: httpx.Client) -> None:
+    (submission,) = json_blocks("docs/frame-choice.md")
+    report = client.post("/v1/exercises/stanford-arm/grade", json=submission).json()
+    table = report["parts"][0]
+    assert table["points"] == table["max_points"]
+    remarks = [message["message"] for message in table["feedback"]]
+    assert remarks == ["You turned z2 over; that is a valid choice."]
+    forgot = {**submission["answers"]["table"]["rows"][2], "d": "d3"}
+    submission["answers"]["table"]["rows"][2] = forgot
+    report = client.post("/v1/exercises/stanford-arm/grade", json=submission).json()
+    wrong = [
+        (row["label"], cell["label"], [message["code"] for message in cell["feedback"]])
+        for row in report["parts"][0]["rows"]
+        for cell in row["cells"]
+        if cell["verdict"] != "correct"
+    ]
+    assert wrong == [("3", "d", ["joint_variable_sign"])]
+
+
+def test_every_link_of_the_pages_leads_somewhere() -> None:
+    for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")):
+        for link in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8")):
+            if "://" not in link:
+                assert (page.parent / link).exists(), f"{page.name}: {link}"

@@ -1,0 +1,116 @@
+"""The real process: `python -m service serve` on a free port."""
+
+import json
+import os
+import re
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+
+ROOT = Path(__file__).parents[2]
+GRADE = "/v1/exercises/planar-rrr/grade"
+
+
+@pytest.fixture(scope="module")
+def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
+    log = tmp_path_factory.mktemp("server") / "log"
+    command = [sys.executable, "-m", "service", "serve", "--port", "0"]
+    with (
+        log.open("wb") as output,
+        subprocess.Popen(
+            command, cwd=ROOT, stdout=output, stderr=output, env=os.environ | {"NO_COLOR": "1"}
+        ) as process,
+    ):
+        try:
+            yield announced_port(process, log)
+        finally:
+            process.terminate()
+            process.wait(timeout=20)
+    assert "Traceback" not in log.read_text(encoding="utf-8")
+
+
+def announced_port(process: subprocess.Popen[bytes], log: Path) -> int:
+    """Waits until the server says where it listens; the test's own timeout bounds that."""
+    while True:
+        text = log.read_text(encoding="utf-8")
+        if found := re.search(r"running on http://127\.0\.0\.1:(\d+)", text):
+            return int(found[1])
+        try:
+            process.wait(timeout=0.02)
+        except subprocess.TimeoutExpired:
+            continue
+        raise AssertionError(f"the server has ended:\n{text}")
+
+
+def test_it_grades_and_does_not_name_its_server(port: int) -> None:
+    response = httpx.post(f"http://127.0.0.1:{port}{GRADE}", json={"answers": {}}, trust_env=False)
+    assert response.status_code == 200
+    assert response.json()["exercise"] == "planar-rrr"
+    assert "server" not in response.headers
+    assert response.headers["x-content-type-options"] == "nosniff"
+
+
+def test_head_has_no_body_on_the_wire(port: int) -> None:
+    url = f"http://127.0.0.1:{port}/v1/exercises"
+    with httpx.Client(trust_env=False) as client:
+        length = client.head(url).headers["content-length"]
+        assert int(length) == len(client.get(url).content)
+
+
+@pytest.mark.parametrize("framing", [b"Content-Length: 20000000", b"Transfer-Encoding: chunked"])
+@pytest.mark.parametrize("path", [GRADE, "/v1/preview"])
+def test_twenty_megabytes_are_refused_while_they_are_still_coming(
+    port: int, path: str, framing: bytes
+) -> None:
+    chunked = b"chunked" in framing
+    piece = b" " * 65536
+    if chunked:
+        piece = b"10000\r\n" + piece + b"\r\n"
+    with socket.create_connection(("127.0.0.1", port), timeout=20) as connection:
+        head = f"POST {path} HTTP/1.1\r\nHost: x\r\n".encode() + framing + b"\r\n\r\n"
+        connection.sendall(head)
+        # Five pieces are over the limit; the rest of the 20 MB is never sent.
+        for _ in range(5 if chunked else 1):
+            connection.sendall(piece)
+        answer = b""
+        while received := receive(connection):
+            answer += received
+    head, _, body = answer.partition(b"\r\n\r\n")
+    assert head.startswith(b"HTTP/1.1 413 ")
+    assert json.loads(body)["status"] == 413
+
+
+def receive(connection: socket.socket) -> bytes:
+    """What has come, or nothing where the server has hung up."""
+    try:
+        return connection.recv(65536)
+    except ConnectionResetError:
+        return b""
+
+
+def test_a_bad_exercise_file_refuses_the_start(tmp_path: Path) -> None:
+    (tmp_path / "broken.toml").write_text('title = "x"\n', encoding="utf-8")
+    environment = os.environ | {"DH_GRADER_EXERCISES_DIR": str(tmp_path)}
+    result = subprocess.run(
+        [sys.executable, "-m", "service", "serve", "--port", "0"],
+        cwd=ROOT, env=environment, capture_output=True, text=True, timeout=30, check=False,
+    )  # fmt: skip
+    assert result.returncode == 2
+    assert "broken.toml: source: Field required" in result.stderr
+    assert "Traceback" not in result.stderr
+
+
+def test_so_does_it_under_a_server_of_ones_own(tmp_path: Path) -> None:
+    environment = os.environ | {"DH_GRADER_EXERCISES_DIR": str(tmp_path)}
+    result = subprocess.run(
+        [sys.executable, "-m", "uvicorn", "service.app:app", "--port", "0"],
+        cwd=ROOT, env=environment, capture_output=True, text=True, timeout=30, check=False,
+    )  # fmt: skip
+    assert result.returncode != 0
+    assert "holds no exercise file" in result.stderr
+    assert "Traceback" not in result.stderr

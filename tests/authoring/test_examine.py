@@ -1,0 +1,288 @@
+"""Each thing that an author is told, and nothing of a file that is in order."""
+
+from collections.abc import Callable, Mapping
+
+import pytest
+
+from service.authoring import Level, Remark, examine
+from service.catalogue import Exercise, shipped_folder
+
+Make = Callable[[str], Exercise]
+
+HEAD = """
+title = "An arm"
+source = "made for this test"
+statement = "Two joints."
+"""
+ROBOT = """
+[robot]
+structure = "RP"
+convention = "standard"
+joints = ["theta1", "d2"]
+table = [["0", "90deg", "a1", "theta1"], ["0", "0", "d2", "0"]]
+[symbols]
+a1 = { kind = "length", range = [0.3, 0.9], description = "a length" }
+d2 = { kind = "length", range = [0.2, 0.8], description = "joint 2" }
+"""
+POSE = """
+[[parts]]
+id = "pose"
+kind = "transform"
+title = "Pose"
+points = 4
+"""
+RIGHT_ROWS = '[["c1", 0, "s1", "d2 s1"], ["s1", 0, "-c1", "-d2 c1"], [0, 1, 0, "a1"], [0, 0, 0, 1]]'
+WRONG_ROWS = RIGHT_ROWS.replace('"a1"', '"-a1"')
+CHECKS = f"""
+[[checks]]
+title = "The pose"
+kind = "right"
+answers.pose = {RIGHT_ROWS}
+[[checks]]
+title = "With q2"
+kind = "equivalent"
+answers.pose = {RIGHT_ROWS.replace("d2", "q2")}
+[[checks]]
+title = "Wrong height"
+kind = "wrong"
+answers.pose = {WRONG_ROWS}
+expect.pose = {{ points = 3.75, verdict = "partial", codes = ["sign"] }}
+[[checks]]
+title = "Nothing"
+kind = "wrong"
+answers.pose = "("
+expect.pose = {{ points = 0, verdict = "unreadable" }}
+"""
+GOOD = HEAD + ROBOT + POSE + CHECKS
+
+
+def told(make: Make, text: str, *changes: tuple[str, str]) -> list[Remark]:
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    return examine(make(text))
+
+
+def only(remarks: list[Remark], level: Level) -> Remark:
+    [remark] = remarks
+    assert remark.level is level
+    return remark
+
+
+def test_of_a_file_in_order_nothing_is_said(make_exercise: Make) -> None:
+    assert told(make_exercise, GOOD) == []
+
+
+@pytest.mark.parametrize("exercise_id", [file.stem for file in shipped_folder().glob("*.toml")])
+def test_the_shipped_exercises_are_in_order(
+    exercise_id: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    remarks = examine(catalogue[exercise_id])
+    assert [each for each in remarks if each.level is Level.FAILED] == []
+    # The letter l has stood in this exercise, and in its students' notes, from the beginning.
+    known = {("dh-conditions", "symbols.l")}
+    assert {(exercise_id, remark.field) for remark in remarks} <= known
+
+
+# What is changed, the check that fails, and what is said of it.
+FAILURES: dict[str, tuple[tuple[str, str], int, str]] = {
+    "a right answer that is wrong": ((RIGHT_ROWS, WRONG_ROWS), 0, "should get full marks; it got"),
+    "an equivalent answer that is wrong": (('"q2 s1"', '"-q2 s1"'), 1, "should get full marks"),
+    "a wrong answer that is right": ((WRONG_ROWS, RIGHT_ROWS), 2, "should lose points"),
+    "other points": (
+        ("points = 3.75", "points = 3"),
+        2,
+        "should get 3 points; it got partial, 3.75",
+    ),
+    "another verdict": (('"partial"', '"incorrect"'), 2, "should be incorrect; it got partial"),
+    "another code": (('["sign"]', '["sign", "half_turn"]'), 2, "told half_turn, but was told"),
+    "a code where none is": (
+        ('points = 0, verdict = "unreadable"', 'codes = ["twist"]'),
+        3,
+        "should be told twist, but was told the codes",
+    ),
+    "follow-through": (
+        ('verdict = "unreadable"', "follow_through = true"),
+        3,
+        "should count as following",
+    ),
+    "degrees": (
+        ('kind = "equivalent"', 'kind = "equivalent"\nangle_unit = "degrees"'),
+        1,
+        "",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FAILURES)
+def test_a_check_that_fails(name: str, make_exercise: Make) -> None:
+    change, place, text = FAILURES[name]
+    if name == "degrees":
+        change = ('"s1", "q2 s1"]', '"sin(theta1 + 2 pi - 360)", "q2 s1"]')
+        assert told(make_exercise, GOOD, change)
+        degrees = ('title = "With q2"', 'title = "With q2"\nangle_unit = "degrees"')
+        assert told(make_exercise, GOOD, change, degrees) == []
+        return
+    remarks = told(make_exercise, GOOD, change)
+    failures = [each for each in remarks if each.level is Level.FAILED]
+    assert {each.field for each in failures} == {f"checks[{place}]"}
+    assert any(text in each.text for each in failures), failures
+
+
+def test_a_model_answer_that_cannot_be_handed_in(make_exercise: Make) -> None:
+    """The pose of ten joints on ten skew axes is longer than what is read."""
+    rows = ", ".join(f'["a1", "90deg", "a1", "q{i}"]' for i in range(1, 11))
+    remarks = told(make_exercise, HEAD + robot("R" * 10, f"[{rows}]") + POSE)
+    [remark] = [each for each in remarks if each.level is Level.FAILED]
+    assert remark.field == "parts[0]"
+    assert "the right answer to pose has an entry of more than the 500 characters" in remark.text
+
+
+@pytest.mark.parametrize(
+    ("dropped", "said"),
+    [
+        (range(4), "0 right, 0 equivalent, 0 wrong; write 1 right, 1 equivalent, 2 wrong"),
+        ([0], "0 right, 1 equivalent, 2 wrong"),
+        ([1], "1 right, 0 equivalent, 2 wrong"),
+        ([3], "1 right, 1 equivalent, 1 wrong"),
+    ],
+)
+def test_too_few_checks(dropped: list[int], said: str, make_exercise: Make) -> None:
+    checks = CHECKS.split("[[checks]]")[1:]
+    kept = ["[[checks]]" + each for i, each in enumerate(checks) if i not in dropped]
+    remarks = told(make_exercise, HEAD + ROBOT + POSE + "".join(kept))
+    remark = only(remarks, Level.WARNING)
+    assert remark.field == "checks"
+    assert remark.text.startswith(said)
+
+
+def named(name: str) -> tuple[tuple[str, str], ...]:
+    """The symbol a1 by another name, in a table and a pose without shorthand."""
+    return (
+        ('"a1", "theta1"', f'"{name}", "theta1"'),
+        ("a1 = {", f"{name} = {{"),
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("e", "Euler's number"),
+        ("i", "imaginary"),
+        ("j", "imaginary"),
+        ("l", "the digit 1"),
+        ("O", "the digit 0"),
+        ("c1", "takes the place of the shorthand c1 for a cosine"),
+        ("S1", "takes the place of the shorthand S1 for a sine"),
+        ("q1", "is also what students call theta1"),
+        ("q2", "is also what students call d2"),
+        ("D2", "looks like d2"),
+    ],
+)
+def test_a_name_that_is_taken_for_something_else(name: str, said: str, make_exercise: Make) -> None:
+    remarks = told(make_exercise, HEAD + ROBOT + POSE, *named(name))
+    found = [each for each in remarks if each.field.startswith("symbols")]
+    assert any(said in only([each], Level.WARNING).text for each in found), remarks
+
+
+@pytest.mark.parametrize("name", ["c3", "theta2", "d1", "L", "width", "s"])
+def test_a_name_that_is_not(name: str, make_exercise: Make) -> None:
+    """No shorthand without a joint 3; θ2 where joint 2 slides, and d1 where joint 1 turns."""
+    remarks = told(make_exercise, HEAD + ROBOT + POSE, *named(name))
+    expected = {"symbols.s"} if name == "s" else set()
+    assert {each.field for each in remarks if each.field.startswith("symbols")} == expected
+
+
+def test_a_symbol_that_is_never_used(make_exercise: Make) -> None:
+    unused = ("[symbols]", '[symbols]\nk = { kind = "number", description = "a number" }')
+    remark = only(told(make_exercise, GOOD, unused), Level.WARNING)
+    assert remark.field == "symbols.k"
+    assert "is in no formula" in remark.text
+
+
+@pytest.mark.parametrize(
+    ("limits", "said"),
+    [
+        ("[-0.3, 0.9]", "holds 0"),
+        ("[0, 0.9]", "holds 0"),
+        ("[0.9, 0.901]", "so narrow that the number 0.9"),
+        ("[0.0005, 0.9]", "goes from 0.0005 to 0.9"),
+        ("[300, 2000]", "reaches 0.8 where a1 reaches 2000"),
+    ],
+)
+def test_a_range_that_hides_mistakes(limits: str, said: str, make_exercise: Make) -> None:
+    remark = only(told(make_exercise, GOOD, ("[0.3, 0.9]", limits)), Level.WARNING)
+    assert said in remark.text
+
+
+def test_a_sliding_joint_may_pass_zero(make_exercise: Make) -> None:
+    assert told(make_exercise, GOOD, ("[0.2, 0.8]", "[-0.4, 0.4]")) == []
+
+
+EXPECTED = 'expected = ["d2*sin(theta1)", "-d2*cos(theta1)", "a1"]'
+
+
+def position(part_id: str, more: str = "") -> str:
+    return f'\n[[parts]]\nid = "{part_id}"\nkind = "position"\ntitle = "Tip"\n{more}\n'
+
+
+@pytest.mark.parametrize("more", ["", EXPECTED, 'from = 0\nto = "tool"'])
+def test_two_parts_with_one_answer(more: str, make_exercise: Make) -> None:
+    text = HEAD + ROBOT + POSE + position("tip") + position("again", more) + CHECKS
+    remark = only(told(make_exercise, text), Level.WARNING)
+    assert remark.field == "parts[2]"
+    assert "again has the same answer as tip" in remark.text
+
+
+@pytest.mark.parametrize(
+    "more", ["to = 1", "home = true", 'coordinates = "xy"', 'from = "tool"\nto = "base"']
+)
+def test_two_parts_with_two_answers(more: str, make_exercise: Make) -> None:
+    text = HEAD + ROBOT + POSE + position("tip") + position("other", more) + CHECKS
+    assert told(make_exercise, text) == []
+
+
+def test_transforms_without_a_row_are_two_tasks(make_exercise: Make) -> None:
+    row = '\n[[parts]]\nid = "{}"\nkind = "dh_row"\ntitle = "Row"\ntransform = [{}, [0, 0, 0, 1]]\n'
+    one = '[0, 0, 1, "a1"], [0, 1, 0, 0], [-1, 0, 0, 0]'
+    other = '[1, 0, 0, 0], [0, 0, -1, "a1"], [0, 1, 0, 0]'
+    both = HEAD + ROBOT + POSE + row.format("one", one) + row.format("two", other) + CHECKS
+    assert told(make_exercise, both) == []
+    twice = HEAD + ROBOT + POSE + row.format("one", one) + row.format("two", one) + CHECKS
+    assert only(told(make_exercise, twice), Level.WARNING).field == "parts[2]"
+
+
+LOST: dict[str, tuple[str, str, str]] = {
+    "one line": ("RR", '[["0", "0", "a1", "q1"], ["a1", "0", "0", "q2"]]', "turn about one line"),
+    "one direction": ("PP", '[["0", "0", "q1", "0"], ["a1", "0", "q2", "0"]]', "slide in one"),
+    "four in a plane": (
+        "RRRR",
+        str([["a1", "0", "0", f"q{i}"] for i in range(1, 5)]),
+        "in 3 ways only",
+    ),
+}
+
+
+def robot(structure: str, table: str) -> str:
+    joints = [f"q{i + 1}" for i in range(len(structure))]
+    return f"""
+[robot]
+structure = "{structure}"
+convention = "standard"
+joints = {joints}
+table = {table}
+[symbols]
+a1 = {{ kind = "length", range = [0.3, 0.9], description = "a length" }}
+"""
+
+
+@pytest.mark.parametrize("name", LOST)
+def test_a_reference_that_has_lost_a_freedom(name: str, make_exercise: Make) -> None:
+    structure, table, said = LOST[name]
+    remarks = told(make_exercise, HEAD + robot(structure, table) + POSE)
+    [remark] = [each for each in remarks if each.field == "robot"]
+    assert said in only([remark], Level.WARNING).text
+
+
+def test_seven_joints_may_well_move_in_six_ways(catalogue: Mapping[str, Exercise]) -> None:
+    assert not [each for each in examine(catalogue["baxter-left-arm"]) if each.field == "robot"]

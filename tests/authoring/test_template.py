@@ -1,0 +1,29 @@
+from pathlib import Path
+
+import pytest
+
+from service.authoring import UnusableIdError, examine, template
+from service.catalogue import load_exercise
+
+
+def test_a_new_file_is_in_order_as_it_is(tmp_path: Path) -> None:
+    file = tmp_path / "elbow-arm.toml"
+    file.write_text(template("elbow-arm"), encoding="utf-8")
+    exercise = load_exercise(file)
+    assert (exercise.id, exercise.title) == ("elbow-arm", "Elbow arm")
+    assert examine(exercise) == []
+
+
+def test_it_explains_itself() -> None:
+    lines = template("arm").splitlines()
+    assert sum(line.startswith("#") for line in lines) >= 20
+    assert max(map(len, lines)) <= 110
+
+
+@pytest.mark.parametrize(
+    "exercise_id",
+    ["", "Arm", "2arm", "my arm", "../arm", "a/b", "arm.toml", "arm-", "é", "a" * 61, "arm\n"],
+)
+def test_what_cannot_be_an_id(exercise_id: str) -> None:
+    with pytest.raises(UnusableIdError, match="small letters"):
+        template(exercise_id)

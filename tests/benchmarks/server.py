@@ -1,0 +1,129 @@
+"""Graded POSTs against trivial ones, on one server in one run."""
+
+import asyncio
+import contextlib
+import json
+import os
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+
+from tests.benchmarks.answers import T06, distinct, one_student_s_table, table
+
+CONNECTIONS = 8
+SECONDS = 3.0
+GRADE = "/v1/exercises/stanford-arm/grade"
+TRIVIAL = "/trivial"
+
+
+def tables(i: int) -> bytes:
+    """A student's table, spelled in a way of its own; one in three is wrong somewhere."""
+    return json.dumps({"answers": {"table": table(one_student_s_table(i))}}).encode()
+
+
+def tables_and_poses(i: int) -> bytes:
+    """A table, and a pose in which every entry is a text that nobody has written before."""
+    answers = {"table": table(one_student_s_table(i)), "pose": distinct(T06, i)}
+    return json.dumps({"answers": answers}).encode()
+
+
+BODIES: dict[str, Callable[[int], bytes]] = {
+    "tables": tables,
+    "tables and new poses": tables_and_poses,
+}
+
+
+def request(path: str, body: bytes) -> bytes:
+    """One POST as it goes over the wire."""
+    head = (
+        f"POST {path} HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+        f"Content-Length: {len(body)}\r\n\r\n"
+    )
+    return head.encode() + body
+
+
+@contextlib.contextmanager
+def running_server() -> Iterator[int]:
+    """The service with one trivial route more, in a process of its own; yields the port."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    command = [sys.executable, "-m", "uvicorn", "tests.benchmarks.app:app", "--port", str(port)]
+    quiet = ["--log-level", "warning", "--no-access-log"]
+    with subprocess.Popen([*command, *quiet], env=os.environ) as process:
+        try:
+            _wait_for(port)
+            yield port
+        finally:
+            process.terminate()
+
+
+def _wait_for(port: int) -> None:
+    for _ in range(200):
+        with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), 1):
+            return
+        time.sleep(0.05)
+    raise RuntimeError("the server did not start")
+
+
+async def _post_all(port: int, requests: list[bytes], deadline: float) -> int:
+    reader, writer = await asyncio.open_connection("127.0.0.1", port)
+    done = 0
+    for message in requests:
+        if time.perf_counter() > deadline:
+            break
+        writer.write(message)
+        head = await reader.readuntil(b"\r\n\r\n")
+        if not head.startswith(b"HTTP/1.1 200"):
+            raise RuntimeError(head.decode())
+        length = int(head.lower().split(b"content-length:")[1].split(b"\r\n")[0])
+        await reader.readexactly(length)
+        done += 1
+    writer.close()
+    return done
+
+
+async def _per_second(port: int, path: str, messages: list[bytes]) -> float:
+    shares = [
+        [request(path, body) for body in messages[i::CONNECTIONS]] for i in range(CONNECTIONS)
+    ]
+    start = time.perf_counter()
+    counts = await asyncio.gather(*(_post_all(port, s, start + SECONDS) for s in shares))
+    return sum(counts) / (time.perf_counter() - start)
+
+
+def posts_per_second(body: Callable[[int], bytes]) -> dict[str, float]:
+    """Trivial and graded POSTs each second, taken in turn; every graded body is different."""
+    messages = [body(i) for i in range(12_000)]
+    with running_server() as port:
+        asyncio.run(_per_second(port, GRADE, messages[:100]))
+        asyncio.run(_per_second(port, TRIVIAL, messages[:100]))
+        rounds = [
+            (
+                asyncio.run(_per_second(port, TRIVIAL, messages)),
+                asyncio.run(_per_second(port, GRADE, messages[100 + 3000 * i : 3100 + 3000 * i])),
+            )
+            for i in range(3)
+        ]
+    trivial, graded = (sorted(values)[1] for values in zip(*rounds, strict=True))
+    return {"trivial": trivial, "graded": graded}
+
+
+def first_answer_seconds() -> float:
+    """From the start of the process to the first graded answer."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    start = time.perf_counter()
+    command = [sys.executable, "-m", "service", "serve", "--port", str(port)]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+        try:
+            _wait_for(port)
+            asyncio.run(
+                _post_all(port, [request(GRADE, tables_and_poses(1))], time.perf_counter() + 10)
+            )
+            return time.perf_counter() - start
+        finally:
+            process.terminate()

@@ -1,0 +1,15 @@
+from collections.abc import Callable
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from service.cli.program import program
+
+Run = Callable[..., Result]
+
+
+@pytest.fixture
+def run() -> Run:
+    """Runs the command line in this process; output is what a pipe would get."""
+    runner = CliRunner()
+    return lambda *arguments: runner.invoke(program, [str(argument) for argument in arguments])

@@ -1,0 +1,130 @@
+"""`dh-grader exercises new` and `check`: from nothing to an exercise in a course's own CI."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer.testing import Result
+
+Run = Callable[..., Result]
+
+
+@pytest.fixture
+def arm(run: Run, tmp_path: Path) -> Path:
+    run("exercises", "new", "arm", "--output", tmp_path)
+    return tmp_path / "arm.toml"
+
+
+def changed(file: Path, *changes: tuple[str, str]) -> Path:
+    text = file.read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    file.write_text(text, encoding="utf-8")
+    return file
+
+
+def test_a_new_file_passes_as_it_is(run: Run, tmp_path: Path) -> None:
+    folder = tmp_path / "course" / "exercises"
+    made = run("exercises", "new", "elbow-arm", "--output", folder)
+    assert made.exit_code == 0
+    assert made.stdout == (
+        f"{folder}/elbow-arm.toml is written. Edit it, then: "
+        f"dh-grader exercises check {folder}/elbow-arm.toml\n"
+    )
+    result = run("exercises", "check", "--strict", folder)
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert result.stdout == "elbow-arm: ok, 2 parts, 4 checks\n"
+
+
+def test_a_file_that_is_there_stays(run: Run, arm: Path) -> None:
+    arm.write_text("mine", encoding="utf-8")
+    result = run("exercises", "new", "arm", "--output", arm.parent)
+    assert result.exit_code == 2
+    assert "arm.toml is there already" in result.stderr
+    assert arm.read_text(encoding="utf-8") == "mine"
+
+
+@pytest.mark.parametrize("exercise_id", ["../arm", "My arm", "arm.toml", "/tmp/arm"])
+def test_an_id_that_is_none(run: Run, tmp_path: Path, exercise_id: str) -> None:
+    result = run("exercises", "new", exercise_id, "--output", tmp_path)
+    assert result.exit_code == 2
+    assert "cannot be an exercise's id: write small letters" in result.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_place_that_cannot_be_written(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    result = run("exercises", "new", "arm", "--output", tmp_path / "file")
+    assert result.exit_code == 2
+    assert "is there already" in result.stderr or "cannot be written" in result.stderr
+
+
+def test_a_failed_check_is_exit_code_1_with_its_line(run: Run, arm: Path) -> None:
+    changed(arm, ("points = 3.5", "points = 3"))
+    result = run("exercises", "check", arm)
+    assert result.exit_code == 1
+    first, second = result.stdout.splitlines()
+    assert first == "arm: failed, 2 parts, 4 checks"
+    line = 1 + arm.read_text(encoding="utf-8").splitlines().index(
+        'title = "The twist has the wrong sign"'
+    )
+    assert second.startswith(
+        f"  failed: checks[2] (line {line - 1}): 'The twist has the wrong sign': table should get "
+        f"3 points; it got partial, 3.5 of 4 points: "
+    )
+
+
+def test_a_warning_fails_only_strictly(run: Run, arm: Path) -> None:
+    changed(arm, ("range = [0.3, 0.9]", "range = [-0.3, 0.9]"))
+    result = run("exercises", "check", arm)
+    assert result.exit_code == 0
+    assert "  warning: symbols.d1.range (line " in result.stdout
+    assert run("exercises", "check", "--strict", arm).exit_code == 1
+
+
+def test_a_file_that_cannot_be_used_is_exit_code_2_and_the_others_are_checked(
+    run: Run, arm: Path
+) -> None:
+    run("exercises", "new", "broken", "--output", arm.parent)
+    run("exercises", "new", "wrong", "--output", arm.parent)
+    broken = changed(arm.parent / "broken.toml", ("[0.3, 0.9]", "[0.9, 0.3]"))
+    changed(arm.parent / "wrong.toml", ("points = 3.5", "points = 3"))
+    result = run("exercises", "check", arm.parent)
+    assert result.exit_code == 2
+    line = broken.read_text(encoding="utf-8").split("[0.9, 0.3]")[0].count("\n") + 1
+    said = "must rise from low to high, not from 0.9 to 0.3"
+    assert result.stderr == f"{broken}: symbols.d1.range (line {line}): {said}\n"
+    assert "arm: ok" in result.stdout
+    assert "wrong: failed" in result.stdout
+    assert result.stdout.endswith("3 exercises: 1 ok, 1 failed, 1 cannot be used\n")
+
+
+@pytest.mark.parametrize("place", ["nowhere.toml", "."])
+def test_nothing_to_check(run: Run, tmp_path: Path, place: str) -> None:
+    result = run("exercises", "check", tmp_path / place)
+    assert result.exit_code == 2
+    assert "cannot be read" in result.stderr or "holds no exercise file" in result.stderr
+
+
+def test_several_folders_by_the_environment(
+    run: Run, arm: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", f"{arm.parent}{os.pathsep}shipped")
+    listed = [line.split()[0] for line in run("exercises", "list").stdout.splitlines()]
+    assert {"arm", "scara"} <= set(listed)
+
+
+def test_in_a_pipe_it_is_plain_and_nothing_is_broken_up(arm: Path) -> None:
+    """As a course's CI sees it."""
+    changed(arm, ("range = [0.3, 0.9]", "range = [-0.3, 0.9]"))
+    result = subprocess.run(
+        [sys.executable, "-m", "service", "exercises", "check", str(arm)],
+        capture_output=True, text=True, check=False, env=os.environ | {"CI": "true"},
+    )  # fmt: skip
+    assert result.returncode == 0
+    assert "\x1b" not in result.stdout
+    assert len(result.stdout.splitlines()) == 2

@@ -1,0 +1,132 @@
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer.testing import Result
+
+from service.authoring import template
+from service.catalogue import load_catalogue, shipped_folder
+
+Run = Callable[..., Result]
+
+BROKEN = """
+title = "x"
+source = "x"
+statement = "x"
+parts = [{ id = "pose", kind = "transform", title = "x" }]
+[robot]
+structure = "R"
+convention = "standard"
+joints = ["q1"]
+table = [["0", "l9 +", "0", "q1"]]
+"""
+
+
+def test_the_list_has_a_line_for_each(run: Run) -> None:
+    result = run("exercises", "list")
+    assert result.exit_code == 0
+    for exercise_id in load_catalogue(shipped_folder()):
+        assert [line for line in result.stdout.splitlines() if line.startswith(exercise_id)]
+    assert max(map(len, result.stdout.splitlines())) <= 80
+
+
+def test_show_tells_what_to_do_and_no_answer(run: Run) -> None:
+    result = run("exercises", "show", "stanford-arm")
+    assert result.exit_code == 0
+    for expected in ("Stanford arm", "RRPRRR", "distance from the wrist centre", "table:", "pose:"):
+        assert expected in result.stdout
+    assert "-90deg" not in result.stdout
+    assert max(map(len, result.stdout.splitlines())) <= 80
+
+
+def test_show_solution_shows_each_answer_and_what_leads_to_it(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "arm.toml").write_text(template("arm"), encoding="utf-8")
+    monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", str(tmp_path))
+    result = run("exercises", "show", "arm", "--solution")
+    assert result.exit_code == 0
+    assert result.stdout == SOLUTION
+    latex = run("exercises", "show", "arm", "--latex").stdout
+    assert r"\begin{tabular}{c|cccc}" in latex
+    assert "d_{2} s_{1}" in latex
+
+
+SOLUTION = """\
+table: Denavit-Hartenberg table (dh_table)
+| i | a | alpha | d  | theta  |
+| - | - | ----- | -- | ------ |
+| 1 | 0 | 90deg | d1 | theta1 |
+| 2 | 0 | 0     | d2 | 0      |
+
+pose: Pose of the tool (transform)
+[c1, 0, s1,  d2*s1;
+ s1, 0, -c1, -d2*c1;
+ 0,  1, 0,   d1;
+ 0,  0, 0,   1]
+
+Link transform A1
+[c1, 0, s1,  0;
+ s1, 0, -c1, 0;
+ 0,  1, 0,   d1;
+ 0,  0, 0,   1]
+
+Link transform A2
+[1, 0, 0, 0;
+ 0, 1, 0, 0;
+ 0, 0, 1, d2;
+ 0, 0, 0, 1]
+
+Shorthand
+c1 = cos(theta1)
+s1 = sin(theta1)
+"""
+
+
+def test_where_no_part_asks_for_the_pose_it_is_shown_all_the_same(run: Run) -> None:
+    text = run("exercises", "show", "stanford-arm-drawn", "--solution").stdout
+    assert "Pose of the tool in the base frame\n[c1*(c2*(c4*c5*c6" in text
+
+
+def test_show_of_an_unknown_one_brings_the_nearest(run: Run) -> None:
+    result = run("exercises", "show", "skara")
+    assert result.exit_code == 2
+    assert "Did you mean 'scara'?" in result.stderr
+
+
+def test_check_accepts_a_file_a_folder_and_by_default_the_catalogue(run: Run) -> None:
+    folder = shipped_folder()
+    one = run("exercises", "check", folder / "scara.toml")
+    assert (one.exit_code, one.stdout.split(":")[0]) == (0, "scara")
+    assert re.fullmatch(r"scara: ok, \d parts, \d checks\n", one.stdout)
+    assert run("exercises", "check", folder).stdout == run("exercises", "check").stdout
+
+
+@pytest.mark.parametrize("whole_folder", [True, False])
+def test_check_names_file_field_and_reason(run: Run, tmp_path: Path, whole_folder: bool) -> None:
+    file = tmp_path / "broken.toml"
+    file.write_text(BROKEN, encoding="utf-8")
+    result = run("exercises", "check", tmp_path if whole_folder else file)
+    assert result.exit_code == 2
+    assert f"{file}: robot.table[0].alpha (line 10): " in result.stderr
+    assert result.stdout == ""
+
+
+def test_a_broken_catalogue_stops_every_command(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "broken.toml").write_text(BROKEN, encoding="utf-8")
+    monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", str(tmp_path))
+    for command in (["exercises", "list"], ["grade", "x.json", "--exercise", "a"], ["serve"]):
+        result = run(*command)
+        assert result.exit_code == 2
+        assert "broken.toml: robot.table[0].alpha" in result.stderr
+
+
+def test_an_unusable_setting_stops_every_command(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("DH_GRADER_PORT", "x")
+    for command in (["exercises", "list"], ["serve"]):
+        result = run(*command)
+        assert result.exit_code == 2
+        assert "DH_GRADER_PORT" in result.stderr

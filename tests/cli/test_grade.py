@@ -1,0 +1,215 @@
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import Result
+
+from service.catalogue import load_catalogue, shipped_folder
+from service.formats.json import rendered
+from service.grading import Submission, grade
+
+Run = Callable[..., Result]
+Save = Callable[..., Path]
+
+ROWS = [
+    {"a": 0, "alpha": 0, "d": 0, "theta": "q1"},
+    {"a": "l1", "alpha": 0, "d": 0, "theta": "q2"},
+    {"a": "l2", "alpha": 0, "d": 0, "theta": "q3"},
+    {"a": "l3", "alpha": 0, "d": 0, "theta": 0},
+]
+RIGHT = {"rows": ROWS}
+HALF = {"rows": [*ROWS[:2], *({**row, "a": 7, "theta": 1} for row in ROWS[2:])]}
+TOML = """
+angle_unit = "degrees"
+[answers.table]
+rows = [
+    { a = 0, alpha = 360, d = 0, theta = "q1" },
+    { a = "l1", alpha = 0, d = 0.0, theta = "q2" },
+    { a = "l2", alpha = 0, d = 0, theta = "q3" },
+    { a = "l3", alpha = 0, d = 0, theta = 0 },
+]
+"""
+
+
+@pytest.fixture
+def save(tmp_path: Path) -> Save:
+    def save(content: Any, name: str = "answer.json") -> Path:
+        file = tmp_path / name
+        data = content if isinstance(content, bytes) else json.dumps(content).encode()
+        file.write_bytes(data)
+        return file
+
+    return save
+
+
+def table_only(run: Run, *arguments: object) -> Result:
+    return run("grade", "--exercise", "planar-rrr", "--part", "table", *arguments)
+
+
+def test_a_right_answer_passes(run: Run, save: Save) -> None:
+    result = table_only(run, save({"answers": {"table": RIGHT}}))
+    assert result.exit_code == 0, result.output
+    assert "table (dh_table): correct, 8 / 8 points" in result.stdout
+    assert "Total for planar-rrr: 8 / 8 points, 100 %" in result.stdout
+    assert result.stderr == ""
+
+
+def test_one_below_the_pass_mark_does_not(run: Run, save: Save) -> None:
+    file = save({"answers": {"table": HALF}})
+    result = table_only(run, file)
+    assert result.exit_code == 1
+    assert "partial" in result.stdout
+    assert table_only(run, file, "--pass-mark", "0.1").exit_code == 0
+
+
+def test_the_pass_mark_itself_passes(run: Run, save: Save) -> None:
+    file = save({"answers": {"table": RIGHT}})
+    # 8 of the exercise's 16 points
+    assert run("grade", file, "--exercise", "planar-rrr", "--pass-mark", "0.5").exit_code == 0
+    assert run("grade", file, "--exercise", "planar-rrr", "--pass-mark", "0.51").exit_code == 1
+
+
+def test_a_file_may_hold_the_answer_of_the_part_alone(run: Run, save: Save) -> None:
+    assert table_only(run, save(RIGHT)).exit_code == 0
+    toml = TOML.replace("[answers.table]", "").replace('angle_unit = "degrees"', "")
+    toml = toml.replace("360", "0")
+    assert table_only(run, save(toml.encode(), "a.toml")).exit_code == 0
+
+
+def test_with_a_part_the_others_neither_count_nor_are_graded(run: Run, save: Save) -> None:
+    file = save({"answers": {"table": RIGHT, "pose": "nonsense"}})
+    result = table_only(run, file, "--format", "json")
+    assert [part["part"] for part in json.loads(result.stdout)["parts"]] == ["table"]
+    assert json.loads(result.stdout)["score"] == 1
+
+
+def test_toml_is_read_like_json(run: Run, save: Save) -> None:
+    result = table_only(run, save(TOML.encode(), "answer.TOML"))
+    assert result.exit_code == 0, result.output
+
+
+def test_json_is_exactly_the_report(run: Run, save: Save) -> None:
+    answers = {"table": HALF}
+    result = run(
+        "grade", save({"answers": answers}), "--exercise", "planar-rrr", "--format", "json"
+    )
+    exercise = load_catalogue(shipped_folder())["planar-rrr"]
+    assert json.loads(result.stdout) == json.loads(rendered(grade(exercise, Submission(answers))))
+    assert result.stderr == ""
+    assert "\x1b" not in result.stdout
+
+
+def test_several_files_are_a_list_and_the_worst_decides(run: Run, save: Save) -> None:
+    right, half = save(RIGHT, "right.json"), save(HALF, "half.json")
+    broken = save(b"{", "broken.json")
+    assert table_only(run, right, right).exit_code == 0
+    assert table_only(run, right, half).exit_code == 1
+    result = table_only(run, broken, right, half, "--format", "json")
+    assert result.exit_code == 2
+    entries = json.loads(result.stdout)
+    assert [entry["file"] for entry in entries] == [str(broken), str(right), str(half)]
+    assert "line 1, column 2" in entries[0]["error"]
+    assert [entry["report"]["score"] for entry in entries[1:]] == [1.0, pytest.approx(0.5, abs=0.3)]
+
+
+def test_several_files_are_told_apart_in_text(run: Run, save: Save) -> None:
+    right, half = save(RIGHT, "right.json"), save(HALF, "half.json")
+    output = table_only(run, right, half).stdout
+    assert output.index("right.json") < output.index("100 %") < output.index("half.json")
+
+
+def test_the_feedback_level_comes_from_the_command_or_else_from_the_file(
+    run: Run, save: Save
+) -> None:
+    full = {"answers": {"table": HALF}}
+    short = save(full | {"feedback": "score"}, "short.json")
+    assert "row" not in table_only(run, short).stdout
+    assert "row 3 a" in table_only(run, short, "--feedback", "full").stdout
+    assert "row" not in table_only(run, save(full), "--feedback", "score").stdout
+
+
+@pytest.mark.parametrize("output_format", ["text", "json"])
+def test_the_output_goes_to_a_file(
+    run: Run, save: Save, tmp_path: Path, output_format: str
+) -> None:
+    target = tmp_path / "report"
+    answer = save(HALF)
+    on_screen = table_only(run, answer, "--format", output_format)
+    to_file = table_only(run, answer, "--format", output_format, "--output", target)
+    assert to_file.stdout == ""
+    assert to_file.exit_code == on_screen.exit_code == 1
+    assert target.read_bytes().decode() == on_screen.stdout
+
+
+def test_an_output_that_cannot_be_written_is_said(run: Run, save: Save, tmp_path: Path) -> None:
+    result = table_only(run, save(RIGHT), "--output", tmp_path / "no" / "report")
+    assert result.exit_code == 2
+    assert "cannot be written" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("content", "name", "reason"),
+    [
+        (b'{\n "answers": {]}', "a.json", "line 2, column 14"),
+        (b"", "a.json", "nothing here"),
+        (b"\xff", "a.json", "not UTF-8"),
+        (b"[" * 5000 + b"]" * 5000, "a.json", "deep"),
+        (b" " * 300_000, "a.json", "larger than 256 KiB"),
+        (b'{"answers": {"table": 1, "table": 2}}', "a.json", "twice"),
+        (b'{"rows": []}', "a.json", "--part"),
+        (b'{"answers": []}', "a.json", "answers"),
+        (b'{"answers": {}, "unit": "deg"}', "a.json", "unit"),
+        (b'{"answers": {"tabel": 1}}', "a.json", "table, pose"),
+        (b"answers = \n", "a.toml", "line 1, column 11"),
+        (b"\xff", "a.toml", "not UTF-8"),
+        (b"a = " + b"[" * 5000, "a.toml", ""),
+        (b"a = " + b"[" * 100 + b"]" * 100, "a.toml", "deep"),
+        (b"a = " + b"9" * 5000, "a.toml", "not usable TOML"),
+    ],
+)
+def test_an_unusable_file_says_why(
+    run: Run, save: Save, content: bytes, name: str, reason: str
+) -> None:
+    file = save(content, name)
+    result = run("grade", file, "--exercise", "planar-rrr")
+    assert result.exit_code == 2
+    assert result.stderr.startswith(str(file))
+    assert reason in result.stderr
+    assert result.stdout == ""
+
+
+def test_a_missing_file_and_a_folder_say_why(run: Run, tmp_path: Path) -> None:
+    missing = run("grade", tmp_path / "none.json", "--exercise", "planar-rrr")
+    assert missing.exit_code == 2
+    assert "No such file" in missing.stderr
+    assert run("grade", tmp_path, "--exercise", "planar-rrr").exit_code == 2
+
+
+def test_dates_and_nan_in_toml_cost_only_their_cells(run: Run, save: Save) -> None:
+    toml = TOML.replace("d = 0.0", "d = 2024-01-01").replace('a = "l2"', "a = nan")
+    result = table_only(run, save(toml.encode(), "a.toml"), "--format", "json")
+    assert result.exit_code in (0, 1), result.output
+    rows = json.loads(result.stdout)["parts"][0]["rows"]
+    assert rows[1]["cells"][0]["verdict"] == "correct"
+    assert rows[2]["cells"][0]["verdict"] == "unreadable"
+
+
+def test_an_unknown_exercise_brings_the_nearest(run: Run, save: Save) -> None:
+    result = run("grade", save(RIGHT), "--exercise", "planar_rrr")
+    assert result.exit_code == 2
+    assert "Did you mean 'planar-rrr'?" in result.stderr
+
+
+def test_an_unknown_part_brings_the_nearest(run: Run, save: Save) -> None:
+    result = run("grade", save(RIGHT), "--exercise", "planar-rrr", "--part", "tabel")
+    assert result.exit_code == 2
+    assert "Did you mean 'table'?" in result.stderr
+
+
+@pytest.mark.parametrize(
+    "arguments", [[], ["x.json"], ["x.json", "--exercise", "scara", "--pass-mark", "2"]]
+)
+def test_a_wrong_command_line_is_unusable_input(run: Run, arguments: list[str]) -> None:
+    assert run("grade", *arguments).exit_code == 2

@@ -1,0 +1,93 @@
+"""The pages that are followed from top to bottom, and the helper that follows them."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.docs.walkthrough import Reader, blocks, matches
+
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+@pytest.mark.parametrize(("page", "commands"), [("write-an-exercise.md", 10)])
+def test_a_page_comes_true(
+    page: str, commands: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    reader = Reader(tmp_path, monkeypatch)
+    reader.follow((DOCS / page).read_text(encoding="utf-8"))
+    assert reader.commands >= commands
+
+
+PAGE = """
+```toml arm.toml
+a = 1
+```
+```console exit=2
+$ dh-grader exercises check --help
+…
+$ dh-grader exercises check arm.toml
+{printed}
+```
+"""
+
+
+def follow(page: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (folder / "arm.toml").unlink(missing_ok=True)
+    Reader(folder, monkeypatch).follow(page)
+
+
+def test_a_page_that_is_true(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    page = PAGE.format(printed="…\narm.toml: a (line 1): …not permitted…")
+    follow(page, tmp_path, monkeypatch)
+
+
+@pytest.mark.parametrize(
+    ("page", "reason"),
+    [
+        (PAGE.format(printed=""), "line 5: dh-grader exercises check arm.toml printed"),
+        (PAGE.format(printed="arm.toml: fine"), "line 5: dh-grader exercises check arm.toml"),
+        (PAGE.format(printed="…\narm.toml: a (line 2): …"), "line 5: dh-grader exercises check"),
+        (PAGE.replace(" exit=2", "").format(printed="…"), "exit 2"),
+        ("```console\n$ rm arm.toml\n```\n", "rm is not run here"),
+        ("```console\n```\n", "no command"),
+    ],
+)
+def test_a_page_that_is_not(
+    page: str, reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pytest.raises(AssertionError, match=reason):
+        follow(page, tmp_path, monkeypatch)
+
+
+@pytest.mark.parametrize("page", ["```json\n{a: 1}\n```\n", "```toml\na = \n```\n"])
+def test_json_and_toml_are_read(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(ValueError, match=r"Expecting|Invalid"):
+        follow(page, tmp_path, monkeypatch)
+
+
+def test_a_block_may_take_back_the_one_before(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    words = ("x.toml\na = 1", "x.toml\nb = 2", "x.toml instead\nc = 3")
+    page = "".join(f"```toml {word}\n```\n" for word in words)
+    Reader(tmp_path, monkeypatch).follow(page)
+    assert (tmp_path / "x.toml").read_text(encoding="utf-8").split() == list("a=1c=3")
+    assert [block.line for block in blocks(page)] == [1, 4, 7]
+
+
+@pytest.mark.parametrize(
+    ("expected", "printed", "does"),
+    [
+        ("a\nb", "a\nb\n", True),
+        ("a", "a\nb\n", False),
+        ("a\n…", "a\nb\nc\n", True),
+        ("…\nc", "a\nb\nc\n", True),
+        ("a … c", "a b c\n", True),
+        ("a … c", "a b\nc\n", False),
+        ("", "", True),
+        ("", "a\n", False),
+        ("a.c", "abc\n", False),
+    ],
+)
+def test_dots_stand_for_anything(expected: str, printed: str, does: bool) -> None:
+    assert matches(expected, printed) is does

@@ -1,0 +1,114 @@
+"""Runs a page of docs/ from top to bottom, in an empty folder, as its reader would.
+
+What its code blocks do is said behind the three backticks:
+
+    console           each line `$ dh-grader …` is run, and the lines below it are what it prints
+    console exit=1    the same, where the last command ends with that exit code
+    toml FILE         is added to the end of the file
+    toml FILE instead replaces what the block before has added
+    json FILE         becomes the file
+    toml, json        is only read
+
+In what is printed `…` stands for anything within a line, and alone on a line for any lines.
+`$ export NAME=VALUE` sets a variable for the commands that follow.
+"""
+
+import json
+import re
+import shlex
+import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from service.cli.program import program
+
+_FENCE = re.compile(r"^```(\w+)([^\n]*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+_ANYTHING = "…"
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """One code block: its language, the words behind that, its text, and the line it begins in."""
+
+    language: str
+    words: tuple[str, ...]
+    text: str
+    line: int
+
+
+def blocks(page: str) -> Iterator[Block]:
+    """The code blocks of a page, in order."""
+    for found in _FENCE.finditer(page):
+        line = page.count("\n", 0, found.start()) + 1
+        yield Block(found[1], tuple(found[2].split()), found[3], line)
+
+
+class Reader:
+    """Follows a page in ``folder``, which is the current one of the process."""
+
+    def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        self._folder = folder
+        self._environment = monkeypatch
+        self._before = ""
+        self.commands = 0
+        monkeypatch.chdir(folder)
+
+    def follow(self, page: str) -> None:
+        """Do all that the page says; fails with the block's line where it does not come true."""
+        for block in blocks(page):
+            match block.language:
+                case "console":
+                    self._run(block)
+                case "toml":
+                    self._write_toml(block)
+                case "json":
+                    json.loads(block.text)
+                    for name in block.words:
+                        (self._folder / name).write_text(block.text, encoding="utf-8")
+                case other:
+                    pytest.fail(f"line {block.line}: nothing is known of blocks of {other}")
+
+    def _write_toml(self, block: Block) -> None:
+        if not block.words:
+            tomllib.loads(block.text)
+            return
+        file = self._folder / block.words[0]
+        if "instead" not in block.words:
+            self._before = file.read_text(encoding="utf-8") + "\n" if file.exists() else ""
+        file.write_text(self._before + block.text, encoding="utf-8")
+        tomllib.loads(file.read_text(encoding="utf-8"))
+
+    def _run(self, block: Block) -> None:
+        wanted = next((int(w.removeprefix("exit=")) for w in block.words if "exit=" in w), 0)
+        steps = re.split(r"^\$ ", block.text, flags=re.MULTILINE)[1:]
+        assert steps, f"line {block.line}: no command"
+        for i, step in enumerate(steps):
+            command, _, expected = step.partition("\n")
+            printed, code = self._printed(shlex.split(command), block)
+            assert matches(expected, printed), f"line {block.line}: {command} printed\n{printed}"
+            assert code == (wanted if i == len(steps) - 1 else 0), f"line {block.line}: exit {code}"
+
+    def _printed(self, words: list[str], block: Block) -> tuple[str, int]:
+        self.commands += 1
+        if words[0] == "export":
+            name, _, value = words[1].partition("=")
+            self._environment.setenv(name, value)
+            return "", 0
+        assert words[0] == "dh-grader", f"line {block.line}: {words[0]} is not run here"
+        result = CliRunner().invoke(program, words[1:])
+        return result.output, result.exit_code
+
+
+def matches(expected: str, printed: str) -> bool:
+    """Whether a command printed this, `…` standing for anything."""
+    pattern = ""
+    for line in expected.strip("\n").split("\n"):
+        if line.strip() == _ANYTHING:
+            pattern += r"(?:.*\n)*?"
+        else:
+            pattern += ".*".join(map(re.escape, line.rstrip().split(_ANYTHING))) + r"[ ]*\n"
+    return re.fullmatch(pattern, printed.strip("\n") + "\n") is not None

@@ -1,0 +1,62 @@
+import json
+
+import pytest
+
+from service.formats.json import rendered
+from service.grading import (
+    CellReport,
+    Feedback,
+    PartReport,
+    Report,
+    RowReport,
+    Severity,
+    Verdict,
+)
+
+MESSAGE = Feedback(
+    "sign", Severity.ERROR, "Vorzeichen: −θ₁", "1", None, (0, 2), {"q1": 0.5, "w": "x"}
+)
+CELL = CellReport("a", Verdict.INCORRECT, (MESSAGE,))
+ROW = RowReport("1", Verdict.INCORRECT, 0.0, 1.0, (CELL,))
+PART = PartReport("table", "dh_table", Verdict.INCORRECT, 0.0, 1.0, False, (ROW,))
+REPORT = Report("arm", "v1", True, 0.0, 1.0, 0.0, (PART,))
+
+
+def test_the_report_has_the_shape_of_the_contract_without_empty_fields() -> None:
+    cell = {
+        "label": "a",
+        "verdict": "incorrect",
+        "feedback": [
+            {
+                "code": "sign",
+                "severity": "error",
+                "message": "Vorzeichen: −θ₁",
+                "row": "1",
+                "span": [0, 2],
+                "values": {"q1": 0.5, "w": "x"},
+            }
+        ],
+    }
+    row = {
+        "label": "1", "verdict": "incorrect", "points": 0.0, "max_points": 1.0,
+        "cells": [cell], "feedback": [],
+    }  # fmt: skip
+    part = {
+        "part": "table", "kind": "dh_table", "verdict": "incorrect", "points": 0.0,
+        "max_points": 1.0, "follow_through": False, "rows": [row], "feedback": [],
+    }  # fmt: skip
+    expected = {
+        "exercise": "arm", "version": "v1", "gradable": True, "points": 0.0,
+        "max_points": 1.0, "score": 0.0, "parts": [part],
+    }  # fmt: skip
+    assert json.loads(rendered(REPORT)) == expected
+    assert json.loads(rendered(REPORT, indent=2)) == expected
+    assert b"\n" not in rendered(REPORT)
+
+
+def test_a_value_that_json_does_not_have_is_still_json() -> None:
+    undefined = Feedback("u", Severity.ERROR, "m", values={"yours": float("nan")})
+    part = PartReport("t", "k", Verdict.INCORRECT, 0, 1, False, (), (undefined,))
+    content = rendered(Report("arm", "v1", True, 0, 1, 0, (part,)))
+    assert b"NaN" not in content
+    json.loads(content, parse_constant=pytest.fail)

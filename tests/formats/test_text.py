@@ -1,0 +1,142 @@
+"""The report for a terminal; reports are written by hand, so no grading is involved."""
+
+import io
+
+import pytest
+from rich.console import Console
+
+from service.formats.text import points, visible, write
+from service.grading import (
+    CellReport,
+    Feedback,
+    PartReport,
+    Report,
+    RowReport,
+    Severity,
+    Verdict,
+)
+
+V = Verdict
+WRONG_TWIST = Feedback(
+    "sign", Severity.ERROR, "Wrong sign.", "1", "alpha", None, {"q1": 0.5, "yours": 2.0}
+)
+EMPTY = tuple(Feedback("missing", Severity.ERROR, "Nothing here.", "2", c) for c in ("a", "alpha"))
+ROUNDED = Feedback("rounded", Severity.INFO, "Rounded.", "1", "d")
+
+
+def report(*parts: PartReport, gradable: bool = True) -> Report:
+    return Report("arm", "v1", gradable, 2.5, 8.0, 0.3125, parts)
+
+
+def part(*rows: RowReport, feedback: tuple[Feedback, ...] = ()) -> PartReport:
+    return PartReport("table", "dh_table", V.PARTIAL, 2.5, 4.0, False, rows, feedback)
+
+
+TABLE = part(
+    RowReport(
+        "1", V.PARTIAL, 1.5, 2.0,
+        (
+            CellReport("a", V.CORRECT),
+            CellReport("alpha", V.INCORRECT, (WRONG_TWIST,)),
+            CellReport("d", V.CORRECT, (ROUNDED,)),
+            CellReport("theta", V.UNREADABLE),
+        ),
+    ),
+    RowReport(
+        "2", V.MISSING, 0.0, 2.0,
+        (
+            CellReport("a", V.MISSING, EMPTY[:1]), CellReport("alpha", V.MISSING, EMPTY[1:]),
+            CellReport("d", V.CORRECT), CellReport("theta", V.CORRECT),
+        ),
+    ),
+)  # fmt: skip
+
+
+def text(report: Report, *, width: int = 80, colour: bool = False, encoding: str = "utf-8") -> str:
+    raw = io.BytesIO()
+    stream = io.TextIOWrapper(raw, encoding=encoding, write_through=True)
+    console = Console(
+        file=stream, width=width, force_terminal=colour, no_color=not colour, legacy_windows=False
+    )
+    write(report, console)
+    return raw.getvalue().decode(encoding)
+
+
+def line(page: str, beginning: str) -> str:
+    [found] = [each for each in page.splitlines() if each.strip().startswith(beginning)]
+    return found
+
+
+def test_each_row_is_a_line_of_marks_with_its_points() -> None:
+    page = text(report(TABLE))
+    assert line(page, "table (dh_table)").split() == [
+        "table",
+        "(dh_table):",
+        "partial,",
+        "2.5",
+        "/",
+        "4",
+        "points",
+    ]
+    assert line(page, "row  a").split() == ["row", "a", "alpha", "d", "theta", "points"]
+    assert line(page, "1 ").split() == ["1", "✓", "✗", "✓", "?", "1.5", "/", "2"]
+    assert line(page, "2 ").split() == ["2", "–", "–", "✓", "✓", "0", "/", "2"]
+    assert line(page, "Total").strip() == "Total for arm: 2.5 / 8 points, 31.2 %"
+
+
+def test_messages_stand_beneath_with_their_place_and_counterexample() -> None:
+    page = text(report(TABLE))
+    assert line(page, "✗ row 1 alpha:").strip() == (
+        "✗ row 1 alpha: Wrong sign. (with q1 = 0.5, yours gives 2.0)"
+    )
+    assert line(page, "info row 1 d:").strip() == "info row 1 d: Rounded."
+    assert page.index("2    –") < page.index("Wrong sign.")
+
+
+def test_a_message_said_twice_is_written_once_with_both_places() -> None:
+    assert line(text(report(TABLE)), "– row 2").strip() == "– row 2 a, alpha: Nothing here."
+
+
+def test_matrix_entries_are_called_columns() -> None:
+    entries = tuple(Feedback("x", Severity.ERROR, "Bad.", "3", str(j)) for j in (1, 4))
+    matrix = part(
+        RowReport("3", V.PARTIAL, 0, 1, (CellReport("1", V.INCORRECT, entries),)),
+    )
+    assert "row 3 columns 1, 4: Bad." in text(report(matrix))
+
+
+def test_a_part_that_was_not_handed_in_says_so() -> None:
+    missing = PartReport("pose", "transform", V.MISSING, 0, 4, False, ())
+    page = text(report(missing, gradable=False))
+    assert "pose (transform): missing, 0 / 4 points" in page
+    assert "– Nothing was handed in." in page
+    assert "could be read" in page
+
+
+@pytest.mark.parametrize("width", [40, 80, 200])
+def test_no_line_is_wider_than_the_terminal_or_than_reads_well(width: int) -> None:
+    long = Feedback("x", Severity.ERROR, "A word and another. " * 20, "1", "a")
+    page = text(report(part(*TABLE.rows, feedback=(long,))), width=width)
+    assert max(len(each) for each in page.splitlines()) <= min(width, 100)
+
+
+def test_colour_only_where_it_is_wanted() -> None:
+    assert "\x1b[" not in text(report(TABLE))
+    assert "\x1b[" in text(report(TABLE), colour=True)
+
+
+def test_an_encoding_without_the_marks_gets_plain_ones() -> None:
+    page = text(report(TABLE), encoding="cp1252")
+    assert line(page, "1 ").split() == ["1", "+", "x", "+", "?", "1.5", "/", "2"]
+
+
+def test_student_text_reaches_neither_the_terminal_nor_the_markup() -> None:
+    hostile = Feedback("x", Severity.ERROR, "[red]\x1b[2J\x07[/red] \u202e\r", "1", "a", None)
+    page = text(report(part(*TABLE.rows, feedback=(hostile,))))
+    assert "[red]\ufffd[2J\ufffd[/red] \ufffd\ufffd" in page
+    assert visible("θ₁ + 1") == "θ₁ + 1"
+
+
+def test_points_are_written_short() -> None:
+    assert points(1.5, 2.0) == "1.5 / 2"
+    assert points(10 / 3, 10.0) == "3.33 / 10"

@@ -1,0 +1,117 @@
+"""The matrices have the form that the textbooks print."""
+
+from collections.abc import Mapping
+
+import pytest
+
+from service.catalogue import Exercise
+from service.solutions import Solution, solve
+
+# Robotic Fundamentals (UMFM4X-15-M), Examples 1 to 3; Spong, Hutchinson, Vidyasagar, Robot Modeling
+# and Control, eqs. 3.14 (cylindrical), 3.15 (spherical wrist) and 3.20 to 3.29 (Stanford arm).
+POSES = {
+    "planar-rrr": [
+        ["c123", "-s123", "0", "l1*c1 + l2*c12 + l3*c123"],
+        ["s123", "c123", "0", "l1*s1 + l2*s12 + l3*s123"],
+        ["0", "0", "1", "0"],
+        ["0", "0", "0", "1"],
+    ],
+    "rrrp": [
+        ["cos(q1 + q2 - q3)", "sin(q1 + q2 - q3)", "0", "l2*c1 + l3*c12"],
+        ["sin(q1 + q2 - q3)", "-cos(q1 + q2 - q3)", "0", "l2*s1 + l3*s12"],
+        ["0", "0", "-1", "l1 - l4 - q4"],
+        ["0", "0", "0", "1"],
+    ],
+    "spatial-rrr": [
+        ["c1*c23", "-c1*s23", "s1", "c1*(R + L1*c2 + L2*c23)"],
+        ["s1*c23", "-s1*s23", "-c1", "s1*(R + L1*c2 + L2*c23)"],
+        ["s23", "c23", "0", "L1*s2 + L2*s23"],
+        ["0", "0", "0", "1"],
+    ],
+    "three-link-cylindrical": [
+        ["c1", "0", "-s1", "-d3*s1"],
+        ["s1", "0", "c1", "d3*c1"],
+        ["0", "-1", "0", "d1 + d2"],
+        ["0", "0", "0", "1"],
+    ],
+    "spherical-wrist": [
+        ["c4*c5*c6 - s4*s6", "-c4*c5*s6 - s4*c6", "c4*s5", "d6*c4*s5"],
+        ["c4*s6 + s4*c5*c6", "c4*c6 - s4*c5*s6", "s4*s5", "d6*s4*s5"],
+        ["-s5*c6", "s5*s6", "c5", "d6*c5"],
+        ["0", "0", "0", "1"],
+    ],
+    "planar-rpr-poe": [
+        ["c13", "-s13", "0", "c1*(L1 + theta2) + L2*c13"],
+        ["s13", "c13", "0", "s1*(L1 + theta2) + L2*s13"],
+        ["0", "0", "1", "0"],
+        ["0", "0", "0", "1"],
+    ],
+}
+
+
+@pytest.mark.parametrize("exercise_id", POSES)
+def test_the_pose(exercise_id: str, catalogue: Mapping[str, Exercise]) -> None:
+    pose = solve(catalogue[exercise_id]).pose
+    assert pose is not None
+    assert pose.answer == POSES[exercise_id]
+
+
+@pytest.fixture(scope="module")
+def stanford(catalogue: Mapping[str, Exercise]) -> Solution:
+    return solve(catalogue["stanford-arm"])
+
+
+def test_the_stanford_arm_is_nested_as_the_textbook_nests_it(stanford: Solution) -> None:
+    assert stanford.pose is not None
+    assert isinstance(stanford.pose.answer, list)
+    first = [row[0] for row in stanford.pose.answer]
+    assert first == [
+        "c1*(c2*(c4*c5*c6 - s4*s6) - s2*s5*c6) - s1*(c4*s6 + s4*c5*c6)",
+        "c1*(c4*s6 + s4*c5*c6) + s1*(c2*(c4*c5*c6 - s4*s6) - s2*s5*c6)",
+        "-c2*s5*c6 - s2*(c4*c5*c6 - s4*s6)",
+        "0",
+    ]
+
+
+def test_the_link_transforms_of_the_stanford_arm(stanford: Solution) -> None:
+    """As MEAM 520, More Denavit-Hartenberg, prints A_1 and A_2."""
+    assert list(stanford.links) == ["1", "2", "3", "4", "5", "6"]
+    assert stanford.links["1"].text == (
+        "[c1, 0,  -s1, 0;\n s1, 0,  c1,  0;\n 0,  -1, 0,   0;\n 0,  0,  0,   1]"
+    )
+    assert stanford.links["2"].latex == (
+        "\\begin{bmatrix}\n"
+        "c_{2} & 0 & s_{2} & 0 \\\\\n"
+        "s_{2} & 0 & -c_{2} & 0 \\\\\n"
+        "0 & 1 & 0 & d_{2} \\\\\n"
+        "0 & 0 & 0 & 1\n"
+        "\\end{bmatrix}"
+    )
+
+
+def test_the_table_is_as_the_author_wrote_it(stanford: Solution) -> None:
+    table = stanford.parts[0].shown
+    assert table.text.splitlines()[:4] == [
+        "| i | a | alpha  | d  | theta  |",
+        "| - | - | ------ | -- | ------ |",
+        "| 1 | 0 | -90deg | 0  | theta1 |",
+        "| 2 | 0 | 90deg  | d2 | theta2 |",
+    ]
+    assert r"$2$ & $0$ & $90^{\circ}$ & $d_{2}$ & $\theta_{2}$ \\" in table.latex
+
+
+def test_a_wrist_has_its_joint_angles_for_zyz(catalogue: Mapping[str, Exercise]) -> None:
+    answers = solve(catalogue["spherical-wrist"]).answers
+    assert answers["zyz"] == ["theta4", "theta5", "theta6"]
+
+
+def test_the_roll_pitch_yaw_of_the_spatial_arm_are_not_the_lectures(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    """The lecture prints β = θ2 + θ3, which its own formula does not give."""
+    answers = solve(catalogue["spatial-rrr"]).answers
+    assert answers["rpy"] == ["theta1", "-theta2 - theta3", "pi/2"]
+
+
+def test_the_same_exercise_has_the_same_solution(catalogue: Mapping[str, Exercise]) -> None:
+    assert solve(catalogue["scara"]) == solve(catalogue["scara"])

@@ -1,0 +1,25 @@
+import pytest
+
+from service.catalogue import load_catalogue, shipped_folder
+from service.submissions import UnknownExerciseError, find_exercise, nearest
+
+
+def test_a_known_exercise_is_found() -> None:
+    catalogue = load_catalogue(shipped_folder())
+    assert find_exercise(catalogue, "scara") is catalogue["scara"]
+
+
+@pytest.mark.parametrize(
+    ("mistyped", "meant"),
+    [("Scara", "scara"), ("stanford_arm", "stanford-arm"), ("rrr", "rrrp"), ("xyz", None)],
+)
+def test_an_unknown_one_brings_the_nearest(mistyped: str, meant: str | None) -> None:
+    with pytest.raises(UnknownExerciseError) as caught:
+        find_exercise(load_catalogue(shipped_folder()), mistyped)
+    assert caught.value.suggestion == meant
+    assert (str(meant) in str(caught.value)) == (meant is not None)
+
+
+def test_an_endless_name_is_not_compared_whole() -> None:
+    assert nearest("a" * 10**7, ["scara"]) is None
+    assert len(str(UnknownExerciseError("a" * 10**6, ("scara",)))) < 200

@@ -1,0 +1,79 @@
+import contextlib
+import json
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from service.submissions import MAX_DEPTH, MalformedError, nested_deeper, read_json
+
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False)
+    # Surrogates have their own test.
+    | st.text(st.characters(codec="utf-8")),
+    lambda inner: st.lists(inner) | st.dictionaries(
+        st.text(st.characters(codec="utf-8")), inner
+    ),
+    max_leaves=20,
+)  # fmt: skip
+
+
+@given(JSON, st.booleans())
+def test_what_json_writes_is_read_back(value: object, ascii_only: bool) -> None:
+    assert read_json(json.dumps(value, ensure_ascii=ascii_only).encode()) == value
+
+
+@given(st.binary())
+def test_no_bytes_raise_anything_else(data: bytes) -> None:
+    with contextlib.suppress(MalformedError):
+        read_json(data)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("NaN", "NaN"),
+        ("-Infinity", "-Infinity"),
+        ("1e999", "1e999"),
+        ("9" * 309, "9" * 309),
+        ("9" * 308, int("9" * 308)),
+        ('"\\ud800"', "\ufffd"),
+        ('{"\\udfff": ["a\\ud800b"]}', {"\ufffd": ["a\ufffdb"]}),
+        ('"\\ud83d\\ude00"', "😀"),
+        ('"\\\\ud800"', "\\ud800"),
+    ],
+)
+def test_what_no_number_or_encoding_holds_becomes_text(text: str, value: object) -> None:
+    assert read_json(text.encode()) == value
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("", "nothing here"),
+        ('{"a": 1, "b": {"c": 1, "c": 2}}', 'key "c" stands twice'),
+        ('{"a": 1,}', "line 1, column "),
+        ("[1,\n 2,\n x]", "line 3, column 2"),
+        ('"\\x"', "line 1, column "),
+        ("[" * (MAX_DEPTH + 1) + "]" * (MAX_DEPTH + 1), "deep"),
+        ("[" * 5000 + "]" * 5000, "deep"),
+        ("[" * 100_000 + "]" * 100_000, "deep"),
+    ],
+)
+def test_a_mistake_is_named_with_its_place(text: str, reason: str) -> None:
+    with pytest.raises(MalformedError) as caught:
+        read_json(text.encode())
+    assert reason in str(caught.value)
+
+
+def test_the_depth_is_counted_exactly() -> None:
+    deepest = "[" * MAX_DEPTH + "]" * MAX_DEPTH
+    assert read_json(deepest.encode()) is not None
+    assert not nested_deeper({"a": [{}]}, 3)
+    assert nested_deeper({"a": [{}]}, 2)
+    assert nested_deeper([1], 0)
+    assert not nested_deeper("text", 0)
+
+
+def test_brackets_in_text_are_no_nesting() -> None:
+    assert read_json(json.dumps(["[" * 1000]).encode()) == ["[" * 1000]

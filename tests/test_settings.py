@@ -1,0 +1,71 @@
+import os
+from pathlib import Path
+
+import pytest
+
+from service.catalogue import shipped_folder
+from service.settings import Settings, SettingsError, load_settings
+
+
+@pytest.fixture(autouse=True)
+def _no_settings(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in Settings.model_fields:
+        monkeypatch.delenv(f"DH_GRADER_{name.upper()}", raising=False)
+
+
+def test_the_defaults_listen_here_only_and_let_no_other_page_call() -> None:
+    settings = load_settings()
+    assert (settings.host, settings.port) == ("127.0.0.1", 8000)
+    assert settings.cors_origins == ()
+    assert settings.exercises_dir == (shipped_folder(),)
+
+
+def test_the_environment_decides(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("DH_GRADER_PORT", "0")
+    monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", str(tmp_path))
+    monkeypatch.setenv("DH_GRADER_CORS_ORIGINS", "https://a.example, http://b.example:8080")
+    monkeypatch.setenv("DH_GRADER_LOG_LEVEL", "WARNING")
+    settings = load_settings()
+    assert settings.port == 0
+    assert settings.exercises_dir == (tmp_path,)
+    assert settings.cors_origins == ("https://a.example", "http://b.example:8080")
+    assert settings.log_level == "warning"
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("DH_GRADER_PORT", "http"),
+        ("DH_GRADER_PORT", "70000"),
+        ("DH_GRADER_LOG_LEVEL", "loud"),
+        ("DH_GRADER_CORS_ORIGINS", "course.example"),
+        ("DH_GRADER_CORS_ORIGINS", "https://course.example/page"),
+    ],
+)
+def test_an_unusable_setting_is_named(
+    monkeypatch: pytest.MonkeyPatch, name: str, value: str
+) -> None:
+    monkeypatch.setenv(name, value)
+    with pytest.raises(SettingsError, match=name):
+        load_settings()
+
+
+def test_every_setting_says_what_it_is() -> None:
+    assert all(field.description for field in Settings.model_fields.values())
+
+
+def test_exercises_may_lie_in_several_folders(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", f" {tmp_path} {os.pathsep}shipped{os.pathsep}")
+    assert load_settings().exercises_dir == (tmp_path, shipped_folder())
+    monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", " ")
+    with pytest.raises(SettingsError, match="names no folder"):
+        load_settings()
+
+
+def test_solutions_and_reloading_are_off(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert (load_settings().solutions, load_settings().reload_exercises) == (False, False)
+    monkeypatch.setenv("DH_GRADER_SOLUTIONS", "true")
+    monkeypatch.setenv("DH_GRADER_RELOAD_EXERCISES", "1")
+    assert (load_settings().solutions, load_settings().reload_exercises) == (True, True)
