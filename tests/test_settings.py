@@ -69,3 +69,9 @@ def test_solutions_and_reloading_are_off(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setenv("DH_GRADER_SOLUTIONS", "true")
     monkeypatch.setenv("DH_GRADER_RELOAD_EXERCISES", "1")
     assert (load_settings().solutions, load_settings().reload_exercises) == (True, True)
+
+
+def test_the_readme_names_every_setting() -> None:
+    readme = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
+    missing = [name for name in Settings.model_fields if f"DH_GRADER_{name.upper()}" not in readme]
+    assert not missing
