@@ -32,7 +32,7 @@ from service.catalogue.schema import (
 )
 from service.catalogue.screw_robot import ScrewRobot
 from service.expressions import Expression, Kind, Symbol, Vocabulary, read
-from service.kinematics.chain import COLUMNS
+from service.kinematics.chain import COLUMNS, A, D
 
 QUANTITIES: dict[str, Kind] = {"a": "length", "alpha": "angle", "d": "length", "theta": "angle"}
 DEFAULT_RANGES: dict[Kind, tuple[float, float]] = {
@@ -70,14 +70,19 @@ def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
         reference=reference,
         formulas=formulas,
         parts=tuple(spec.parts),
-        length_scale=_length_scale(variables),
+        length_scale=_length_scale(variables, reference),
         checks=tuple(spec.checks),
     )
 
 
-def _length_scale(variables: tuple[Variable, ...]) -> float:
+def _length_scale(variables: tuple[Variable, ...], reference: Robot | ScrewRobot | None) -> float:
+    """The longest length: of the letters, and of the numbers that the reference's table has."""
     lengths = [max(abs(v.low), abs(v.high)) for v in variables if v.kind == "length"]
-    return float(np.median(lengths)) if lengths else 1.0
+    if isinstance(reference, Robot):
+        nothing = {variable.name: np.zeros(1) for variable in variables}
+        table = np.abs(reference.tables[reference.convention].values(nothing, 1)[:, [A, D]])
+        lengths.extend(table[table > 0].tolist())
+    return float(max(lengths, default=1.0))
 
 
 def _version(spec: ExerciseSpec) -> str:

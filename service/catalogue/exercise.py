@@ -31,7 +31,7 @@ class Exercise:
     """One exercise of the catalogue; ``version`` changes with anything in its file but its checks.
 
     ``reference`` is the robot, None where there is none; ``formulas`` what a part's file says is
-    right, by the part's id. ``length_scale`` is a typical length of it, to measure small
+    right, by the part's id. ``length_scale`` is the longest length of it, to measure small
     differences against.
     """
 

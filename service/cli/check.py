@@ -42,7 +42,7 @@ def command(
     ] = None,
     strict: Annotated[bool, typer.Option("--strict", help="Let warnings fail as well.")] = False,
 ) -> None:
-    """Check exercise files: shape, model answer, the file's own [[checks]], and what looks wrong.
+    """Check exercise files: shape, model answer, the file's own checks, and what looks wrong.
 
     Exit code 0: every file can be used and passes, with warnings or without.
 

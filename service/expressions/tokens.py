@@ -30,7 +30,11 @@ _FUNCTION_POWER: Final = re.compile(r"\s*(?:\^|\*\*)\s*")
 _EXPONENT: Final = re.compile(
     r"([0-9]+)(?![0-9.eE])|\(\s*([0-9]+)\s*\)|\{\s*([0-9]+)\s*\}|\[\s*([0-9]+)\s*\]"
 )
-_MARKER: Final = re.compile(r"\s*(?:\+|\)|,|$)|\s+-\s")
+# Behind a marked joint variable an angle is taken off as often as it is put on: θ1*-π/2, θ1*-90°.
+_ANGLE_TAKEN_OFF: Final = (
+    r"\s*-\s*(?:pi\b|π|[0-9.]+\s*\*?\s*(?:pi\b|π)|[0-9.]+\s*(?:°|deg)|[0-9]{2,}\s*$)"
+)
+_MARKER: Final = re.compile(rf"\s*(?:\+|\)|,|$)|\s+-\s|{_ANGLE_TAKEN_OFF}")
 _SPACED_MARKER: Final = re.compile(r"\s*(?:\+|\)|,|$)")
 _E_NAME: Final = re.compile(r"([eE])([+-]?)([0-9]+)$")
 _NUMERIC_FRACTION: Final = re.compile(rf"{OPEN}\{{?\s*[0-9]+\s*\}}?/\{{?\s*[0-9]+\s*\}}?{CLOSE}")

@@ -14,6 +14,10 @@ Numbers = NDArray[np.float64]
 EXACT = 1e-9
 # Three figures: 1.57 for π/2, 0.707 for 1/√2.
 ROUNDED = 1e-3
+# How many times its scale a number of the robot's own may be: an angle goes up to π, a length
+# hardly beyond the longest link.
+LARGEST_ANGLE = 4.0
+LARGEST_LENGTH = 1.5
 
 
 class Match(IntEnum):
@@ -41,7 +45,9 @@ def matches(
 ) -> NDArray[np.int_]:
     """The Match of each entry ``(...)``, from ``(..., lanes)``.
 
-    ``rounded`` says which entries may be off by what rounding a number to three figures does.
+    ``rounded`` says which entries may be off by what rounding a number to three figures does. That
+    is measured against the entry's size, but no more than what the robot's own numbers reach: a
+    student's own large offset must not widen what is let through.
     ``scale`` is what the quantity is measured against: 1 for angles and direction cosines, a
     typical length for lengths. It gives the tolerance an absolute floor, so that sin² + cos² − 1 is
     0 every time; the floor is far too low for a wrong constant to hide beside a large entry.
@@ -49,7 +55,8 @@ def matches(
     with np.errstate(invalid="ignore", over="ignore"):
         error = np.abs(difference(actual, expected, angle)).max(axis=-1)
         size = np.sqrt(np.mean(expected * expected, axis=-1))
-        near = (error <= ROUNDED * size) & rounded
+        largest = np.where(np.any(angle, axis=-1), LARGEST_ANGLE, LARGEST_LENGTH) * scale
+        near = (error <= ROUNDED * np.minimum(size, largest)) & rounded
         found = np.where(near, Match.ROUNDED, Match.DIFFERENT)
         found = np.where(error <= EXACT * np.maximum(size, scale), Match.EXACT, found)
     return np.where(np.isfinite(actual).all(axis=-1), found, Match.UNDEFINED)

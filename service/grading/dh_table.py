@@ -100,11 +100,9 @@ def read_chain(part: DhTableSpec, answer: object, grading: Grading) -> OwnChain 
     convention, _ = _convention(part, table, grading.exercise)
     judgement = judged_table(part, table.rows, convention, grading)
     frames = np.array(list(accumulate((identity((LANES,)), *links(values, convention)), np.matmul)))
-    found = [entry.expression for row in table.rows for entry in row.entries if entry.expression]
     return OwnChain(
         frames=frames,
         nearest_links=links(np.array([row.expected for row in judgement.rows]), convention),
-        variables=frozenset().union(*(expression.symbols for expression in found)),
     )
 
 

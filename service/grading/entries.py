@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -11,12 +11,15 @@ from service.expressions import LIMITS, Expression, ExpressionError, Kind, Note,
 from service.grading.compare import Numbers
 from service.grading.findings import Finding
 from service.grading.report import Severity, Verdict
-from service.grading.samples import LANES, Samples
+from service.grading.samples import LANES, SAMPLES, Samples
 
 AngleUnit = Literal["radians", "degrees"]
 
 # Textbooks mark the joint variable so in every table; six notes about it would bury the others.
 EXPECTED_NOTES = frozenset({"joint_marker"})
+
+# What changes by less than this when the joints move does not move.
+MOVES = 1e-9
 
 _DECIMAL = re.compile(r"\d\.|\.\d")
 
@@ -54,14 +57,14 @@ class Reader:
     """Reads the cells of one submission.
 
     Together they may hold so many characters and no more (``left``): reading is what costs time.
-    ``symbols`` are the letters met so far.
+    ``moving`` says whether any value met so far changes with the joints.
     """
 
     vocabulary: Vocabulary
     samples: Samples
     angle_unit: AngleUnit
     left: int = MAX_CHARACTERS
-    symbols: set[str] = field(default_factory=set)
+    moving: bool = False
 
     def read(self, raw: object, quantity: Kind) -> Entry:
         """The entry for a JSON value. Whatever it is, the worst that comes back is unreadable."""
@@ -77,7 +80,6 @@ class Reader:
             expression = read(raw, self.vocabulary, quantity=quantity, angle_unit=self.angle_unit)
         except ExpressionError as error:
             return unreadable(_from_error(error))
-        self.symbols |= expression.symbols
         if not expression.notes:
             return Entry(expression)
         notes = (note for note in expression.notes if note.code not in EXPECTED_NOTES)
@@ -95,6 +97,8 @@ class Reader:
                 values[:] = entry.expression.evaluate(self.samples.values, self.samples.memo)
         bounds = np.array([BOUNDS[quantity] for quantity in quantities])
         numbers[np.abs(numbers) > bounds[:, None]] = np.nan
+        change = np.abs(numbers[:, :SAMPLES] - numbers[:, SAMPLES:])
+        self.moving = self.moving or bool(np.nanmax(change, initial=0.0) > MOVES)
         return numbers
 
 

@@ -5,7 +5,8 @@ student's own answer there where the reference says that it is wrong; but only a
 good enough to carry it, so that a trivial table cannot buy easy marks.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,15 +18,20 @@ from service.catalogue import (
     TransformSpec,
 )
 from service.grading.dh_table import read_chain
+from service.grading.entries import MAX_CHARACTERS
 from service.grading.expected import is_whole_chain
 from service.grading.findings import Finding
 from service.grading.link_transforms import read_links
 from service.grading.matrices import UnreadableMatrixError, numbers_of, read_matrix
 from service.grading.protocol import Grading, OwnChain
 from service.grading.report import PartReport, Severity
-from service.grading.samples import LANES
+from service.grading.samples import LANES, SAMPLES, Samples
 from service.grading.transform import HOMOGENEOUS
-from service.kinematics.transforms import Matrices, identity
+from service.kinematics.transforms import Matrices, identity, inverse
+
+# A joint's small motion, and what is small beside a chain's larger motions.
+NUDGE = 1e-5
+SMALL = 1e-3
 
 
 def followed_part(
@@ -46,7 +52,7 @@ def own_chain(part: PartSpec, answer: object, grading: Grading) -> OwnChain | No
         return read_chain(part, answer, grading)
     if isinstance(part, LinkTransformsSpec):
         read = read_links(part, answer, grading)
-        return None if read is None else _chain(read.values, read.variables)
+        return None if read is None else _chain(read.values)
     if isinstance(part, TransformSpec):
         return _pose_chain(answer, grading)
     return None
@@ -58,40 +64,76 @@ def _pose_chain(answer: object, grading: Grading) -> OwnChain | None:
     except UnreadableMatrixError:
         return None
     values = np.moveaxis(numbers_of(entries, HOMOGENEOUS, grading.reader), -1, 0)
-    found = [entry.expression for row in entries for entry in row if entry.expression]
-    variables = frozenset().union(*(expression.symbols for expression in found))
-    return _chain(values[None], variables)
+    return _chain(values[None])
 
 
-def _chain(links: Matrices, variables: frozenset[str]) -> OwnChain | None:
+def _chain(links: Matrices) -> OwnChain | None:
     if np.isnan(links).any():
         return None
     frames = [identity((LANES,))]
     for link in links:
         frames.append(frames[-1] @ link)
-    return OwnChain(np.array(frames), None, variables)
+    return OwnChain(np.array(frames), None)
 
 
-def carries(own: OwnChain, report: PartReport, part: PartSpec, exercise: Exercise) -> bool:
-    """Whether an earlier answer is good enough to carry the part that follows from it."""
-    earned = report.points >= part.follows_from * report.max_points
-    return earned and own.variables >= {joint.variable for joint in exercise.joints}
+def carries(
+    source: PartSpec, answer: object, report: PartReport, part: PartSpec, grading: Grading
+) -> bool:
+    """Whether an earlier answer is good enough to carry the part that follows from it.
+
+    It must have earned its share of the points, and describe an arm that moves in as many ways as
+    the robot: one that has lost a freedom makes all that follows too easy.
+    """
+    if report.points < part.follows_from * report.max_points:
+        return False
+
+    def own_pose(grading: Grading) -> Matrices | None:
+        chain = own_chain(source, answer, grading)
+        return None if chain is None else chain.frames[-1]
+
+    def robot_s_pose(grading: Grading) -> Matrices | None:
+        robot = grading.exercise.reference
+        return None if robot is None else robot.frame("tool", grading.samples.values, LANES)
+
+    return _freedom(own_pose, grading) >= _freedom(robot_s_pose, grading)
+
+
+def _freedom(pose: Callable[[Grading], Matrices | None], grading: Grading) -> int:
+    """In how many ways the joints move a pose: the rank of its Jacobian, by small differences."""
+    twists = []
+    for joint in grading.exercise.joints:
+        moved = pose(_nudged(grading, joint.variable))
+        if moved is None:
+            return 0
+        twist = inverse(moved[:SAMPLES]) @ moved[SAMPLES:] - np.eye(4)
+        twists.append(twist[:, :3].reshape(SAMPLES, -1) / NUDGE)
+    sizes = np.linalg.svd(np.array(twists).swapaxes(0, 1), compute_uv=False)
+    ranks = np.sort((sizes > SMALL * sizes.max(initial=1.0)).sum(axis=-1))
+    return int(ranks[len(ranks) // 2])
+
+
+def _nudged(grading: Grading, variable: str) -> Grading:
+    """The same grading at samples whose second half differs from the first in one joint only."""
+    values = {name: np.tile(lanes[:SAMPLES], 2) for name, lanes in grading.samples.values.items()}
+    values[variable][SAMPLES:] += NUDGE
+    samples = Samples(values)
+    reader = replace(grading.reader, samples=samples, left=MAX_CHARACTERS)
+    return replace(grading, samples=samples, reader=reader)
 
 
 def stands_still(part: PartSpec, grading: Grading) -> bool:
-    """Whether something was read that should move with the joints, and holds no joint variable."""
+    """Whether something was read that should move with the joints, and nothing in it does."""
     if isinstance(part, TransformSpec):
         should_move = is_whole_chain(part, grading.exercise)
     else:
         should_move = isinstance(part, DhTableSpec | LinkTransformsSpec)
-    variables = {joint.variable for joint in grading.exercise.joints}
-    return should_move and not variables & grading.reader.symbols
+    return should_move and not grading.reader.moving
 
 
 STANDS_STILL = Finding(
     "no_joint_variable",
-    "The answer holds no joint variable at all, so it describes an arm that cannot move: it earns "
-    "nothing.",
+    "No joint variable has any effect in this answer, so it describes an arm that cannot move: it "
+    "earns nothing.",
 )
 
 

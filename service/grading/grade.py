@@ -107,14 +107,14 @@ def _followed(
     source = followed_part(part, answers, grading.exercise)
     own = None if source is None else own_chain(source, answers[source.id], _afresh(grading))
     grading = replace(grading, source=own)
-    grading.reader.symbols.clear()
+    grading.reader.moving = False
     report = KINDS[part.kind].grade(part, answer, grading)
     if report.points and stands_still(part, grading):
         return _without_points(report, grading)
     if report.verdict is Verdict.CORRECT or own is None or source is None:
         return report
     carrier = next(done for done in earlier if done.part == source.id)
-    if not carries(own, carrier, part, grading.exercise):
+    if not carries(source, answers[source.id], carrier, part, grading):
         return report
     by_own = KINDS[part.kind].grade(part, answer, replace(_afresh(grading), following=True))
     if by_own.points <= report.points:

@@ -11,6 +11,7 @@ from service.grading.findings import Finding
 from service.grading.freedom import Freedom
 from service.grading.judgement import nearest_reading
 from service.grading.matrices import (
+    PATIENCE,
     ExpectedMatrix,
     UnreadableMatrixError,
     judged_matrix,
@@ -46,7 +47,6 @@ class ReadLinks:
 
     entries: list[list[list[Entry]]]
     values: Matrices
-    variables: frozenset[str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +66,8 @@ class LinkTransformsKind:
         for label, entries, values in zip(labels, found.entries, expected, strict=True):
             share = part.points / len(labels)
             matrix = ExpectedMatrix(values, HOMOGENEOUS, rigid=True)
-            judged = judged_matrix(entries, matrix, share, grading)
+            patience = PATIENCE / len(labels)
+            judged = judged_matrix(entries, matrix, share, grading, patience=patience)
             rows.extend(_named(row, label) for row in judged.rows)
             told.extend(_placed(message, label) for message in judged.feedback)
         return terms.report(tuple(rows), tuple(told))
@@ -87,9 +88,7 @@ def read_links(part: LinkTransformsSpec, answer: object, grading: Grading) -> Re
         except UnreadableMatrixError:
             return None
     values = [numbers_of(matrix, HOMOGENEOUS, grading.reader) for matrix in entries]
-    found = [entry.expression for m in entries for row in m for entry in row if entry.expression]
-    variables = frozenset().union(*(expression.symbols for expression in found))
-    return ReadLinks(entries, np.moveaxis(np.array(values), -1, 1), variables)
+    return ReadLinks(entries, np.moveaxis(np.array(values), -1, 1))
 
 
 def _expected(part: LinkTransformsSpec, found: ReadLinks, grading: Grading) -> Matrices:

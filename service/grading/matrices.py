@@ -137,12 +137,13 @@ def judged_matrix(
     grading: Grading,
     chains: Callable[[Samples], tuple[Chain, ...]] = _no_chains,
     beliefs: Callable[[MatrixCase], list[Explanation]] = _no_beliefs,
+    patience: float = PATIENCE,
 ) -> JudgedMatrix:
     """A matrix that is worth ``points``, entry by entry.
 
     ``chains`` gives the links, at the samples it is handed, that the matrix is the product of where
     it is one; ``beliefs`` explains the matrix by what else it is made of, and is asked first. Both
-    are asked only where something is wrong.
+    are asked only where something is wrong. ``patience`` bounds how much is taken apart.
     """
     actual = numbers_of(entries, expected.quantities, grading.reader)
     scale = expected.scale(grading.exercise.length_scale)
@@ -174,7 +175,7 @@ def judged_matrix(
         for i, j in np.argwhere(told_apart)
         if (expression := entries[i][j].expression) is not None
     }
-    slips = _slips(wrong)
+    slips = _slips(wrong, patience)
     check = check_yourself(case, slips)
     told = tuple(
         message
@@ -187,10 +188,9 @@ def judged_matrix(
     )
 
 
-def _slips(wrong: Mapping[tuple[int, int], WrongEntry]) -> Slips:
+def _slips(wrong: Mapping[tuple[int, int], WrongEntry], patience: float) -> Slips:
     """What is to be said of single entries."""
     slips: dict[tuple[int, int], Finding] = {}
-    patience: float = PATIENCE
     for place, entry in wrong.items():
         slips[place] = diagnose(entry, patient=patience > 0)
         explained = slips[place].code != UNEXPLAINED

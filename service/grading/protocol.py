@@ -24,12 +24,11 @@ class OwnChain:
 
     ``frames`` ``(k + 1, LANES, 4, 4)`` are its frames in the base frame, from the base on; the last
     is the tool's. ``nearest_links`` ``(k, LANES, 4, 4)`` are the link transforms of the valid table
-    nearest to it, None where it is no table. ``variables`` are the joint variables it contains.
+    nearest to it, None where it is no table.
     """
 
     frames: Matrices
     nearest_links: Matrices | None
-    variables: frozenset[str]
 
     @property
     def links(self) -> Matrices:

@@ -30,6 +30,10 @@ CONTINUATIONS = 20
 # A hypothesis this far behind the best is given up: it would take a table with as many more slips.
 BEHIND = 2.5
 
+# A cell may be off by what rounding does to a number of the robot's own size, and no more.
+LARGEST_ANGLE = 4.0
+LARGEST_LENGTH = 1.5
+
 # What a hypothesis costs. A cell that the table has no room for cannot be blamed on a slip, so that
 # a reading which needs it is a last resort.
 WRONG_CELL = 1.0
@@ -161,7 +165,7 @@ def _continuations(
     target = inverse(beam.pose) @ stop.reference
     classes = positions(target, length_scale)
     found = []
-    for position in np.unique(classes):
+    for position in sorted(set(classes.tolist())):
         members = np.flatnonzero(classes == position)
         here = target[members]
         offered = candidates(here, row.own, stop.place, length_scale)
@@ -194,8 +198,11 @@ def _wrong_cells(row: WrittenRow, rows: Numbers, length_scale: float) -> NDArray
     size = np.sqrt(np.mean(rows * rows, axis=-1))
     scale = np.ones(4)
     scale[[A, D]] = length_scale
+    largest = np.full(4, LARGEST_ANGLE)
+    largest[[A, D]] = LARGEST_LENGTH * length_scale
     with np.errstate(invalid="ignore"):
-        right = error.max(axis=-1) <= np.maximum(row.tolerance * size, 1e-9 * scale)
+        bounded = np.minimum(size, largest)
+        right = error.max(axis=-1) <= np.maximum(row.tolerance * bounded, 1e-9 * scale)
     return np.asarray(~right)
 
 

@@ -15,6 +15,8 @@ from typing import Final
 MAX_BODY_SIZE: Final = 256 * 1024
 # The deepest answer, a list of matrices, needs five levels.
 MAX_DEPTH: Final = 64
+# Seven link transforms have 36 lists; thousands of them only take time.
+MAX_BRACKETS: Final = 5_000
 
 _DIGITS_OF_A_FLOAT: Final = 308
 _SURROGATE_ESCAPE: Final = re.compile(r"\\u[dD][89a-fA-F]")
@@ -49,6 +51,8 @@ def read_json(data: bytes) -> object:
         raise MalformedError(f"This is not UTF-8 text: byte {error.start + 1} is wrong.") from error
     if not text.strip():
         raise MalformedError("There is nothing here; a JSON object is expected.")
+    if text.count("[") + text.count("{") > MAX_BRACKETS:
+        raise MalformedError(f"There are more than {MAX_BRACKETS} lists and objects.")
     try:
         value: object = _DECODER.decode(text)
     except json.JSONDecodeError as error:

@@ -173,5 +173,5 @@ def test_the_disk_is_looked_at_once_a_second(
 
     monkeypatch.setattr("service.catalogue.live.exercise_files", look)
     for clock.now in (0.5, 0.99, 1.0, 1.2, 1.9, 2.0, 2.5):
-        assert catalogue["arm"]
+        assert catalogue["arm"].id == "arm"
     assert looks == [1.0, 2.0]

@@ -208,3 +208,29 @@ def test_a_poor_table_does_not_carry(scara: Exercise) -> None:
     parts = graded(scara, table=poor, pose=IDENTITY)
     assert parts["table"].points < 4
     assert not parts["pose"].follow_through
+
+
+def test_a_variable_without_effect_buys_nothing(scara: Exercise) -> None:
+    """0·q is no motion, whatever letters it holds."""
+    idle = "0*(q1 + q2 + d3 + q4)"
+    still = [[f"1 + {idle}", "0", "0", "0"], *IDENTITY[1:]]
+    parts = graded(scara, table=table([("0", "0", "0", idle)] * 4), links=[still] * 4, pose=still)
+    assert [parts[name].points for name in ("table", "links", "pose")] == [0, 0, 0]
+
+
+def test_a_chain_that_has_lost_a_freedom_does_not_carry(scara: Exercise) -> None:
+    """All twists and lengths ignored: one line, four joints, and a pose that anybody can write."""
+    bare = table(
+        [("0", "0", "0", "q1"), ("0", "0", "0", "q2"), ("0", "0", "d3", "0"), ("0", "0", "0", "q4")]
+    )
+    turn = "q1 + q2 + q4"
+    pose = [
+        [f"cos({turn})", f"-sin({turn})", "0", "0"],
+        [f"sin({turn})", f"cos({turn})", "0", "0"],
+        ["0", "0", "1", "d3"],
+        list("0001"),
+    ]
+    parts = graded(scara, table=bare, pose=pose)
+    assert parts["table"].points >= 4
+    assert not parts["pose"].follow_through
+    assert parts["pose"].points < 4

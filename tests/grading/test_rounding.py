@@ -1,6 +1,6 @@
 """A constant that is right to three figures is accepted, with a note."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import pytest
 
@@ -121,3 +121,16 @@ def test_the_note_costs_nothing_and_says_what_to_write(arm: Exercise) -> None:
     [note] = cell(report, "2", "alpha").feedback
     assert note.severity is Severity.INFO
     assert "pi" in note.message
+
+
+def test_an_offset_of_one_s_own_does_not_widen_the_tolerance(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    """Along parallel axes any offset may be written, but not to be lost in its own rounding."""
+    for first, second in (("1000.0", "-999.5"), ("5.0", "-4.996"), ("5000.0", "-5000.0 + a1")):
+        rows = [["a1", "0", first, "theta1"], ["a2", "0", second, "theta2"]]
+        report = graded_table(catalogue["planar-rr"], rows)
+        assert report.points < report.max_points
+    exact = [["a1", "0", "1000.0", "theta1"], ["a2", "0", "-1000.0", "theta2"]]
+    report = graded_table(catalogue["planar-rr"], exact)
+    assert report.points == report.max_points

@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from service.submissions import MAX_DEPTH, MalformedError, nested_deeper, read_json
+from service.submissions.strict_json import MAX_BRACKETS
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False)
@@ -56,8 +57,9 @@ def test_what_no_number_or_encoding_holds_becomes_text(text: str, value: object)
         ("[1,\n 2,\n x]", "line 3, column 2"),
         ('"\\x"', "line 1, column "),
         ("[" * (MAX_DEPTH + 1) + "]" * (MAX_DEPTH + 1), "deep"),
-        ("[" * 5000 + "]" * 5000, "deep"),
-        ("[" * 100_000 + "]" * 100_000, "deep"),
+        ("[" * MAX_BRACKETS + "]" * MAX_BRACKETS, "deep"),
+        ("[" * 100_000 + "]" * 100_000, "lists and objects"),
+        ("[" + "[]," * MAX_BRACKETS + "[]]", "lists and objects"),
     ],
 )
 def test_a_mistake_is_named_with_its_place(text: str, reason: str) -> None:
