@@ -233,4 +233,4 @@ def test_a_chain_that_has_lost_a_freedom_does_not_carry(scara: Exercise) -> None
     parts = graded(scara, table=bare, pose=pose)
     assert parts["table"].points >= 4
     assert not parts["pose"].follow_through
-    assert parts["pose"].points < 4
+    assert parts["pose"].points <= 4
