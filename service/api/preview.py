@@ -10,14 +10,17 @@ from service.api.bodies import body_as
 from service.api.documented import answer, refusals, request_body
 from service.api.lookup import Catalogue, require_exercise, require_parts
 from service.api.problems import invalid
+from service.catalogue import Exercise
 from service.expressions import (
     ExpressionError,
     Kind,
+    Note,
     Symbol,
     Vocabulary,
     joint_variable,
     read,
 )
+from service.grading.preview import CellPreview, Problem, preview_pasted
 
 JOINTS: Final = range(1, 10)
 
@@ -36,7 +39,9 @@ class PreviewRequest(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    text: str = Field(description="One entry, as the student writes it.")
+    text: str = Field(
+        description="One entry as the student writes it, or a pasted table or matrix."
+    )
     exercise: str | None = Field(
         None,
         description="The exercise whose symbols the text may use. Without it: joint angles theta1 "
@@ -65,10 +70,32 @@ class PreviewError(PreviewNote):
     suggestion: str | None = Field(None, description="The whole text, repaired.")
 
 
+class PreviewCell(BaseModel):
+    """How one cell of a pasted table or matrix was read; labels are those of a report."""
+
+    row: str
+    column: str
+    span: tuple[int, int] = Field(description="[from, to) in the pasted text.")
+    typed: str
+    text: str
+    latex: str
+    mathml: str
+    symbols: list[str]
+    notes: list[PreviewNote]
+    error: PreviewError | None = None
+
+
 class PreviewAnswer(BaseModel):
-    """How the text was read, or why it was not: with `ok` false there is only `error`."""
+    """How the text was read, or why it was not.
+
+    Of one entry there is `text`, `latex`, `mathml` and `symbols`, or only `error`. Of a pasted
+    table or matrix there are `rows` of cells; `ok` then says that every cell was read.
+    """
 
     ok: bool
+    rows: list[list[PreviewCell]] | None = Field(
+        None, description="The cells of a pasted table or matrix; needs `exercise` and `part`."
+    )
     text: str | None = None
     latex: str | None = None
     mathml: str | None = None
@@ -97,10 +124,53 @@ def preview(body: PreviewRequest, vocabulary: Vocabulary) -> PreviewAnswer:
         latex=expression.latex(),
         mathml=expression.mathml(),
         symbols=sorted(expression.symbols),
-        notes=[
-            PreviewNote(code=note.code, message=note.message, span=note.span)
-            for note in expression.notes
-        ],
+        notes=[_note(note) for note in expression.notes],
+    )
+
+
+# What stands between the cells of a table or matrix, and in no single entry.
+_BETWEEN_CELLS: Final = frozenset("\n\t;|&<[,")
+
+
+def preview_grid(body: PreviewRequest, exercise: Exercise, part: str) -> PreviewAnswer:
+    """How a whole pasted table or matrix reads, cell by cell."""
+    pasted = preview_pasted(body.text, exercise, part, body.angle_unit)
+    return PreviewAnswer(
+        ok=pasted.ok,
+        rows=[[_cell(cell) for cell in row] for row in pasted.rows] or None,
+        symbols=sorted({name for row in pasted.rows for cell in row for name in cell.symbols}),
+        notes=[_note(note) for note in pasted.notes],
+        error=_problem(pasted.problem),
+    )
+
+
+def _cell(cell: CellPreview) -> PreviewCell:
+    return PreviewCell(
+        row=cell.row,
+        column=cell.column,
+        span=cell.span,
+        typed=cell.typed,
+        text=cell.text,
+        latex=cell.latex,
+        mathml=cell.mathml,
+        symbols=sorted(cell.symbols),
+        notes=[_note(note) for note in cell.notes],
+        error=_problem(cell.problem),
+    )
+
+
+def _note(note: Note) -> PreviewNote:
+    return PreviewNote(code=note.code, message=note.message, span=note.span)
+
+
+def _problem(problem: Problem | None) -> PreviewError | None:
+    if problem is None:
+        return None
+    return PreviewError(
+        code=problem.code,
+        message=problem.message,
+        span=problem.span,
+        suggestion=problem.suggestion,
     )
 
 
@@ -122,9 +192,17 @@ def routes(catalogue: Catalogue) -> APIRouter:
         },
     )
     async def preview_text(request: Request) -> Response:
-        """Show how a text is read: normal text, LaTeX, MathML; or why not, and what was meant."""
+        """Show how a text is read: normal text, LaTeX, MathML; or why not, and what was meant.
+
+        With `exercise` and `part` the text may also be a whole pasted table or matrix.
+        """
         body = await body_as(PreviewRequest, request)
         shown = preview(body, _vocabulary(catalogue, body))
+        if not shown.ok and body.exercise and body.part and _BETWEEN_CELLS & set(body.text):
+            exercise = require_exercise(catalogue, body.exercise)
+            grid = preview_grid(body, exercise, body.part)
+            # A text that is no grid either is better explained as the one entry that it may be.
+            shown = grid if grid.rows or "\n" in body.text else shown
         content = shown.model_dump_json(exclude_none=True)
         return Response(content, media_type="application/json")
 

@@ -74,3 +74,36 @@ def test_a_wrong_request_is_a_422_that_points_there(
     [error] = response.json()["errors"]
     assert error["pointer"] == pointer
     assert hint in error["detail"]
+
+
+def test_a_whole_pasted_table_is_shown_cell_by_cell(client: httpx.Client) -> None:
+    text = "a, alpha, d, theta\n0, -90°, 0, θ1*\n0, 90°, d2, q2 +"
+    body = {"text": text, "exercise": "stanford-arm", "part": "table"}
+    answer = client.post("/v1/preview", json=body).json()
+    assert answer["ok"] is False
+    first, second = answer["rows"]
+    assert [cell["text"] for cell in first] == ["0", "-90deg", "0", "theta1"]
+    assert [cell["column"] for cell in first] == ["a", "alpha", "d", "theta"]
+    assert text[slice(*first[1]["span"])] == "-90°"
+    assert second[3]["error"]["code"] == "trailing_operator"
+    assert text[slice(*second[3]["error"]["span"])] == "+"
+    assert answer["symbols"] == ["d2", "theta1"]
+
+
+def test_a_whole_pasted_matrix_is_shown_cell_by_cell(client: httpx.Client) -> None:
+    text = "[c1, -s1, 0, 0; s1, c1, 0, 0; 0, 0, 1, d3; 0, 0, 0, 1]"
+    body = {"text": text, "exercise": "stanford-arm", "part": "pose"}
+    answer = client.post("/v1/preview", json=body).json()
+    assert answer["ok"] is True
+    assert [len(row) for row in answer["rows"]] == [4, 4, 4, 4]
+    assert answer["rows"][0][1]["latex"]
+    assert "<math" in answer["rows"][0][1]["mathml"]
+
+
+def test_one_entry_of_a_part_is_shown_as_one(client: httpx.Client) -> None:
+    body = {"text": "atan2(d2, d6)", "exercise": "stanford-arm", "part": "table"}
+    answer = client.post("/v1/preview", json=body).json()
+    assert answer["ok"] is True
+    assert "rows" not in answer
+    wrong = {**body, "text": "atan2(d2, d6"}
+    assert client.post("/v1/preview", json=wrong).json()["error"]["code"] == "unbalanced_bracket"

@@ -1,0 +1,67 @@
+"""For every exercise the model solution as SymPy prints it, in four languages, gets full marks."""
+
+from collections.abc import Callable, Mapping
+
+import pytest
+import sympy
+from sympy.printing.numpy import NumPyPrinter
+
+from service.catalogue import Exercise, shipped_folder
+from service.expressions import LIMITS, read
+from service.solutions import solve
+from service.solutions.algebra import Algebra
+from tests.grading.submitting import full_marks, handed_in
+
+IDS = sorted(file.stem for file in shipped_folder().glob("*.toml"))
+PRINTERS: Mapping[str, Callable[[sympy.Expr], str]] = {
+    "str": str,
+    "latex": sympy.latex,
+    "octave_code": sympy.octave_code,
+    "numpy": NumPyPrinter().doprint,
+}
+
+
+def printed(answer: object, exercise: Exercise, printer: Callable[[sympy.Expr], str]) -> object:
+    """The same answer with every formula read, made a SymPy expression, and printed."""
+    if isinstance(answer, dict):
+        return {key: printed(value, exercise, printer) for key, value in answer.items()}
+    if isinstance(answer, list):
+        return [printed(value, exercise, printer) for value in answer]
+    if isinstance(answer, bool) or not isinstance(answer, str | int | float):
+        return answer
+    text = printer(Algebra(exercise).of(read(answer, exercise.vocabulary)))
+    # Full names and \\left( make the longest entries of six and seven joints exceed what one entry
+    # may hold; those stand as they were, and the figure tells how many.
+    return text if len(text) <= LIMITS.characters else answer
+
+
+def _same(before: object, after: object) -> int:
+    """How many long entries were left as they were."""
+    if isinstance(before, list) and isinstance(after, list):
+        return sum(map(_same, before, after))
+    return int(isinstance(before, str) and before == after and len(before) > 100)
+
+
+@pytest.mark.parametrize("printer", PRINTERS)
+@pytest.mark.parametrize("exercise_id", IDS)
+def test_the_model_solution_as_sympy_prints_it(
+    exercise_id: str,
+    printer: str,
+    catalogue: Mapping[str, Exercise],
+    figure: Callable[[str], None],
+) -> None:
+    exercise = catalogue[exercise_id]
+    solution = solve(exercise)
+    answers = {
+        part.part: part.shown.answer
+        if part.shown.text == "none"
+        else printed(part.shown.answer, exercise, PRINTERS[printer])
+        for part in solution.parts
+    }
+    kept = sum(_same(part.shown.answer, answers[part.part]) for part in solution.parts)
+    if kept:
+        figure(
+            f"{exercise_id}, {printer}: {kept} entries too long as printed, handed in as they were"
+        )
+    for part in handed_in(exercise, answers).parts:
+        assert full_marks(part), part
