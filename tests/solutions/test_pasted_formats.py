@@ -1,0 +1,35 @@
+"""For every exercise the model table, pasted in every format, gets full marks."""
+
+from collections.abc import Mapping
+
+import pytest
+
+from service.catalogue import DhTableSpec, Exercise, shipped_folder
+from service.kinematics.chain import COLUMNS
+from service.solutions import solve
+from tests.expressions.grids.writers import FORMATS
+from tests.grading.submitting import full_marks, handed_in
+
+IDS = sorted(file.stem for file in shipped_folder().glob("*.toml"))
+
+
+@pytest.mark.parametrize("exercise_id", IDS)
+def test_the_model_table_pasted_in_every_format(
+    exercise_id: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    exercise = catalogue[exercise_id]
+    tables = [part for part in exercise.parts if isinstance(part, DhTableSpec)]
+    if not tables:
+        pytest.skip("asks for no table")
+    solution = {part.part: part.shown.answer for part in solve(exercise).parts}
+    for part in tables:
+        answer = solution[part.id]
+        assert isinstance(answer, dict)
+        rows = [[str(row[column]) for column in COLUMNS] for row in answer["rows"]]
+        refused = []
+        for name, write in FORMATS.items():
+            report = handed_in(exercise, {part.id: write(rows)})
+            graded = next(each for each in report.parts if each.part == part.id)
+            if not full_marks(graded):
+                refused.append((name, write(rows), graded.feedback))
+        assert not refused, refused[:2]
