@@ -41,12 +41,14 @@ def joint_counts(
     counts = np.round(change @ solver)
     counts = np.clip(counts, -99, 99)
     linear = finite & (np.abs(counts @ moves - change).max(axis=-1) < TOLERANCE)
-    for cell in np.flatnonzero(finite & ~linear & angle):
-        for j, sign in ((j, sign) for j in range(len(joints)) for sign in (1, -1)):
-            turned = difference(change[cell], sign * moves[j], angle=True)
-            if np.abs(turned).max() < TOLERANCE:
-                counts[cell], linear[cell] = 0, True
-                counts[cell, j] = sign
+    wound = np.flatnonzero(finite & ~linear & angle)
+    if len(wound):
+        either_way = np.array([moves, -moves])
+        turned = difference(change[wound, None, None], either_way, angle=True)
+        found = np.abs(turned).max(axis=-1) < TOLERANCE
+        for k, way, joint in np.argwhere(found):
+            counts[wound[k]], linear[wound[k]] = 0, True
+            counts[wound[k], joint] = 1 - 2 * way
     return counts.astype(np.int_), linear
 
 
