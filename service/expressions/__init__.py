@@ -2,7 +2,7 @@
 
 from service.expressions.errors import ExpressionError, Note
 from service.expressions.limits import LIMITS, Limits
-from service.expressions.reader import AngleUnits, Expression, read
+from service.expressions.reader import AngleUnits, Expression, evaluate_all, read
 from service.expressions.vocabulary import Kind, Symbol, Vocabulary, joint_variable
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "Note",
     "Symbol",
     "Vocabulary",
+    "evaluate_all",
     "joint_variable",
     "read",
 ]

@@ -3,7 +3,7 @@
 The methods carry the names that grammar.lark gives to its rules.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 from service.expressions.errors import Note
@@ -27,18 +27,6 @@ class Builder:
         self.grouped: set[int] = set()
         self.barred: set[int] = set()
         self.degree_functions = False
-
-    def table(self) -> dict[str, Callable[..., Any]]:
-        """Return the builder of each named rule."""
-        return {
-            "add": self.add, "subtract": self.subtract, "multiply": self.multiply,
-            "divide": self.divide, "join": self.join, "tight": self.tight,
-            "negate": self.negate, "keep": self.keep, "raise_to": self.raise_to,
-            "unit": self.unit, "group": self.group, "root": self.root, "call": self.call,
-            "bare_call": self.bare_call, "first_argument": self.first_argument,
-            "next_argument": self.next_argument, "fraction": self.fraction,
-            "tight_fraction": self.tight_fraction,
-        }  # fmt: skip
 
     def add(self, left: Node, _: int, right: Node) -> Node:
         """Build left + right."""
@@ -91,8 +79,10 @@ class Builder:
         operand.start = sign
         return operand
 
-    def raise_to(self, base: Node, _: int, exponent: Node) -> Node:
-        """Build base ^ exponent."""
+    def raise_to(self, base: Node, caret: int, exponent: Node) -> Node:
+        """Build base ^ exponent; the 0 of 90^0 was rather meant as the sign of degrees."""
+        if type(exponent) is Number and not exponent.value and self._may_be_degrees(base):
+            raise UnreadableError("raised_zero", (caret, exponent.end), power=True)
         return Binary("^", base, exponent, base.start, exponent.end)
 
     def unit(self, operand: Node, unit: tuple[Any, int]) -> Node:
@@ -170,6 +160,13 @@ class Builder:
         """Build the list with one more argument."""
         arguments.append(argument)
         return arguments
+
+    def _may_be_degrees(self, base: Node) -> bool:
+        """Tell whether `base` is made of numbers alone, and is not the ten of 3*10^0."""
+        if type(base) is Number and base.literal == "10":
+            times = ("*", "×", "·", "⋅", r"\cdot", r"\times")
+            return not self.source[: base.start].rstrip().endswith(times)
+        return all(type(part) in {Number, Negation, Binary} for part in _outside_calls(base))
 
     def _is_open(self, node: Node) -> bool:
         """Tell whether `node` was written without brackets around it; a bar counts as brackets."""

@@ -1,9 +1,10 @@
 """What a student wrote -> an expression: characters, tokens, grammar, tree."""
 
 import math
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 
@@ -11,13 +12,13 @@ from service.expressions.build import Builder
 from service.expressions.characters import normalise
 from service.expressions.degrees import in_degrees, without_degree_functions
 from service.expressions.errors import ExpressionError, Note
-from service.expressions.evaluate import Program, Samples, compile_tree
+from service.expressions.evaluate import Samples, compile_tree
 from service.expressions.latex import to_latex
 from service.expressions.limits import LIMITS
 from service.expressions.mathml import to_mathml
 from service.expressions.repairs import Failure, explain
 from service.expressions.table import Table, UnexpectedTokenError
-from service.expressions.text import level, to_text
+from service.expressions.text import to_text
 from service.expressions.tokens import tokenise
 from service.expressions.tree import Binary, Node, Number, Variable, children
 from service.expressions.unreadable import UnreadableError
@@ -25,30 +26,68 @@ from service.expressions.vocabulary import Kind, Vocabulary
 
 AngleUnits = Literal["radians", "degrees"]
 
-_TABLE: Final = Table()
+_TABLE: Final = Table(Builder)
 _REMEMBERED: Final = 8192
+# Whoever grades asks for the tree soon after reading, if at all.
+_TREES: Final = 128
+_SETS_OF_SYMBOLS: Final = 1024
+# What may stand to the left of an operator without brackets, and in one run with it.
+_RUNS: Final = {"+": "+-", "-": "+-", "*": "*/", "/": "*/", "^": "^"}
+_DECIMAL: Final = re.compile(r"\d\.|\.\d")
 # How many repaired texts may be tried on one that cannot be read, before there is none to offer.
 _ATTEMPTS: Final = 6
 # A JSON number is one whatever the symbols are called: 1e-7 is no product of 1 and e.
 _NO_SYMBOLS: Final = Vocabulary([])
 
 
-class Expression:
-    """A text that was read. Immutable, except that it compiles itself when first evaluated.
+# How a text is read: the names it may use, whether all of it is an angle, whether angles are in
+# degrees.
+Manner = tuple[Vocabulary, bool, bool]
 
-    `tree` carries the units that degrees imply; `symbols` holds the canonical names used.
+
+class Expression:
+    """A text that was read. Immutable.
+
+    `notes` are on how it was read, `symbols` holds the canonical names used, and `has_decimal`
+    tells whether a decimal number was written.
+
+    Thousands of texts are remembered, each as a program and a handful of other objects. Their trees
+    are not: together they are a million objects, and the garbage collector would look at every one
+    of them in each of its rounds. A tree is built anew from the text when it is asked for.
     """
 
-    __slots__ = ("_program", "notes", "source", "symbols", "tree")
+    __slots__ = (
+        "_degrees", "_is_angle", "_program", "_tree", "_vocabulary", "has_decimal", "notes",
+        "source", "symbols",
+    )  # fmt: skip
 
     def __init__(
-        self, source: str, tree: Node, notes: tuple[Note, ...], symbols: frozenset[str]
+        self,
+        source: str,
+        tree: Node,
+        notes: tuple[Note, ...],
+        symbols: frozenset[str],
+        manner: Manner | None = None,
     ) -> None:
+        """With a `manner` of reading that gives this tree, the tree itself is not kept."""
         self.source: Final = source
-        self.tree: Final = tree
         self.notes: Final = notes
         self.symbols: Final = symbols
-        self._program: Program | float | None = None
+        self.has_decimal: Final = "." in source and _DECIMAL.search(source) is not None
+        self._program: Final = compile_tree(tree)
+        # A tuple of them would be one more object for each text.
+        self._vocabulary: Final = manner and manner[0]
+        self._is_angle: Final = manner is not None and manner[1]
+        self._degrees: Final = manner is not None and manner[2]
+        self._tree: Final = tree if manner is None else None
+
+    @property
+    def tree(self) -> Node:
+        """The syntax tree, with the units that degrees imply. It must not be written to."""
+        if self._tree is not None:
+            return self._tree
+        assert self._vocabulary is not None
+        return _parsed(self.source, self._vocabulary, self._is_angle, self._degrees).tree
 
     def evaluate(
         self, values: Mapping[str, Samples], memo: dict[str, Any] | None = None
@@ -61,10 +100,10 @@ class Expression:
         may be one of `values`, or kept in the memo.
         """
         program = self._program
-        if program is None:
-            program = self._program = compile_tree(self.tree)
         if isinstance(program, float):
             return program
+        if program.symbol is not None:
+            return values[program.symbol]
         with np.errstate(all="ignore"):
             result: Samples = program(values, {} if memo is None else memo)
         return result
@@ -83,6 +122,15 @@ class Expression:
 
     def __repr__(self) -> str:
         return f"Expression({self.source!r})"
+
+
+def evaluate_all(
+    expressions: Iterable[Expression | None], values: Mapping[str, Samples], memo: dict[str, Any]
+) -> list[Samples | float]:
+    """Return what each `evaluate` gives, in less time; nan where there is no expression."""
+    with np.errstate(all="ignore"):
+        programs = [math.nan if each is None else each._program for each in expressions]
+        return [each if isinstance(each, float) else each(values, memo) for each in programs]
 
 
 def read(
@@ -133,23 +181,22 @@ def _remembered(
     text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool
 ) -> Expression | ExpressionError:
     # An error is kept without its traceback, which would hold every frame of the parse.
-    return _Attempts(vocabulary, is_angle, degrees).read(text)
+    return _Attempts((vocabulary, is_angle, degrees)).read(text)
 
 
 class _Attempts:
     """The reading of a text and, where it cannot be read, of a few repaired ones."""
 
-    def __init__(self, vocabulary: Vocabulary, is_angle: bool, degrees: bool) -> None:
-        self.vocabulary = vocabulary
-        self.is_angle = is_angle
-        self.degrees = degrees
+    def __init__(self, manner: Manner) -> None:
+        self.manner = manner
         self.left = _ATTEMPTS
 
     def read(self, text: str) -> Expression | ExpressionError:
         try:
-            return _read(text, self.vocabulary, is_angle=self.is_angle, degrees=self.degrees)
+            parsed = _parsed(text, *self.manner)
         except UnreadableError as stop:
-            return explain(Failure(text, self.vocabulary, stop, self.repaired))
+            return explain(Failure(text, self.manner[0], stop, self.repaired))
+        return Expression(text, parsed.tree, parsed.notes, parsed.symbols, self.manner)
 
     def repaired(self, text: str) -> str | None:
         """Return `text` where it can be read, else what it would be repaired to, if anything."""
@@ -160,7 +207,17 @@ class _Attempts:
         return text if isinstance(result, Expression) else result.suggestion
 
 
-def _read(text: str, vocabulary: Vocabulary, *, is_angle: bool, degrees: bool) -> Expression:
+class _Parsed(NamedTuple):
+    """What a text was read as."""
+
+    tree: Node
+    notes: tuple[Note, ...]
+    symbols: frozenset[str]
+
+
+@lru_cache(maxsize=_TREES)
+def _parsed(text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool) -> _Parsed:
+    """Return what `text` is. Raises UnreadableError."""
     characters = normalise(text)
     if not characters.text or characters.text.isspace():
         raise UnreadableError("empty", (0, len(text)))
@@ -168,16 +225,22 @@ def _read(text: str, vocabulary: Vocabulary, *, is_angle: bool, degrees: bool) -
     tokens = tokenise(text, characters, vocabulary, degrees=degrees, notes=notes)
     builder = Builder(text, notes, degrees=degrees)
     try:
-        tree: Node = _TABLE.parse(tokens, builder.table())
+        tree: Node = _TABLE.parse(tokens, builder)
     except UnexpectedTokenError as unexpected:
         at = unexpected.index
         raise UnreadableError("grammar", tokens[at][2:], tokens=tokens, index=at) from None
-    symbols = _measure(tree)
+    symbols = _shared(_measure(tree))
     if degrees:
         tree = in_degrees(tree, is_angle=is_angle, notes=notes)
     elif builder.degree_functions:
         tree = without_degree_functions(tree, notes=notes)
-    return Expression(text, tree, tuple(notes), symbols)
+    return _Parsed(tree, tuple(notes), symbols)
+
+
+@lru_cache(maxsize=_SETS_OF_SYMBOLS)
+def _shared(symbols: frozenset[str]) -> frozenset[str]:
+    """Return the same set for every text that uses the same symbols."""
+    return symbols
 
 
 def _measure(tree: Node) -> frozenset[str]:
@@ -186,23 +249,43 @@ def _measure(tree: Node) -> frozenset[str]:
     A run of sums, or of products, counts as one level, for that is how it is written.
     """
     symbols = set()
+    count, depth = 0, 0
+    nodes: list[Any] = [tree]
+    while nodes:
+        below: list[Any] = []
+        for node in nodes:
+            kind = type(node)
+            if kind is Variable:
+                symbols.add(node.symbol.name)
+            elif kind is Binary:
+                (nodes if _runs_on(node) else below).append(node.left)
+                below.append(node.right)
+            elif kind is not Number:
+                below += children(node)
+        count, depth = count + len(nodes), depth + 1
+        if count > LIMITS.nodes or depth > LIMITS.depth:
+            raise UnreadableError("beyond", (tree.start, tree.end), limit=_broken(tree))
+        nodes = below
+    return frozenset(symbols)
+
+
+def _broken(tree: Node) -> str:
+    """Return the limit that is met first on the way from right to left: a student is told one."""
     count = 0
-    pending = [(tree, 1)]
+    pending: list[tuple[Any, int]] = [(tree, 1)]
     while pending:
         node, depth = pending.pop()
         count += 1
         if depth > LIMITS.depth:
-            raise UnreadableError("beyond", (tree.start, tree.end), limit="depth")
+            return "depth"
         if count > LIMITS.nodes:
-            raise UnreadableError("beyond", (tree.start, tree.end), limit="nodes")
-        kind = type(node)
-        if kind is Variable:
-            symbols.add(node.symbol.name)  # type: ignore[union-attr]
-        elif kind is Binary:
-            left: Node = node.left  # type: ignore[union-attr]
-            flat = type(left) is Binary and level(left) == level(node)
-            pending.append((left, depth if flat else depth + 1))
-            pending.append((node.right, depth + 1))  # type: ignore[union-attr]
-        elif kind is not Number:
-            pending.extend([(child, depth + 1) for child in children(node)])
-    return frozenset(symbols)
+            break
+        pending.extend((child, depth + 1) for child in children(node))
+        if type(node) is Binary and _runs_on(node):
+            pending[-2] = node.left, depth
+    return "nodes"
+
+
+def _runs_on(node: Binary) -> bool:
+    """Tell whether the operand on the left is in one run with `node`."""
+    return type(node.left) is Binary and node.left.operator in _RUNS[node.operator]

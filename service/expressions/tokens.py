@@ -10,6 +10,7 @@ from service.expressions.errors import Note, Span
 from service.expressions.functions import IN_DEGREES, MODULES, UNIT_FUNCTIONS
 from service.expressions.glyphs import CLOSE, MARKER, OPEN
 from service.expressions.indices import INDEX, Indexed, indexed, is_family
+from service.expressions.markers import is_marker
 from service.expressions.remarks import Remarks
 from service.expressions.table import END, Token
 from service.expressions.tree import Binary, Call, Node, Number, Pi, Variable
@@ -30,12 +31,6 @@ _FUNCTION_POWER: Final = re.compile(r"\s*(?:\^|\*\*)\s*")
 _EXPONENT: Final = re.compile(
     r"([0-9]+)(?![0-9.eE])|\(\s*([0-9]+)\s*\)|\{\s*([0-9]+)\s*\}|\[\s*([0-9]+)\s*\]"
 )
-# Behind a marked joint variable an angle is taken off as often as it is put on: θ1*-π/2, θ1*-90°.
-_ANGLE_TAKEN_OFF: Final = (
-    r"\s*-\s*(?:pi\b|π|[0-9.]+\s*\*?\s*(?:pi\b|π)|[0-9.]+\s*(?:°|deg)|[0-9]{2,}\s*$)"
-)
-_MARKER: Final = re.compile(rf"\s*(?:\+|\)|,|$)|\s+-\s|{_ANGLE_TAKEN_OFF}")
-_SPACED_MARKER: Final = re.compile(r"\s*(?:\+|\)|,|$)")
 _E_NAME: Final = re.compile(r"([eE])([+-]?)([0-9]+)$")
 _NUMERIC_FRACTION: Final = re.compile(rf"{OPEN}\{{?\s*[0-9]+\s*\}}?/\{{?\s*[0-9]+\s*\}}?{CLOSE}")
 # An operand can end with one of these, and begin with NUMBER, NAME, FUNCTION, ROOT, LEFT or OPEN.
@@ -81,7 +76,8 @@ class _Lexer:
 
     def run(self) -> list[Token]:
         text, match, position = self.text, _TOKEN.match, 0
-        while position < len(text):
+        in_place, length = self.starts is None, len(text)
+        while position < length:
             found = match(text, position)
             # The last alternative takes any character, so something is always found.
             assert found is not None
@@ -90,7 +86,15 @@ class _Lexer:
             if group == 1:
                 position = self._word(found[1], start, position)
             elif group == 3:
-                self._operator(found[3], start, position)
+                operator = found[3]
+                terminal = _TERMINALS.get(operator)
+                if terminal is None or (operator == "*" and self._is_joint()):
+                    self._operator(operator, start, position)
+                    continue
+                # Most operators mean one thing only, and most places are their own.
+                a, b = (start, position) if in_place else self._span(start, position)
+                self.tokens.append((terminal, a, a, b))
+                self.last = terminal
             elif group == 2:
                 self._number(found[2], start, position)
             else:
@@ -240,10 +244,8 @@ class _Lexer:
 
     def _is_marker(self, start: int, end: int) -> bool:
         """Tell whether the * at `start` marks a joint variable, as tables print it."""
-        if not self._is_joint():
-            return False
-        pattern = _SPACED_MARKER if self.text[start - 1].isspace() else _MARKER
-        return pattern.match(self.text, end) is not None
+        typed = self.source[slice(*self._span(start, end))]
+        return self._is_joint() and is_marker(self.text, start, end, typed)
 
     def _marker(self, span: Span) -> None:
         """Read a raised star, which marks a joint variable and nothing else."""
@@ -262,7 +264,7 @@ class _Lexer:
             pieces, end = self._index(run, start, end)
         for piece in pieces:
             kind = piece.kind
-            a, b = self._span(start + piece.start, min(start + piece.end, end))
+            a, b = self._span(start + piece.start, start + piece.end)
             if kind == "symbol":
                 self._operand("NAME", Variable(piece.symbols[0], a, b), a, b)
             elif kind == "shorthand":
@@ -329,7 +331,8 @@ class _Lexer:
                 raise UnreadableError(
                     "ambiguous_shorthand", (a, b), function=piece.word, names=names
                 )
-        self.remarks.shorthand(piece, a, b)
+        if piece.loose or self.source[a] in "CS":
+            self.remarks.shorthand(piece, a, b)
         self._operand("NAME", Call(piece.word, (total,), a, b), a, b)
 
     def _function(self, name: str, at: int, end: int, a: int, b: int) -> int:
@@ -381,6 +384,7 @@ class _Lexer:
 
 def _sum_of(symbols: tuple[Symbol, ...], a: int, b: int) -> Node:
     total: Node = Variable(symbols[0], a, b)
-    for symbol in symbols[1:]:
-        total = Binary("+", total, Variable(symbol, a, b), a, b)
+    if len(symbols) > 1:
+        for symbol in symbols[1:]:
+            total = Binary("+", total, Variable(symbol, a, b), a, b)
     return total

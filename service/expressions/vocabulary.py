@@ -3,6 +3,7 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final, Literal
 
 from service.expressions import greek
@@ -50,6 +51,11 @@ def joint_variable(index: int, *, sliding: bool = False) -> Symbol:
     return Symbol(f"theta{index}", "angle", (f"q{index}",), joint=index)
 
 
+@lru_cache(maxsize=1024)
+def _one_of_equals(symbols: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
+    return symbols
+
+
 class Vocabulary:
     """The declared symbols, looked up by any of their names. Immutable, equal by content.
 
@@ -57,7 +63,7 @@ class Vocabulary:
     a name cannot be written in an expression.
     """
 
-    __slots__ = ("_hash", "by_name", "longest", "sliding", "symbols", "turning")
+    __slots__ = ("_hash", "_same", "by_name", "longest", "sliding", "symbols", "turning")
 
     def __init__(self, symbols: Sequence[Symbol]) -> None:
         self.symbols: Final = tuple(symbols)
@@ -68,6 +74,9 @@ class Vocabulary:
             self._declare(symbol)
         self.longest: Final = max(map(len, (*self.by_name, *RESERVED)))
         self._hash: Final = hash(self.symbols)
+        # Equal vocabularies have the same one, so that they need not be compared symbol by symbol:
+        # many exercises declare the same symbols, and each word of a text is looked up by them.
+        self._same: Final = _one_of_equals(self.symbols)
 
     def _declare(self, symbol: Symbol) -> None:
         if not _CANONICAL.fullmatch(symbol.name):
@@ -92,7 +101,9 @@ class Vocabulary:
         return self.by_name.get(normal_form(name))
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Vocabulary) and self.symbols == other.symbols
+        return isinstance(other, Vocabulary) and (
+            self._same is other._same or self.symbols == other.symbols
+        )
 
     def __hash__(self) -> int:
         return self._hash

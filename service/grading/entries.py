@@ -1,13 +1,22 @@
 """From what was handed in for one cell to the numbers that it gives at the samples."""
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
 
-from service.expressions import LIMITS, Expression, ExpressionError, Kind, Note, Vocabulary, read
+from service.expressions import (
+    LIMITS,
+    Expression,
+    ExpressionError,
+    Kind,
+    Note,
+    Vocabulary,
+    evaluate_all,
+    read,
+)
 from service.grading.compare import Numbers
 from service.grading.findings import Finding
 from service.grading.report import Severity, Verdict
@@ -20,8 +29,6 @@ EXPECTED_NOTES = frozenset({"joint_marker"})
 
 # What changes by less than this when the joints move does not move.
 MOVES = 1e-9
-
-_DECIMAL = re.compile(r"\d\.|\.\d")
 
 # A 4×4 matrix of a six-joint arm, multiplied out and not simplified, takes a third of it.
 MAX_CHARACTERS = 12_000
@@ -49,7 +56,7 @@ class Entry:
     @property
     def may_be_rounded(self) -> bool:
         """Whether a decimal number was written: then, and only then, can something be rounded."""
-        return self.expression is not None and bool(_DECIMAL.search(self.expression.source))
+        return self.expression is not None and self.expression.has_decimal
 
 
 @dataclass(slots=True)
@@ -68,12 +75,15 @@ class Reader:
 
     def read(self, raw: object, quantity: Kind) -> Entry:
         """The entry for a JSON value. Whatever it is, the worst that comes back is unreadable."""
-        if raw is None or (isinstance(raw, str) and not raw.strip()):
+        if isinstance(raw, str):
+            if not raw.strip():
+                return MISSING
+            if len(raw) <= LIMITS.characters:
+                self.left -= len(raw)
+        elif raw is None:
             return MISSING
-        if isinstance(raw, bool) or not isinstance(raw, str | int | float):
+        elif isinstance(raw, bool) or not isinstance(raw, int | float):
             return unreadable(_wrong_type(raw))
-        if isinstance(raw, str) and len(raw) <= LIMITS.characters:
-            self.left -= len(raw)
         if self.left < 0:
             return unreadable(_TOO_MUCH)
         try:
@@ -91,15 +101,22 @@ class Reader:
         NaN where an entry has none: nothing could be read, or it is undefined or beyond all bounds
         there.
         """
-        numbers = np.full((len(entries), LANES), np.nan)
-        for values, entry in zip(numbers, entries, strict=True):
-            if entry.expression is not None:
-                values[:] = entry.expression.evaluate(self.samples.values, self.samples.memo)
-        bounds = np.array([BOUNDS[quantity] for quantity in quantities])
-        numbers[np.abs(numbers) > bounds[:, None]] = np.nan
-        change = np.abs(numbers[:, :SAMPLES] - numbers[:, SAMPLES:])
-        self.moving = self.moving or bool(np.nanmax(change, initial=0.0) > MOVES)
+        expressions = [entry.expression for entry in entries]
+        found = evaluate_all(expressions, self.samples.values, self.samples.memo)
+        numbers = np.empty((len(entries), LANES))
+        for i, values in enumerate(found):
+            numbers[i] = values
+        numbers[np.abs(numbers) > _bounds(tuple(quantities))] = np.nan
+        if not self.moving:
+            change = np.abs(numbers[:, :SAMPLES] - numbers[:, SAMPLES:])
+            self.moving = bool((change > MOVES).any())
         return numbers
+
+
+@lru_cache(maxsize=256)
+def _bounds(quantities: tuple[Kind, ...]) -> Numbers:
+    """What the values of these may be at most, ``(quantities, 1)``."""
+    return np.array([[BOUNDS[quantity]] for quantity in quantities])
 
 
 _TOO_MUCH = Finding(

@@ -1,6 +1,7 @@
 """Report rows from entries and how each of them compares with what was expected."""
 
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,8 @@ from service.grading.entries import Entry
 from service.grading.findings import ROUNDED, Finding
 from service.grading.protocol import Grading
 from service.grading.report import CellReport, RowReport, Verdict, row_report
+
+_EXACT = int(Match.EXACT)
 
 # What is to be said of single entries, by row and column.
 Slips = Mapping[tuple[int, int], Finding]
@@ -45,12 +48,20 @@ def entry_rows(
     )
 
 
+@lru_cache(maxsize=64)
+def _right(column: str) -> CellReport:
+    """The report on an entry that is right and of which nothing is to be said: on most of them."""
+    return CellReport(column, Verdict.CORRECT)
+
+
 def _cell(
     entry: Entry, place: tuple[str, str], match: int, slip: Finding | None, grading: Grading
 ) -> CellReport:
     """The report on an entry; of a wrong one without a slip of its own the part tells why."""
     row, column = place
     verdict, findings = entry.verdict, entry.findings
+    if match == _EXACT and not findings and entry.expression is not None:
+        return _right(column)
     if match == Match.ROUNDED:
         findings = (*findings, ROUNDED)
     elif entry.expression is not None and match < Match.ROUNDED:

@@ -215,6 +215,7 @@ class Outcome(NamedTuple):
 def outcome(text: str, *, degrees: bool = False) -> Outcome:
     """Read `text` afresh, evaluate and print it. Raises AssertionError for a bad answer."""
     reader._remembered.cache_clear()
+    reader._parsed.cache_clear()
     words.split.cache_clear()
     start = time.process_time()
     try:

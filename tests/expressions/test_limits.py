@@ -15,6 +15,10 @@ from service.expressions import LIMITS, ExpressionError, Vocabulary, read
         ("-" * 41 + "1", "too_deep", (0, 42)),
         ("(" * 41 + "1" + ")" * 41, "too_deep", (40, 41)),
         ("sin(" * 40 + "1" + ")" * 40, "too_deep", (0, 201)),
+        # Both limits are broken: the first on the way from right to left is named.
+        ("k+" * 110 + "-" * 41 + "k", "too_deep", (0, 262)),
+        ("-" * 41 + "k" + "+k" * 110, "too_many_nodes", (0, 262)),
+        ("-" * 300 + "k", "too_deep", (0, 301)),
     ],
 )
 def test_beyond(text: str, code: str, span: tuple[int, int], arm: Vocabulary) -> None:

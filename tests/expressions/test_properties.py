@@ -36,11 +36,17 @@ units = st.builds(Unit, numbers | numbers.map(lambda n: Binary("/", n, Number(2.
                   st.sampled_from(["deg", "rad"]))  # fmt: skip
 
 
+def _that_is_read(tree: Binary) -> Binary:
+    """Turn x^0, which is refused where x is a number (90^0 was meant as 90°), into x*0."""
+    is_zero = isinstance(tree.right, Number) and tree.right.value == 0
+    return Binary("*", tree.left, tree.right) if tree.operator == "^" and is_zero else tree
+
+
 def _inner(trees: st.SearchStrategy[Node]) -> st.SearchStrategy[Node]:
     one = st.sampled_from(["sin", "cos", "tan", "asin", "acos", "atan", "sqrt", "abs", "exp"])
     return st.one_of(
         st.builds(Negation, trees),
-        st.builds(Binary, st.sampled_from("+-*/^"), trees, trees),
+        st.builds(Binary, st.sampled_from("+-*/^"), trees, trees).map(_that_is_read),
         st.builds(Call, one, st.tuples(trees)),
         st.builds(Call, st.just("atan2"), st.tuples(trees, trees)),
     )

@@ -1,11 +1,13 @@
 """c3 or s7, where joint 3 slides and joint 7 is not there."""
 
+from unicodedata import digit
+
 from service.expressions.errors import ExpressionError
 from service.expressions.repairs.failure import Failure, shown
 
 
 def repair(failure: Failure) -> ExpressionError | None:
-    """Say why that joint has no angle."""
+    """Say why that joint has no angle; offer c12 for c123 where joint 3 alone slides."""
     if failure.stop.cause != "misfit":
         return None
     joint = failure.details["joint"]
@@ -13,8 +15,22 @@ def repair(failure: Failure) -> ExpressionError | None:
         return None
     slides = joint in failure.vocabulary.sliding
     reason = f"joint {joint} slides, so it has no angle" if slides else f"there is no joint {joint}"
-    return ExpressionError(
-        "not_revolute",
-        f"{shown(failure.written)} stands for the cosine or sine of joint angles, but {reason}.",
-        failure.span,
+    message = (
+        f"{shown(failure.written)} stands for the cosine or sine of joint angles, but {reason}."
     )
+    turning = _of_those_that_turn(failure)
+    if turning is None:
+        return ExpressionError("not_revolute", message, failure.span)
+    message += " Only joints that turn add to the angle."
+    return ExpressionError("not_revolute", message, failure.span, failure.replaced(turning))
+
+
+def _of_those_that_turn(failure: Failure) -> str | None:
+    """Return the shorthand without its sliding joints, if it names some that turn, each once."""
+    turning, sliding = failure.vocabulary.turning, failure.vocabulary.sliding
+    # Lowered digits count as well: c₁₂₃.
+    joints = [digit(letter) for letter in failure.written if letter.isdigit()]
+    kept = [joint for joint in joints if joint in turning]
+    if not kept or len(set(joints)) < len(joints) or not sliding.keys() | turning >= set(joints):
+        return None
+    return "".join(letter for letter in failure.written if digit(letter, -1) not in sliding)

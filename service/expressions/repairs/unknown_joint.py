@@ -3,12 +3,15 @@
 import re
 
 from service.expressions import greek
-from service.expressions.errors import ExpressionError
+from service.expressions.errors import ExpressionError, Span
+from service.expressions.names import symbol_latex
 from service.expressions.repairs.failure import Failure, shown
 from service.expressions.vocabulary import Vocabulary, normal_form
+from service.expressions.words import split
 
-_JOINT = re.compile(rf"(?P<stem>[A-Za-z{greek.CLASS}]+)(?P<index>[0-9]+)")
+_JOINT = re.compile(rf"(?P<stem>[A-Za-z{greek.CLASS}]+?)(?P<index>[0-9]+)(?P<rest>.*)")
 _STEMS = frozenset({"q", "theta", "θ", "th"})
+_AS_TYPED = re.compile(r"[^0-9₀-₉]*(?:[0-9]+|[₀-₉]+)(?:\s*\})?")
 
 
 def repair(failure: Failure) -> ExpressionError | None:
@@ -19,20 +22,45 @@ def repair(failure: Failure) -> ExpressionError | None:
     match = _JOINT.fullmatch(normal_form(failure.details["run"]))
     if match is None or match["stem"] not in _STEMS or not _joints(vocabulary):
         return None
-    index = match["index"]
+    if match["rest"] and split(match["rest"], vocabulary) is None:
+        return None
+    index, span = match["index"], _place(failure, bool(match["rest"]))
+    written = failure.source[slice(*span)]
     suggestion = None
-    message = f"{shown(failure.written)}: {_reason(int(index[:4]), vocabulary)}."
+    message = f"{shown(written)}: {_reason(int(index[:4]), vocabulary)}."
     own = vocabulary.turning.get(int(index[:4]))
     if own is not None:
-        suggestion = failure.replaced(own.name)
-    parts = [vocabulary.turning.get(int(digit)) for digit in index]
-    if 1 < len(index) < 7 and None not in parts and len(set(index)) == len(index):
-        total = " + ".join(part.name for part in parts if part is not None)
+        suggestion = failure.replaced(own.name, span)
+    total = _total(index, vocabulary, latex="\\" in written)
+    if total is not None:
         message += f" For the sum of angles write {total}."
-        start, end = failure.span
+        start, end = span
         alone = failure.source[start - 1 : start] == "(" and failure.source[end : end + 1] == ")"
-        suggestion = failure.replaced(total if alone else f"({total})")
-    return ExpressionError("unknown_joint", message, failure.span, suggestion)
+        suggestion = failure.replaced(total if alone else f"({total})", span)
+    return ExpressionError("unknown_joint", message, span, suggestion)
+
+
+def _place(failure: Failure, goes_on: bool) -> Span:
+    r"""Return the place of the name alone: in \theta_{12}\cos the run goes on behind it."""
+    start, end = failure.span
+    found = _AS_TYPED.match(failure.source, start, end) if goes_on else None
+    return (start, found.end()) if found else (start, end)
+
+
+def _total(index: str, vocabulary: Vocabulary, *, latex: bool) -> str | None:
+    """Return the sum of the angles that an index names; None where it does not name a sum.
+
+    A joint that slides has no angle to add.
+    """
+    digits = [int(digit) for digit in index]
+    if not 1 < len(digits) < 7 or len(set(digits)) < len(digits):
+        return None
+    if not set(digits) <= {*vocabulary.turning, *vocabulary.sliding}:
+        return None
+    turning = [vocabulary.turning[digit] for digit in digits if digit in vocabulary.turning]
+    if len(turning) < 2:
+        return None
+    return " + ".join(symbol_latex(part) if latex else part.name for part in turning)
 
 
 def _joints(vocabulary: Vocabulary) -> list[int]:

@@ -1,0 +1,41 @@
+r"""A letter in braces with its index behind them: {\theta}_1, {c}_{12}."""
+
+import re
+
+from service.expressions import commands, greek
+from service.expressions.errors import ExpressionError
+from service.expressions.glyphs import SUBSCRIPTS
+from service.expressions.repairs.failure import Failure, shown
+
+_LETTER = rf"\\?[A-Za-z]+|[{greek.CLASS}{''.join(greek.VARIANTS)}]"
+_STEM = rf"{_LETTER}|\\(?:{'|'.join(sorted(commands.STYLES))})\s*\{{\s*(?:{_LETTER})\s*\}}"
+_INDEX = rf"(?:_(?:\{{[^{{}}]*\}}|[A-Za-z0-9]+)|[{''.join(SUBSCRIPTS)}]+|[0-9]+)"
+_BRACED = re.compile(rf"\{{\s*({_STEM})\s*\}}(\s*{_INDEX})")
+_WITHOUT_ARGUMENT = {*commands.FUNCTIONS, *commands.PLAIN, *commands.SPACES}
+# Behind these a brace is an index, a power, or what a command works on.
+_TAKEN = re.compile(r"(?:[_^]|\\([A-Za-z]+))\s*$")
+
+
+def repair(failure: Failure) -> ExpressionError | None:
+    """Offer the name as one, where that can be read."""
+    if failure.stop.cause != "name":
+        return None
+    source, (start, end) = failure.source, failure.span
+    for match in _BRACED.finditer(source):
+        if not (match.start(1) <= start and end <= match.end(1)) or _is_taken(source, match):
+            continue
+        name = f"{match[1]}{match[2].lstrip()}"
+        # A letter before it, or the end of a command, would run together with a plain name.
+        glued = source[: match.start()][-1:].isalnum() and name[0].isalpha()
+        joined = failure.replaced(f" {name}" if glued else name, match.span())
+        repaired = failure.repaired(joined)
+        if repaired is None:
+            return None
+        message = f"A name and its index stand together: write {shown(name)}, without the braces."
+        return ExpressionError("braced_stem", message, match.span(), repaired)
+    return None
+
+
+def _is_taken(source: str, match: re.Match[str]) -> bool:
+    before = _TAKEN.search(source[: match.start()])
+    return before is not None and before[1] not in _WITHOUT_ARGUMENT
