@@ -7,11 +7,11 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from service.catalogue.advice import advised
 from service.catalogue.compile import compile_exercise
 from service.catalogue.exercise import Exercise
 from service.catalogue.lines import line_of, value_lines
 from service.catalogue.reading import FieldError
+from service.catalogue.refusals import refusals
 from service.catalogue.schema import ExerciseSpec
 
 
@@ -71,7 +71,7 @@ def exercise_files(*folders: Path) -> list[Path]:
 def load_catalogue(*folders: Path) -> dict[str, Exercise]:
     """All exercises of one or more folders by id, in the order of their file names.
 
-    Raises CatalogueError naming every fault of every file, so that an author mends them at once.
+    Raises CatalogueError naming the faults of all files, those of shape before those of formulas.
     """
     exercises: dict[str, Exercise] = {}
     faults: list[Fault] = []
@@ -92,8 +92,7 @@ def load_exercise(file: Path) -> Exercise:
         content = tomllib.loads(text)
         return compile_exercise(file.stem, ExerciseSpec.model_validate(content))
     except ValidationError as error:
-        found = [(_path(each["loc"]), advised(each)) for each in error.errors(include_url=False)]
-        raise CatalogueError(_with_lines(file, found, text)) from error
+        raise CatalogueError(_with_lines(file, refusals(error), text)) from error
     except FieldError as error:
         raise CatalogueError(_with_lines(file, [(error.field, error.reason)], text)) from error
     except ValueError as error:  # of TOML itself, or of a number with thousands of digits
@@ -115,16 +114,3 @@ def _text(file: Path) -> str:
 def _with_lines(file: Path, found: Iterable[tuple[str, str]], text: str) -> list[Fault]:
     lines = value_lines(text)
     return [Fault(file, field, reason, line_of(field, lines)) for field, reason in found]
-
-
-def _path(location: tuple[int | str, ...]) -> str:
-    """A field as an author would name it: ``parts[0].points``.
-
-    Behind the number of a part pydantic puts the part's kind, and behind the robot the way that it
-    is given; neither is a field of the file.
-    """
-    inserted = {"parts": 2, "robot": 1}.get(str(location[0])) if location else None
-    names = {"start": "from"}
-    steps = [names.get(str(step), step) for i, step in enumerate(location) if i != inserted]
-    path = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps)
-    return path.lstrip(".") or "file"

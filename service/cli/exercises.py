@@ -1,5 +1,7 @@
 """`dh-grader exercises`: the catalogue, its solutions, and the making of more exercises."""
 
+import textwrap
+from collections.abc import Iterator, Sequence
 from typing import Annotated
 
 import typer
@@ -18,13 +20,10 @@ commands = typer.Typer(help="The catalogue of exercises.", no_args_is_help=True)
 @commands.command("list")
 def list_exercises() -> None:
     """List the exercises."""
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="dim")
-    for column in ("id", "title", "joints", "parts (points)"):
-        table.add_column(column, overflow="fold", no_wrap=column in ("id", "joints"))
-    for exercise in catalogue_or_exit().values():
-        parts = ", ".join(f"{part.id} ({part.points:g})" for part in exercise.parts)
-        table.add_row(exercise.id, exercise.title, exercise.structure or "", parts)
-    stdout().print(table)
+    exercises = catalogue_or_exit().values()
+    console = stdout()
+    for line in _list(list(exercises), console.width):
+        console.print(line, soft_wrap=True)
 
 
 @commands.command("show")
@@ -59,10 +58,37 @@ def show_exercise(
     console.print(Padding(_symbols(exercise), (0, 0, 0, 2), expand=False))
     console.print()
     console.print(Text("Parts", "bold"))
+    # Only here: FastAPI takes a third of a second to import.
+    from service.api.exercises import shape
+    from service.cli.shapes import in_words
+
     for part in exercise.parts:
         heading = f"{part.id}: {part.title} ({part.kind}, {part.points:g} points)"
         console.print(Padding(Text(heading), (0, 0, 0, 2), expand=False))
-        console.print(Padding(Text(part.prompt, "dim"), (0, 0, 0, 4), expand=False))
+        for text in filter(None, (part.prompt, f"Answer: {in_words(shape(part, exercise))}.")):
+            console.print(Padding(Text(text, "dim"), (0, 0, 0, 4), expand=False))
+
+
+def _list(exercises: Sequence[Exercise], width: int) -> Iterator[Text]:
+    """Each exercise's id, joints and title, and its parts below the title."""
+    ids = max(len(exercise.id) for exercise in exercises)
+    joints = max(len("joints"), *(len(exercise.structure or "") for exercise in exercises))
+    indent = " " * (ids + joints + 4)
+    room = max(width - len(indent), _NARROWEST)
+    yield Text(f"{'id':{ids}}  {'joints':{joints}}  title, and parts (points)", "dim")
+    for exercise in exercises:
+        first, *more = textwrap.wrap(exercise.title, room)
+        yield Text(f"{exercise.id:{ids}}  {exercise.structure or '':{joints}}  {first}")
+        # A part and its points stay together: their blank is none that a line may break at.
+        parts = ", ".join(
+            f"{part.id}\N{NO-BREAK SPACE}({part.points:g})" for part in exercise.parts
+        )
+        below = textwrap.wrap(parts, room, break_on_hyphens=False)
+        yield from (Text(indent + line) for line in more)
+        yield from (Text(indent + line.replace("\N{NO-BREAK SPACE}", " "), "dim") for line in below)
+
+
+_NARROWEST = 24
 
 
 def _paragraphs(statement: str) -> str:

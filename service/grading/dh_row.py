@@ -1,7 +1,8 @@
 """Answer kind ``dh_row``: the DH row of a transform, or that it has none."""
 
+import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from service.grading.pasted import length_unit
 from service.grading.protocol import Grading, PartTerms
 from service.grading.report import CellReport, PartReport, Verdict, row_report
 from service.grading.samples import Lanes
+from service.grading.table_shapes import canonical_table
 from service.grading.tables import IS_ANGLE, HandedInRow, UnreadableTableError, read_table
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh_row import row
@@ -37,16 +39,16 @@ class DhRowKind:
         terms = PartTerms(part.id, part.kind, part.points, part.all_or_nothing)
         transform = _transform(part, grading)
         broken = violated(transform, part.convention, grading.exercise.length_scale)
-        if _says_none(answer):
+        try:
+            written = None if _says_none(answer) else _read_row(answer, grading)
+        except UnreadableTableError as error:
+            return terms.unread(Verdict.UNREADABLE, grading.show((error.finding,)))
+        if written is None:
             slips = () if broken else (has_a_row(part.convention),)
             verdict = Verdict.CORRECT if broken else Verdict.INCORRECT
             cell = CellReport(NONE, verdict)
             report = row_report(LABEL, part.points, (cell,), grading.show(slips, LABEL))
             return terms.report((report,))
-        try:
-            written = _read_row(answer, grading)
-        except UnreadableTableError as error:
-            return terms.unread(Verdict.UNREADABLE, grading.show((error.finding,)))
         if broken:
             cells = tuple(
                 CellReport(
@@ -93,18 +95,41 @@ def _transform(part: DhRowSpec, grading: Grading) -> Matrices:
 
 
 def _says_none(answer: object) -> bool:
+    """Whether the answer is that there is no row. Raises UnreadableTableError for one with both."""
     if isinstance(answer, Mapping):
-        return answer.get(NONE) is True
-    return isinstance(answer, str) and answer.strip().casefold() == NONE
+        named = answer.get(NONE)
+        if named in _NOT_SAID:
+            return False
+        if _gives_a_row(answer):
+            raise UnreadableTableError(_CONTRADICTION)
+        return named is True
+    return isinstance(answer, str) and _NONE.fullmatch(answer.strip()) is not None
+
+
+def _gives_a_row(answer: Mapping[str, object]) -> bool:
+    """Whether a value is written for any cell, or rows are."""
+    table = canonical_table([answer])
+    cells = table["rows"][0].values() if isinstance(table, Mapping) else ()
+    return any(map(_is_written, (answer.get("rows"), *cells)))
+
+
+def _is_written(value: object) -> bool:
+    return bool(value.strip()) if isinstance(value, str) else value is not None and value != []
 
 
 def _read_row(answer: object, grading: Grading) -> HandedInRow:
     """The one row that was handed in. Raises UnreadableTableError."""
-    if isinstance(answer, Mapping) and not answer.keys().isdisjoint(COLUMNS):
-        answer = {"rows": [answer]}
-    elif not isinstance(answer, str) and not (isinstance(answer, Mapping) and "rows" in answer):
-        raise UnreadableTableError(_WRONG_SHAPE)
-    table = read_table(answer, grading.reader, length_unit(grading.exercise))
+    if not isinstance(answer, str):
+        answer = canonical_table(answer if _has_rows(answer) else [answer])
+        if not isinstance(answer, Mapping):
+            raise UnreadableTableError(_WRONG_SHAPE)
+    try:
+        table = read_table(answer, grading.reader, length_unit(grading.exercise))
+    except UnreadableTableError as error:
+        # A table of another shape; of this answer nobody expects a table.
+        wrong = error.finding.code == _WRONG_SHAPE.code
+        finding = replace(_WRONG_TEXT, span=error.finding.span) if wrong else error.finding
+        raise UnreadableTableError(finding) from error
     if len(table.rows) > 1:
         raise UnreadableTableError(_WRONG_SHAPE)
     if not table.rows:
@@ -112,10 +137,33 @@ def _read_row(answer: object, grading: Grading) -> HandedInRow:
     return table.rows[0]
 
 
+def _has_rows(answer: object) -> bool:
+    """Whether the row lies in a list of rows."""
+    if isinstance(answer, Mapping):
+        return "rows" in answer
+    return isinstance(answer, list) and any(isinstance(row, list | dict) for row in answer)
+
+
+# The text alone, and the JSON for it as text.
+_NONE = re.compile(r"""["']?none["']?\.?|\{\s*["']?none["']?\s*:\s*true\s*\}""", re.IGNORECASE)
+_NOT_SAID: tuple[object, ...] = (None, False, "")
+
 _WRONG_SHAPE = Finding(
     "wrong_shape",
     'This answer is one row, {"a": …, "alpha": …, "d": …, "theta": …}, or {"none": true} where '
     "there is none.",
+    reading=True,
+)
+_WRONG_TEXT = Finding(
+    "wrong_shape",
+    "This answer is one row: write its four values in the order a, α, d, θ with commas between "
+    "them, or none where there is no row.",
+    reading=True,
+)
+_CONTRADICTION = Finding(
+    "contradiction",
+    'This answer says that there is no row, and gives one: write {"none": true} alone, or the '
+    "row alone.",
     reading=True,
 )
 

@@ -28,7 +28,9 @@ class PositionKind:
         terms = PartTerms(part.id, part.kind, part.points, part.all_or_nothing)
         quantities: list[Kind] = ["length"] * len(part.coordinates)
         try:
-            entries = read_list(answer, quantities, grading.reader)
+            # Of [x, y, 0] for x and z nobody could say whether z is the second or the third.
+            planar = part.coordinates == "xy"
+            entries = read_list(answer, quantities, grading.reader, planar=planar)
         except UnreadableMatrixError as error:
             return terms.unread(Verdict.UNREADABLE, grading.show((error.finding,)))
         expected = _expected(part, grading)

@@ -12,6 +12,7 @@ from service.grading.findings import Finding
 from service.grading.headers import QUANTITIES
 from service.grading.pasted import entries_of, from_grid_error, read_pasted_table
 from service.grading.report import Severity
+from service.grading.table_shapes import canonical_table
 from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh import Convention
 
@@ -32,11 +33,18 @@ CONVENTION_NAMES: Mapping[str, Convention] = {
 class HandedInRow:
     """One row as read: an entry for each of a, α, d, θ, and their numbers ``(4, LANES)``.
 
-    A number is NaN where a cell could not be read.
+    A number is NaN where a cell could not be read. Where ``values`` are what rounded angles stand
+    for, ``as_written`` are those that were written.
     """
 
     entries: tuple[Entry, ...]
     values: Table
+    as_written: Table | None = None
+
+    @property
+    def handed_in(self) -> Table:
+        """The numbers as they were handed in."""
+        return self.values if self.as_written is None else self.as_written
 
     @property
     def rounded(self) -> list[bool]:
@@ -69,14 +77,16 @@ class UnreadableTableError(Exception):
 def read_table(answer: object, reader: Reader, length_unit: str | None = None) -> HandedInTable:
     """The table in a JSON answer ``{"rows": [{"a", "alpha", "d", "theta"} …], "convention"?}``.
 
-    The answer, or its rows, may be pasted text. ``length_unit`` is that of the exercise's lengths,
-    for a pasted column that names another.
+    It may have other shapes that mean the same (``table_shapes``), and it, or its rows, may be
+    pasted text. ``length_unit`` is that of the exercise's lengths, for a pasted column that names
+    another.
 
     Raises UnreadableTableError where the answer has no rows at all; a row or cell that cannot be
     read costs only itself.
     """
     if isinstance(answer, str):
         answer = {"rows": answer}
+    answer = canonical_table(answer)
     if isinstance(answer, Mapping) and isinstance(answer.get("rows"), str):
         return _pasted(answer["rows"], answer.get("convention"), reader, length_unit)
     if not isinstance(answer, Mapping) or not isinstance(answer.get("rows"), list):

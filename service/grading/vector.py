@@ -25,7 +25,8 @@ class VectorKind:
         terms = PartTerms(part.id, part.kind, part.points, part.all_or_nothing)
         quantities: list[Kind] = [component.quantity for component in part.components]
         try:
-            entries = read_list(answer, quantities, grading.reader)
+            planar = len(quantities) == 2
+            entries = read_list(answer, quantities, grading.reader, planar=planar)
         except UnreadableMatrixError as error:
             return terms.unread(Verdict.UNREADABLE, grading.show((error.finding,)))
         expected = _expected(part, grading)

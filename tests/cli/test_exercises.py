@@ -31,6 +31,30 @@ def test_the_list_has_a_line_for_each(run: Run) -> None:
     assert max(map(len, result.stdout.splitlines())) <= 80
 
 
+def test_the_list_breaks_no_title_that_fits_and_no_part_from_its_points(run: Run) -> None:
+    lines = run("exercises", "list").stdout.splitlines()
+    assert lines[0].split() == ["id", "joints", "title,", "and", "parts", "(points)"]
+    at = next(i for i, line in enumerate(lines) if line.startswith("planar-rr "))
+    indent = lines[0].index("title,")
+    assert [line[indent:] for line in lines[at : at + 3]] == [
+        "Planar RR arm, distal convention",
+        "table (4), links (4), pose (4), position (2),",
+        "task-space (3)",
+    ]
+    assert not [line for line in lines if line.strip().startswith("(")]
+
+
+@pytest.mark.parametrize("columns", ["40", "200"])
+def test_the_list_follows_the_terminal(
+    columns: str, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", columns)
+    text = run("exercises", "list").stdout
+    one_line = "SCARA manipulator with its link transforms, distal convention" in text
+    assert one_line == (columns == "200")
+    assert "(8)" in text
+
+
 def test_show_tells_what_to_do_and_no_answer(run: Run) -> None:
     result = run("exercises", "show", "stanford-arm")
     assert result.exit_code == 0

@@ -32,7 +32,18 @@ def conditions(catalogue: Mapping[str, Exercise]) -> Exercise:
         ("second", NONE),
         ("second", "none"),
         ("third", " None "),
+        ("third", "none."),
+        ("third", '"none"'),
+        ("third", '{"none": true}'),
+        ("second", {**NONE, "a": "", "alpha": None, "d": " "}),
+        ("second", {**NONE, "why": "x1 is not perpendicular to z0"}),
         ("fourth", FOURTH),
+        ("fourth", {"none": False, **FOURTH}),
+        ("fourth", {"none": None, **FOURTH}),
+        ("fourth", {"a": 3, "α": 0, "d_i": 2, "θ": "pi/2"}),
+        ("fourth", [3, 0, 2, "pi/2"]),
+        ("fourth", [[3, 0, 2, "pi/2"]]),
+        ("fourth", "3, 0, 2, pi/2"),
         ("fourth", "a,alpha,d,theta\n3,0,2,pi/2"),
     ],
 )
@@ -86,6 +97,38 @@ def test_another_shape_is_no_answer(answer: object, conditions: Exercise) -> Non
     report = part(handed_in(conditions, {"first": answer}), "first")
     assert report.points == 0
     assert report.verdict in (Verdict.UNREADABLE, Verdict.MISSING)
+
+
+@pytest.mark.parametrize("part_id", ["second", "fourth"])
+@pytest.mark.parametrize(
+    "answer",
+    [
+        {**NONE, **FOURTH},
+        {**NONE, "a": 0},
+        {**NONE, "θ": "phi"},
+        {**NONE, "a": "", "alpha (deg)": 90},
+        {**NONE, "rows": [FOURTH]},
+        {"none": "yes", **FOURTH},
+    ],
+)
+def test_none_with_a_row_contradicts_itself(
+    part_id: str, answer: object, conditions: Exercise
+) -> None:
+    report = part(handed_in(conditions, {part_id: answer}), part_id)
+    assert (report.verdict, report.points) == (Verdict.UNREADABLE, 0)
+    assert told(report) == {"contradiction"}
+
+
+@pytest.mark.parametrize(
+    "text", ["no", "no row", "-", "impossible", "3, 0, 2", "3 0 2", "3,0\n2,1"]
+)
+def test_text_that_is_no_row_is_told_what_a_row_is(text: str, conditions: Exercise) -> None:
+    report = part(handed_in(conditions, {"fourth": text}), "fourth")
+    assert (report.verdict, told(report)) == (Verdict.UNREADABLE, {"wrong_shape"})
+    [message] = report.feedback
+    assert "one row" in message.message
+    assert "none" in message.message
+    assert "table" not in message.message
 
 
 MODIFIED = one_part(

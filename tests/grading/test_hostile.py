@@ -194,7 +194,7 @@ def test_a_table_of_thousands_of_brackets_raises_nothing(
 
 
 @pytest.mark.parametrize(
-    "row", ["0", "q1", 5, 0, 0.0, True, ["0", "0", "0", "q1"], [], None, "", nested(50)]
+    "row", ["0", "q1", 5, 0, 0.0, True, ["0", "0", "q1"], [], None, "", nested(50)]
 )
 def test_a_row_that_is_no_object_earns_nothing(
     row: object, given_frames: Mapping[str, Exercise]

@@ -63,6 +63,142 @@ def test_a_position_of_another_shape(answer: object, make_exercise: Make) -> Non
     assert report.verdict in (Verdict.UNREADABLE, Verdict.MISSING)
 
 
+COORDINATES_XY = one_part("position", 'coordinates = "xy"', SPATIAL_RRR)
+POINT = one_part(
+    "vector",
+    """components = [
+    { name = "x", quantity = "length", expected = "l" },
+    { name = "y", quantity = "number", expected = "k" },
+]""",
+)
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        ["l", "k", 0],
+        ["l", "k", 0.0],
+        ["l", "k", " 0 "],
+        [["l"], ["k"], [0]],
+        [["l", "k", 0]],
+        "l, k, 0",
+        "[l; k; 0]",
+        "l\nk\n0",
+        "(l, k, 0)",
+        r"\begin{bmatrix} l \\ k \\ 0 \end{bmatrix}",
+    ],
+)
+def test_a_third_zero_is_left_aside_and_said_to_be(answer: object, make_exercise: Make) -> None:
+    report = graded(make_exercise(POINT), answer)
+    assert full_marks(report), report
+    assert [row.label for row in report.rows] == ["1", "2"]
+    assert told(report) == {"zero_left_aside"}
+    [message] = cell(report, "2", "1").feedback
+    if isinstance(answer, str):
+        assert message.span is not None
+        assert answer[slice(*message.span)].strip() == "0"
+
+
+def test_a_third_zero_of_a_planar_position_is_left_aside(make_exercise: Make) -> None:
+    report = graded(make_exercise(COORDINATES_XY), [*SPATIAL[:2], 0])
+    assert full_marks(report)
+    assert told(report) == {"zero_left_aside"}
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        ["l", "k", 1],
+        ["l", "k", "0.0"],
+        ["l", "k", "0*l"],
+        ["l", "k", False],
+        ["l", "k", None],
+        ["l", 0, "k"],
+        ["l", "k", 0, 0],
+        ["l", "k", 0, 1],
+        "l, k, 0, 1",
+        "l, k, l",
+    ],
+)
+def test_any_other_third_value_is_refused(answer: object, make_exercise: Make) -> None:
+    report = graded(make_exercise(POINT), answer)
+    assert (report.verdict, told(report)) == (Verdict.UNREADABLE, {"wrong_shape"})
+
+
+@pytest.mark.parametrize("coordinates", ["xz", "yz"])
+def test_which_coordinate_a_zero_is_may_not_be_plain(coordinates: str, make_exercise: Make) -> None:
+    """[x, y, 0], handed in for x and z, must not be read with y for z."""
+    text = one_part("position", f'coordinates = "{coordinates}"', SPATIAL_RRR)
+    assert told(graded(make_exercise(text), ["0", "0", 0])) == {"wrong_shape"}
+
+
+def test_three_values_with_a_zero_behind_them_are_refused(make_exercise: Make) -> None:
+    report = graded(make_exercise(POSITION), [*SPATIAL, 0])
+    assert told(report) == {"wrong_shape"}
+    [message] = report.feedback
+    assert message.message.endswith("; this one has 4.")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "(2 l, k k)",
+        "[2 l, k k]",
+        "[2 l + 0, k k]",
+        "2 l; k k",
+        "2 l\nk k",
+        "  2 l ;  k k",
+        "(2 l, sqrt((k k)^2))",
+    ],
+)
+def test_products_may_be_written_with_blanks(text: str, make_exercise: Make) -> None:
+    """Where only one reading has as many values as are asked for, it is that one."""
+    vector = one_part(
+        "vector",
+        """components = [
+    { name = "x", quantity = "length", expected = "2*l" },
+    { name = "y", quantity = "number", expected = "k^2" },
+]""",
+    )
+    assert full_marks(graded(make_exercise(vector), text))
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("no", "wrong_shape"),
+        ("l", "wrong_shape"),
+        ("l k", "wrong_shape"),
+        # MATLAB reads three values here.
+        ("[l -l, k]", "mixed_separators"),
+        ("[l k, k, l k]", "mixed_separators"),
+        ('{"x": 1, "y": 2, "z": 3}', "mixed_separators"),
+        ("1 2 3\n4 5\n6 7", "ambiguous_columns"),
+    ],
+)
+def test_what_is_no_list_is_not_told_of_tables(text: str, code: str, make_exercise: Make) -> None:
+    report = graded(make_exercise(POINT), text)
+    assert (report.verdict, told(report)) == (Verdict.UNREADABLE, {code})
+    [message] = report.feedback
+    assert "list of 2 values" in message.message
+    for word in ("row", "column", "table", "matrix"):
+        assert word not in message.message
+
+
+@pytest.mark.parametrize("answer", [[["l"], ["k"], ["l"]], [["l", "k"], ["l", "k"]], [["l"], []]])
+def test_lists_in_a_list_are_no_list_of_values(answer: object, make_exercise: Make) -> None:
+    assert told(graded(make_exercise(POINT), answer)) == {"wrong_shape"}
+
+
+def test_equations_in_a_list_are_repaired_one_by_one(make_exercise: Make) -> None:
+    report = graded(make_exercise(POINT), "x = l\ny = k")
+    assert not_correct(report) == {
+        ("1", "1"): Verdict.UNREADABLE,
+        ("2", "1"): Verdict.UNREADABLE,
+    }
+    assert told(report) == {"equation"}
+
+
 def test_two_coordinates_leave_the_third_missing(make_exercise: Make) -> None:
     report = graded(make_exercise(POSITION), SPATIAL[:2])
     assert not_correct(report) == {("3", "1"): Verdict.MISSING}

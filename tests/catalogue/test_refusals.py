@@ -1,0 +1,68 @@
+"""How the author of an exercise file is told of a value that is none of those known."""
+
+from pathlib import Path
+
+import pytest
+
+from service.catalogue import CatalogueError, load_exercise
+from tests.catalogue.test_faults import VALID, write
+
+KINDS = (
+    "'dh_table', 'link_transforms', 'transform', 'rotation', 'matrix', 'position', 'vector', "
+    "'euler_angles', 'screw_axes' or 'dh_row'"
+)
+CONVENTIONS = "'standard', 'modified' or 'either'"
+FRAMES = "'base' or 'tool', or input should be a valid integer"
+SEQUENCES = (
+    "'RPY', 'XYZ', 'XZY', 'YXZ', 'YZX', 'ZXY', 'ZYX', 'XYX', 'XZX', 'YXY', 'YZY', 'ZXZ' or 'ZYZ'"
+)
+TABLE = 'kind = "dh_table"'
+POSE = 'kind = "transform"'
+
+
+def told(tmp_path: Path, text: str) -> list[tuple[str, str]]:
+    with pytest.raises(CatalogueError) as caught:
+        load_exercise(write(tmp_path, text))
+    return [(fault.field, fault.reason) for fault in caught.value.faults]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "field", "reason"),
+    [
+        (TABLE, 'kind = "dh_tabel"', "parts[0].kind",
+         f"is 'dh_tabel'; did you mean 'dh_table'? Write {KINDS}"),
+        (TABLE, 'kind = "DH_Table"', "parts[0].kind",
+         f"is 'DH_Table'; did you mean 'dh_table'? Write {KINDS}"),
+        (TABLE, 'kind = "quiz"', "parts[0].kind", f"is 'quiz'; write {KINDS}"),
+        (TABLE, "kind = 3", "parts[0].kind", f"is 3; write {KINDS}"),
+        (TABLE, f'kind = "{"x" * 500}"', "parts[0].kind",
+         f"is 'xxxxxxxxxxxx...xxxxxxxxxxxxx'; write {KINDS}"),
+        (POSE, 'kind = "euler_angles"\nsequence = "zyZ"', "parts[1].sequence",
+         f"is 'zyZ'; did you mean 'ZYZ'? Write {SEQUENCES}"),
+        ('k = { kind = "number"', 'k = { kind = "nummber"', "symbols.k.kind",
+         "is 'nummber'; did you mean 'number'? Write 'angle', 'length' or 'number'"),
+        # One fault, though the schema tells of each form by itself.
+        ('convention = "standard"\n\n[[parts]]', 'convention = "standart"\n\n[[parts]]',
+         "parts[0].convention",
+         f"is 'standart'; did you mean 'standard'? Write {CONVENTIONS}"),
+        (POSE, f'{POSE}\nfrom = "bas"', "parts[1].from",
+         f"is 'bas'; did you mean 'base'? Write {FRAMES}"),
+        ('["0", "0", "d2 + a1"', '["0", [], "d2 + a1"', "robot.table[1][1]",
+         "Input should be a valid string, or input should be a valid number"),
+    ],
+)  # fmt: skip
+def test_the_nearest_of_those_known(
+    old: str, new: str, field: str, reason: str, tmp_path: Path
+) -> None:
+    assert VALID.count(old) == 1
+    assert told(tmp_path, VALID.replace(old, new)) == [(field, reason)]
+
+
+def test_faults_of_shape_are_told_together(tmp_path: Path) -> None:
+    text = VALID.replace(TABLE, 'kind = "tabel"').replace("points = 4", 'points = "four"')
+    assert [field for field, _ in told(tmp_path, text)] == ["parts[0].kind", "parts[1].points"]
+
+
+def test_a_symbol_may_have_the_name_of_a_form(tmp_path: Path) -> None:
+    text = VALID.replace("[symbols]", "[symbols]\nfloat = 3")
+    assert [field for field, _ in told(tmp_path, text)] == ["symbols.float"]

@@ -1,0 +1,67 @@
+"""`exercises show` says what each answer looks like, as the API does."""
+
+import re
+from collections.abc import Callable
+
+import pytest
+from typer.testing import Result
+
+from service.api.exercises import shape
+from service.catalogue import load_catalogue, shipped_folder
+from service.cli.shapes import in_words
+
+Run = Callable[..., Result]
+
+GIVEN = "base frame, tool frame, directions given"
+FREE = "standard convention; frames free"
+DRAWN = "modified convention; frames"
+CELLS = "the columns a, alpha, d, theta"
+TRANSFORM = "a matrix of 4 rows and 4 columns"
+SCREWS = "a list of screw axes, 6 numbers (ω; v) for each of 1, 2, 3"
+EULER = "about z (angle), about y (angle), about z (angle)"
+
+EXPECTED = {
+    "planar-rr": [
+        f"a table with the rows 1, 2 and {CELLS}; {FREE}; {GIVEN}",
+        f"a list of the matrices A1, A2, each of 4 rows and 4 columns; {FREE}",
+        TRANSFORM,
+        "a list: x (length), y (length)",
+        "a list: p_x (length), p_y (length), φ (angle)",
+    ],
+    "dh-conditions": ["one row with a, alpha, d, theta, or none; standard convention"] * 4,
+    "spherical-wrist": [
+        f"a table with the rows 4, 5, 6 and {CELLS}; {FREE}; {GIVEN}",
+        TRANSFORM,
+        "a matrix of 3 rows and 3 columns",
+        "a list: x (length), y (length), z (length)",
+        f"a list: {EULER}; ZYZ about moving axes",
+    ],
+    "planar-rpr-poe": [
+        TRANSFORM,
+        f"{SCREWS}; space frame; directions given",
+        f"{SCREWS}; body frame; directions given",
+        TRANSFORM,
+        "a list: x (length), y (length)",
+    ],
+    "planar-rrr-drawn": [
+        f"a table with the rows 1, 2, 3, e and {CELLS}; {DRAWN}, {GIVEN}",
+        f"a list of the matrices A1, A2, A3, Ae, each of 4 rows and 4 columns; {DRAWN} given",
+    ],
+}
+
+
+def answers(run: Run, exercise_id: str) -> list[str]:
+    """What is said of the answers of an exercise, part by part, its lines joined."""
+    text = " ".join(run("exercises", "show", exercise_id).stdout.split())
+    return re.findall(r"Answer: (.*?)\.(?= \S+: |$)", text)
+
+
+@pytest.mark.parametrize("exercise_id", EXPECTED)
+def test_what_each_answer_looks_like(exercise_id: str, run: Run) -> None:
+    assert answers(run, exercise_id) == EXPECTED[exercise_id]
+
+
+def test_every_part_of_the_catalogue_has_a_sentence() -> None:
+    for exercise in load_catalogue(shipped_folder()).values():
+        for part in exercise.parts:
+            assert re.fullmatch(r"(?:a|one) [^{}\[\]]+", in_words(shape(part, exercise)))

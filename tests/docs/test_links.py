@@ -1,0 +1,32 @@
+"""The pages name each other by links, and the links lead somewhere."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+_CODE = re.compile(r"^```.*?^```$", re.DOTALL | re.MULTILINE)
+_LINK = re.compile(r"\]\(([^)#\s]+)[^)]*\)")
+
+
+def prose(page: Path) -> str:
+    """The page without its code blocks."""
+    return _CODE.sub("", page.read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_a_page_names_others_by_links(page: Path) -> None:
+    assert re.findall(r"`[\w/-]+\.md`", prose(page)) == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_a_link_leads_to_a_file(page: Path) -> None:
+    targets = [target for target in _LINK.findall(prose(page)) if "://" not in target]
+    assert [target for target in targets if not (page.parent / target).is_file()] == []
+
+
+def test_there_are_links() -> None:
+    linked = {Path(target).name for page in PAGES for target in _LINK.findall(prose(page))}
+    assert {page.name for page in PAGES} - linked == {"README.md"}
