@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,7 +41,7 @@ class Joint:
         return "d" if self.prismatic else "theta"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class ReferenceTable:
     """A table of formulas in one convention; rows beyond the joints are fixed."""
 
@@ -48,7 +49,7 @@ class ReferenceTable:
     joints: tuple[Joint, ...]
     rows: tuple[FormulaRow, ...]
 
-    @property
+    @cached_property
     def labels(self) -> tuple[str, ...]:
         """Row labels: the joint's number, and "e" for the fixed row after the last joint.
 
@@ -60,11 +61,26 @@ class ReferenceTable:
 
     def values(self, values: Values, lanes: int) -> Table:
         """The table in numbers, ``(rows, 4, lanes)``, at the given values of the symbols."""
-        table = np.empty((len(self.rows), len(COLUMNS), lanes))
+        constants, formulas = self._constants_and_formulas
+        table = np.repeat(constants[..., None], lanes, axis=-1)
+        for i, j, formula in formulas:
+            table[i, j] = formula.evaluate(values)
+        return table
+
+    @cached_property
+    def _constants_and_formulas(
+        self,
+    ) -> tuple[NDArray[np.float64], tuple[tuple[int, int, Expression], ...]]:
+        """The cells that are numbers, ``(rows, 4)``, and those that depend on symbols."""
+        constants = np.zeros((len(self.rows), len(COLUMNS)))
+        formulas = []
         for i, row in enumerate(self.rows):
             for j, formula in enumerate(row):
-                table[i, j] = formula.evaluate(values)
-        return table
+                if formula.symbols:
+                    formulas.append((i, j, formula))
+                else:
+                    constants[i, j] = formula.evaluate({})
+        return constants, tuple(formulas)
 
 
 def at_home(joints: tuple[Joint, ...], values: Values, lanes: int) -> Values:

@@ -1,6 +1,7 @@
 """Where a student's frames are valid but not the reference's: told, so that nobody wonders."""
 
 from collections.abc import Sequence
+from itertools import compress
 
 import numpy as np
 
@@ -13,14 +14,17 @@ from service.kinematics.walk import SAME
 
 
 def choices(
-    poses: Sequence[Matrices], joints: Sequence[Joint], convention: Convention, exercise: Exercise
+    apart: Matrices, joints: Sequence[Joint], convention: Convention, exercise: Exercise
 ) -> tuple[Finding, ...]:
     """One message for each frame that departs from the reference's.
 
-    ``poses`` are the student's frames in the reference's, ``(lanes, 4, 4)``, one on each joint.
+    ``apart`` ``(joints, lanes, 4, 4)`` are the student's frames on the axes in the reference's.
     """
+    away = np.abs(apart - np.eye(4)).max(axis=1)
+    away[:, :3, 3] /= exercise.length_scale
+    departs = away.max(axis=(1, 2)) > SAME
     findings = []
-    for pose, joint in zip(poses, joints, strict=True):
+    for pose, joint in zip(apart[departs], compress(joints, departs), strict=True):
         frame = joint.index - 1 if convention is Convention.STANDARD else joint.index
         told = _told(pose, frame, joint, exercise.length_scale)
         if told:

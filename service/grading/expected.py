@@ -10,8 +10,9 @@ from service.catalogue import (
     TransformSpec,
     grid_values,
 )
-from service.catalogue.robot import Values, at_home
+from service.catalogue.robot import Robot, Values, at_home
 from service.grading.compare import Numbers
+from service.grading.mechanism import tool_pose
 from service.grading.protocol import Grading
 from service.grading.samples import LANES, Samples
 from service.kinematics.transforms import Matrices, inverse
@@ -33,6 +34,8 @@ def robot_pose(part: PoseSpec, exercise: Exercise, samples: Samples) -> Matrices
     robot = exercise.reference
     if robot is None:
         raise LookupError(f"exercise {exercise.id!r} has no robot")
+    if isinstance(robot, Robot) and is_whole_chain(part, exercise):
+        return tool_pose(exercise, samples)
     values: Values = samples.values
     if part.home:
         values = at_home(robot.joints, values, LANES)

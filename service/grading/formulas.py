@@ -6,8 +6,8 @@ from fractions import Fraction
 import numpy as np
 
 from service.catalogue import Exercise
-from service.grading.compare import difference
-from service.grading.motion import joint_counts
+from service.grading.compare import Numbers, difference
+from service.grading.motion import coefficients
 from service.grading.samples import SAMPLES, Lanes, Samples
 
 EXACT = 1e-9
@@ -20,41 +20,57 @@ def formula_text(values: Lanes, angle: bool, exercise: Exercise, samples: Sample
     That is the form that table cells have: ``theta2 + pi/2``, ``-d2``, ``l1 + l2``. Empty where the
     values are of another form.
     """
-    joints = exercise.joints
-    counts, linear = joint_counts(values[None], joints, samples, np.array([angle]))
-    if not linear[0]:
+    (counts,) = coefficients(values[None], exercise.joints, samples, np.array([angle]))
+    return sum_text(values, counts, angle, exercise, samples)
+
+
+def sum_text(
+    values: Lanes,
+    counts: tuple[int, ...] | None,
+    angle: bool,
+    exercise: Exercise,
+    samples: Samples,
+) -> str:
+    """The same where it is known how often each joint variable is contained, if at all."""
+    if counts is None:
         return ""
-    moving = [joint.variable for joint in joints]
-    constant = values - sum(
-        n * samples.values[name] for n, name in zip(counts[0], moving, strict=True)
-    )
-    kind = "angle" if angle else "length"
-    letters = [v.name for v in exercise.variables if v.joint is None and v.kind == kind]
-    multiples = _multiples(constant, letters, angle, samples)
-    if multiples is None:
+    moving = [joint.variable for joint in exercise.joints]
+    motion = sum(n * samples.values[name] for n, name in zip(counts, moving, strict=True) if n)
+    found = multiples((values - motion)[:SAMPLES], angle, exercise, samples)
+    if found is None:
         return ""
-    shares, remainder = multiples
-    terms = [*zip(counts[0], moving, strict=True), *zip(shares, letters, strict=True)]
+    shares, remainder = found
+    terms = [*zip(counts, moving, strict=True), *shares]
     return _sum(_terms(terms, _constant(remainder, angle)))
 
 
-def _multiples(
-    constant: Lanes, letters: list[str], angle: bool, samples: Samples
-) -> tuple[list[int], float] | None:
-    """Whole multiples of the letters and a remainder that add up to ``constant``."""
+def multiples(
+    constant: Lanes, angle: bool, exercise: Exercise, samples: Samples
+) -> tuple[list[tuple[int, str]], float] | None:
+    """Whole multiples of letters and a remainder that add up to ``constant`` ``(SAMPLES,)``.
+
+    None where there are no such. Letters with a share of 0 are left out.
+    """
     first = constant[0]
     if np.abs(difference(constant, np.full_like(constant, first), angle)).max() < EXACT:
-        return [0] * len(letters), float(first)
+        return [], float(first)
+    kind = "angle" if angle else "length"
+    letters = [v.name for v in exercise.variables if v.joint is None and v.kind == kind]
     if not letters:
         return None
-    letter_values = np.array([samples.values[name][:SAMPLES] for name in letters])
-    basis = np.vstack([letter_values, np.ones(SAMPLES)])
-    solution = np.linalg.lstsq(basis.T, constant[:SAMPLES], rcond=None)[0]
-    shares = np.round(solution[:-1])
-    rest = constant[:SAMPLES] - shares @ letter_values
+    basis, solver = samples.once(("letters", kind), lambda: _basis(letters, samples))
+    shares = np.round(constant @ solver)[:-1]
+    rest = constant - shares @ basis[:-1]
     if np.ptp(rest) > WHOLE:
         return None
-    return [int(share) for share in shares], float(rest.mean())
+    found = zip(shares.astype(np.int_).tolist(), letters, strict=True)
+    return [(share, letter) for share, letter in found if share], float(rest.mean())
+
+
+def _basis(letters: list[str], samples: Samples) -> tuple[Numbers, Numbers]:
+    """The letters' values and a constant, ``(letters + 1, SAMPLES)``, and the pseudo-inverse."""
+    basis = np.array([*(samples.values[name][:SAMPLES] for name in letters), np.ones(SAMPLES)])
+    return basis, np.asarray(np.linalg.pinv(basis), dtype=np.float64)
 
 
 def _constant(value: float, angle: bool) -> str:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from service.catalogue import Joint
 from service.grading.freedom import Freedom
-from service.grading.mechanism import Mechanism, joint_frames
+from service.grading.mechanism import Mechanism, start_frames
 from service.grading.motion import halves
 from service.grading.roles import Role
 from service.grading.samples import SAMPLES
@@ -39,11 +39,11 @@ def own_bases(
     rows = [i for i, role in enumerate(roles) if role.joint is not None]
     at_rest, senses = (found[0] for found in without_motion(table[None], roles, mechanism.samples))
     if not freedom.directions:
-        own = joint_frames(halves(table)[0], convention)[rows]
+        own = start_frames(halves(table)[0], convention)[rows]
         return [carry(_reversed(own, senses[rows]), mechanism.axes, sliding)]
     # A variable may run either way, so the axes are compared where all variables are 0. Only the
     # first axis and the next that is not parallel to it decide how the base is turned.
-    own = joint_frames(at_rest, convention)[rows]
+    own = start_frames(at_rest, convention)[rows]
     target = np.array(list(accumulate(mechanism.joints, np.matmul)))
     ways = [
         np.array([first, *[others] * (len(rows) - 1)]) for first in (1, -1) for others in (1, -1)

@@ -8,14 +8,16 @@ from numpy.typing import NDArray
 
 from service.catalogue import DhTableSpec, Joint, ReferenceTable
 from service.grading.choices import choices
-from service.grading.compare import Match, Numbers, matches
+from service.grading.compare import Match, Numbers, difference, matches
 from service.grading.findings import Finding
-from service.grading.frames import FrameReading, read_in_own_frames
+from service.grading.frames import parallel_neighbours, read_in_own_frames
 from service.grading.freedom import Freedom
-from service.grading.mechanism import Mechanism, mechanism_of
+from service.grading.mechanism import reference_values
+from service.grading.nearest import FrameReading
 from service.grading.protocol import Grading
 from service.grading.roles import Role, roles_of
-from service.grading.samples import LANES, Samples
+from service.grading.samples import LANES
+from service.grading.steadied import steadied
 from service.grading.tables import (
     IS_ANGLE,
     HandedInRow,
@@ -25,6 +27,9 @@ from service.grading.tables import (
 from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh import Convention
 from service.kinematics.frame_choice import NO_SUCH_CELL, WRONG_CELL
+
+# Far beyond what rounding does to a cell.
+PLAIN = 0.02
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,25 +75,38 @@ def judged_table(
     part: DhTableSpec, rows: tuple[HandedInRow, ...], convention: Convention, grading: Grading
 ) -> Judgement:
     """The table held against the reference, or against the valid table nearest to it."""
-    robot = grading.exercise.robot
-    reference = robot.tables.get(convention)
-    if reference is not None:
+    reference = grading.exercise.robot.tables.get(convention)
+    if reference is None:
+        return _judged_in_own_frames(part, rows, convention, grading)
+    if part.frames == "given" or not _plainly_differs(rows, reference, grading):
         judgement = _judged_as_given(rows, reference, grading)
         if part.frames == "given" or not (judgement.wrong or judgement.extra):
             return judgement
-        in_own_frames = _judged_in_own_frames(part, rows, convention, grading)
-        # Of a table that is mostly wrong nobody can say which frames were meant; to follow it
-        # there would reward cells that any number fits.
-        mostly_wrong = in_own_frames.wrong > in_own_frames.matches.size / 2
-        return judgement if mostly_wrong else in_own_frames
-    return _judged_in_own_frames(part, rows, convention, grading)
+    in_own_frames = _judged_in_own_frames(part, rows, convention, grading)
+    # Of a table that is mostly wrong nobody can say which frames were meant; to follow it
+    # there would reward cells that any number fits.
+    if in_own_frames.wrong > in_own_frames.matches.size / 2:
+        return _judged_as_given(rows, reference, grading)
+    return in_own_frames
+
+
+def _plainly_differs(
+    rows: tuple[HandedInRow, ...], reference: ReferenceTable, grading: Grading
+) -> bool:
+    """Whether the first sample already shows that the table is not the reference's own."""
+    expected = reference_values(reference, grading.samples)
+    if len(rows) != len(expected):
+        return False
+    first = np.array([row.values[:, 0] for row in rows])
+    error = np.abs(difference(first, expected[..., 0], IS_ANGLE))
+    return bool((error > PLAIN * column_scales(grading)).any())
 
 
 def _judged_as_given(
     rows: tuple[HandedInRow, ...], reference: ReferenceTable, grading: Grading
 ) -> Judgement:
     """The table held against the reference's own."""
-    expected = reference.values(grading.samples.values, LANES)
+    expected = reference_values(reference, grading.samples)
     rows = _without_idle_rows(rows, len(expected))
     judged, extra = [], []
     for i, j in _paired(rows, expected, grading):
@@ -105,16 +123,31 @@ def _judged_in_own_frames(
     part: DhTableSpec, rows: tuple[HandedInRow, ...], convention: Convention, grading: Grading
 ) -> Judgement:
     """The table held against the valid one nearest to it."""
-    joints = grading.exercise.robot.joints
+    exercise = grading.exercise
+    freedom = freedom_of(part)
     roles = roles_in(rows, convention, grading)
-    reading = nearest_reading(roles, convention, freedom_of(part), grading)
+    reading = nearest_reading(roles, convention, freedom, grading)
+    right = reading.cost < WRONG_CELL
+    if not right and len(reading.roles) < len(rows):
+        # A row of zeros that was left out may be one in which something is missing.
+        with_all = roles_in(rows, convention, grading, wanted=len(rows))
+        longer = read_in_own_frames(with_all, convention, freedom, grading)
+        reading = longer if longer.cost < reading.cost else reading
+    shared = (
+        np.zeros(len(reading.roles), np.bool_)
+        if right
+        else parallel_neighbours(reading.roles, convention, grading)
+    )
     judged = tuple(
-        JudgedRow(label, role.joint, role.row, expected, bool(shared))
-        for label, role, expected, shared in zip(
-            _labels(reading.roles), reading.roles, reading.expected, reading.shared, strict=True
+        JudgedRow(label, role.joint, role.row, expected, bool(adds_up))
+        for label, role, expected, adds_up in zip(
+            _labels(reading.roles), reading.roles, reading.expected, shared, strict=True
         )
     )
-    findings = choices(reading.poses, joints, convention, grading.exercise)
+    findings = choices(reading.frames, exercise.robot.joints, convention, exercise)
+    if not (reading.cost or any(role.row and role.row.as_written is not None for role in roles)):
+        everything = np.full((len(judged), len(COLUMNS)), int(Match.EXACT))
+        return Judgement(judged, everything, findings=findings)
     matches = _all_matches(judged, grading)
     if reading.cost >= NO_SUCH_CELL and not np.count_nonzero(matches < Match.ROUNDED):
         findings = (_UNREACHED, *findings)
@@ -129,13 +162,17 @@ _UNREACHED = Finding(
 
 
 def roles_in(
-    rows: tuple[HandedInRow, ...], convention: Convention, grading: Grading
+    rows: tuple[HandedInRow, ...],
+    convention: Convention,
+    grading: Grading,
+    wanted: int | None = None,
 ) -> tuple[Role, ...]:
-    """Which handed-in row is for which joint."""
+    """Which handed-in row is for which joint; ``wanted`` rows, or as many as the reference has."""
     robot = grading.exercise.robot
     own_table = robot.tables.get(convention)
-    wanted = len(robot.joints if own_table is None else own_table.rows)
-    return roles_of(_without_idle_rows(rows, wanted), robot.joints, grading.samples, wanted)
+    wanted = wanted or len(robot.joints if own_table is None else own_table.rows)
+    roles = roles_of(_without_idle_rows(rows, wanted), robot.joints, grading.samples, wanted)
+    return steadied(roles, grading.exercise, grading.samples)
 
 
 def freedom_of(part: DhTableSpec) -> Freedom:
@@ -149,22 +186,13 @@ def nearest_reading(
     roles: tuple[Role, ...], convention: Convention, freedom: Freedom, grading: Grading
 ) -> FrameReading:
     """The reading of least cost: with the rows as they are, or with the tool row they lack."""
-    robot = grading.exercise.robot
-    mechanism = mechanism_at(grading, grading.samples)
-    own_table = robot.tables.get(convention)
+    reading = read_in_own_frames(roles, convention, freedom, grading)
+    own_table = grading.exercise.robot.tables.get(convention)
     lacks_row = own_table is not None and len(own_table.rows) > len(roles)
-    reading = read_in_own_frames(roles, robot.joints, convention, mechanism, freedom)
     if reading.cost < WRONG_CELL or not lacks_row:
         return reading
-    with_tool_row = (*roles, Role(None, None))
-    longer = read_in_own_frames(with_tool_row, robot.joints, convention, mechanism, freedom)
+    longer = read_in_own_frames((*roles, Role(None, None)), convention, freedom, grading)
     return longer if longer.cost + WRONG_CELL <= reading.cost else reading
-
-
-def mechanism_at(grading: Grading, samples: Samples) -> Mechanism:
-    """The reference mechanism at these samples."""
-    robot = grading.exercise.robot
-    return mechanism_of(robot.tables[robot.convention], samples, grading.exercise.length_scale)
 
 
 def _labels(roles: Sequence[Role]) -> list[str]:
@@ -206,7 +234,7 @@ def column_scales(grading: Grading) -> Numbers:
 def _all_matches(judged: Sequence[JudgedRow], grading: Grading) -> NDArray[np.int_]:
     """The Match of each cell of each row, ``(rows, 4)``."""
     nothing = np.full((len(COLUMNS), LANES), np.nan)
-    actual = np.array([nothing if row.row is None else row.row.values for row in judged])
+    actual = np.array([nothing if row.row is None else row.row.handed_in for row in judged])
     rounded = [[False] * len(COLUMNS) if row.row is None else row.row.rounded for row in judged]
     expected = np.array([row.expected for row in judged])
     return matches(actual, expected, column_scales(grading), IS_ANGLE[:, None], rounded)

@@ -1,7 +1,7 @@
 """What a cell owes to the joints, and what to the links."""
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from service.catalogue import Joint
 from service.grading.compare import Numbers, difference
@@ -20,6 +20,17 @@ def changes(values: Numbers) -> Numbers:
     """By how much values ``(..., LANES)`` change when only the joints move: ``(..., SAMPLES)``."""
     before, after = halves(values)
     return after - before
+
+
+def moves_with(values: Numbers, motion: Numbers, angle: ArrayLike) -> NDArray[np.bool_]:
+    """Which values ``(..., lanes)`` change with the joints as ``motion`` does, or its opposite.
+
+    ``motion`` is ``(..., lanes / 2)``. Where a value is not a number it does not.
+    """
+    either_sense = np.array([motion, -motion])
+    shape = (2, *[1] * (values.ndim - motion.ndim), *motion.shape)
+    off = np.abs(difference(changes(values), either_sense.reshape(shape), angle)).max(axis=-1)
+    return np.asarray(off.min(axis=0) < TOLERANCE)
 
 
 def joint_counts(
@@ -52,9 +63,20 @@ def joint_counts(
     return counts.astype(np.int_), linear
 
 
+def coefficients(
+    values: Numbers, joints: tuple[Joint, ...], samples: Samples, angle: NDArray[np.bool_]
+) -> list[tuple[int, ...] | None]:
+    """How often each joint variable is contained in each cell; None where not linearly."""
+    counts, linear = joint_counts(values, joints, samples, angle)
+    found = zip(counts.tolist(), linear.tolist(), strict=True)
+    return [tuple(cell) if is_linear else None for cell, is_linear in found]
+
+
 def _solver(names: tuple[str, ...], samples: Samples) -> tuple[Numbers, Numbers]:
     """How the joints move between the halves, and the pseudo-inverse that tells their shares."""
-    if names not in samples.solvers:
+
+    def taken_apart() -> tuple[Numbers, Numbers]:
         moves = changes(np.array([samples.values[name] for name in names]))
-        samples.solvers[names] = moves, np.asarray(np.linalg.pinv(moves), dtype=np.float64)
-    return samples.solvers[names]
+        return moves, np.asarray(np.linalg.pinv(moves), dtype=np.float64)
+
+    return samples.once(names, taken_apart)

@@ -122,10 +122,11 @@ def row_report(
     feedback: tuple[Feedback, ...] = (),
 ) -> RowReport:
     """A row from its cells, which share its points evenly."""
-    right = sum(cell.verdict is Verdict.CORRECT for cell in cells)
+    verdicts = [cell.verdict for cell in cells]
+    right = verdicts.count(Verdict.CORRECT)
     return RowReport(
         label=label,
-        verdict=combined(cell.verdict for cell in cells),
+        verdict=combined(verdicts),
         points=rounded_points(max_points * right / len(cells)) if cells else 0.0,
         max_points=rounded_points(max_points),
         cells=cells,

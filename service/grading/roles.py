@@ -8,7 +8,7 @@ import numpy as np
 
 from service.catalogue import Joint
 from service.grading.compare import Numbers
-from service.grading.motion import joint_counts
+from service.grading.motion import changes, joint_counts
 from service.grading.samples import LANES, Samples
 from service.grading.tables import IS_ANGLE, HandedInRow, aligned, values_of
 from service.kinematics.chain import COLUMNS, THETA, D
@@ -25,6 +25,21 @@ class Role:
 def variable_column(joint: Joint) -> int:
     """The column that the joint's variable stands in."""
     return D if joint.prismatic else THETA
+
+
+def joint_cells(roles: Sequence[Role]) -> dict[tuple[int, int], Joint]:
+    """The cells that hold a joint's variable, each a row and a column, in the order of the rows."""
+    return {
+        (i, variable_column(role.joint)): role.joint for i, role in enumerate(roles) if role.joint
+    }
+
+
+def motion_of(roles: Sequence[Role], samples: Samples) -> Numbers:
+    """How each cell of a right table changes with the joints: ``(rows, 4, lanes / 2)``."""
+    motion = np.zeros((len(roles), len(COLUMNS), samples.lanes // 2))
+    for cell, joint in joint_cells(roles).items():
+        motion[cell] = changes(samples.values[joint.variable])
+    return motion
 
 
 def roles_of(

@@ -7,9 +7,10 @@ repeats it to the last bit on every machine and with every version of numpy.
 import hashlib
 import json
 import math
-from collections.abc import Mapping, Set
+from collections.abc import Callable, Hashable, Mapping, Set
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ SAMPLES = 16
 LANES = 2 * SAMPLES
 
 Lanes = NDArray[np.float64]
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -40,9 +42,18 @@ class Samples:
         return {}
 
     @cached_property
-    def solvers(self) -> dict[tuple[str, ...], tuple[Lanes, Lanes]]:
-        """Where the motion of joints is kept once it has been taken apart, by their variables."""
+    def _known(self) -> dict[Hashable, Any]:
         return {}
+
+    def once(self, what: Hashable, compute: Callable[[], T]) -> T:
+        """What the exercise alone makes of these samples, computed when it is first asked for.
+
+        Whoever asks must not write to it.
+        """
+        if what not in self._known:
+            self._known[what] = compute()
+        found: T = self._known[what]
+        return found
 
     @property
     def lanes(self) -> int:
@@ -51,7 +62,12 @@ class Samples:
 
     def few(self, count: int) -> "Samples":
         """The first ``count`` lanes of each half: enough to tell generic tables apart."""
-        return Samples({name: self.few_of(values, count) for name, values in self.values.items()})
+        return self.once(
+            count,
+            lambda: Samples(
+                {name: self.few_of(values, count) for name, values in self.values.items()}
+            ),
+        )
 
     @staticmethod
     def few_of(values: Lanes, count: int) -> Lanes:

@@ -8,8 +8,8 @@ from service.grading.compare import Numbers
 from service.grading.diagnosis.freedom import lost_freedom
 from service.grading.diagnosis.tables import TOLERANCE, explanations, written_table
 from service.grading.findings import Finding
-from service.grading.frames import valid_tables
-from service.grading.judgement import freedom_of, mechanism_at, roles_in
+from service.grading.judgement import freedom_of, roles_in
+from service.grading.mechanism import reference_values
 from service.grading.protocol import Grading
 from service.grading.report import (
     Severity,
@@ -18,6 +18,7 @@ from service.grading.tables import (
     HandedInRow,
     values_of,
 )
+from service.grading.validity import valid_tables
 from service.kinematics.dh import Convention
 
 # Enough samples to tell tables apart that are tried by the dozen.
@@ -43,12 +44,12 @@ def beliefs(
         return ()
     reference = robot.tables.get(convention)
     few = samples.few(FEW)
-    expected = None if reference is None else reference.values(few.values, few.lanes)
+    expected = None if reference is None else reference_values(reference, few)
     table = written_table(values, convention, expected, robot.joints, samples).at_few(FEW)
-    mechanism = mechanism_at(grading, few)
+    freedom = freedom_of(part)
 
     def valid(tables: Numbers, convention: Convention) -> NDArray[np.bool_]:
-        return valid_tables(tables, roles, convention, mechanism, freedom_of(part), TOLERANCE)
+        return valid_tables(tables, roles, convention, freedom, grading.exercise, few, TOLERANCE)
 
     return explanations(table, valid, combine=combine)
 

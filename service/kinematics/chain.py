@@ -62,6 +62,24 @@ def compound(transforms: Matrices) -> Matrices:
     return reduce(np.matmul, transforms)
 
 
+def frames(table: Table, convention: Convention) -> Matrices:
+    """The base frame and that behind each row of a table: ``(rows + 1, ...)``."""
+    transforms = links(table, convention)
+    reached = np.empty((len(transforms) + 1, *transforms.shape[1:]))
+    reached[0] = np.eye(4)
+    for i, transform in enumerate(transforms):
+        np.matmul(reached[i], transform, out=reached[i + 1])
+    return reached
+
+
+def joint_frames(frames: Matrices, convention: Convention) -> Matrices:
+    """Of all frames those along whose z each row's joint acts: ``(rows, ...)``.
+
+    Row i of a standard table acts along z_{i-1}, of a modified one along z_i.
+    """
+    return frames[:-1] if convention is Convention.STANDARD else frames[1:]
+
+
 def pose(table: Table, convention: Convention) -> Matrices:
     """The compound transform of a table ``(rows, 4, ...)``: ``(..., 4, 4)``."""
     return compound(links(table, convention))

@@ -12,28 +12,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from service.kinematics.chain import Table, links
+from service.kinematics.chain import Table, frames, joint_frames
 from service.kinematics.dh import Convention
-from service.kinematics.transforms import Matrices, identity
 
 Screws = NDArray[np.float64]
 
 # Relative to the largest singular value: far above rounding, far below any arm in generic pose.
 RANK = 1e-7
 SAME = 1e-7
-
-
-def joint_frames(table: Table, convention: Convention) -> Matrices:
-    """The frame along whose z each row's joint acts, ``(rows, L, 4, 4)`` in the base frame.
-
-    Row i of a standard table acts along z_{i-1}, of a modified one along z_i.
-    """
-    transforms = links(table, convention)
-    frames = np.empty((len(transforms) + 1, *transforms.shape[1:]))
-    frames[0] = identity(transforms.shape[1:2])
-    for i, transform in enumerate(transforms):
-        np.matmul(frames[i], transform, out=frames[i + 1])
-    return frames[:-1] if convention is Convention.STANDARD else frames[1:]
 
 
 def space_jacobian(
@@ -44,8 +30,8 @@ def space_jacobian(
     ``rows`` says which row belongs to each joint, ``prismatic`` which joints slide. Angular over
     linear parts; the linear ones have the table's unit of length.
     """
-    frames = joint_frames(table, convention)[list(rows)]
-    axes, origins = frames[..., :3, 2], frames[..., :3, 3]
+    on_axes = joint_frames(frames(table, convention), convention)[list(rows)]
+    axes, origins = on_axes[..., :3, 2], on_axes[..., :3, 3]
     slides = np.asarray(prismatic, dtype=np.bool_)[:, None, None]
     angular = np.where(slides, 0.0, axes)
     linear = np.where(slides, axes, np.cross(origins, axes))

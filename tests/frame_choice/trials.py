@@ -20,8 +20,7 @@ from tests.frame_choice.robots import (
     GIVEN,
     MODIFIED,
     POLICIES,
-    THETA,
-    D,
+    A,
     Policy,
     Robot,
     conventions,
@@ -103,17 +102,28 @@ def equivalent(table: Table) -> bool:
     return is_equivalent(table.robot, table.policy, table.texts, table.convention)
 
 
-def joins_parallel_axes(table: Table, row: int, column: int) -> bool:
-    """Whether the link that a cell belongs to joins parallel axes.
+def has_parallel_neighbour(table: Table, row: int, column: int) -> bool:
+    """Whether what a cell measures is shared with a parallel axis.
 
-    A modified row holds α and a of the link before, d and θ of its own, whose α is one row down.
+    a and α belong to the link between two axes: these two are parallel. d and θ are measured on one
+    axis: the one before it or the one behind it is parallel.
+    """
+    link = row if table.convention != MODIFIED or column in (A, ALPHA) else row + 1
+    if column in (A, ALPHA):
+        return _joins_parallel_axes(table, link)
+    return _joins_parallel_axes(table, link) or (link > 0 and _joins_parallel_axes(table, link - 1))
+
+
+def _joins_parallel_axes(table: Table, link: int) -> bool:
+    """Whether the α of this row is 0 or 180°.
+
     A link whose α the table does not hold ends in the last joint's own frame: parallel.
     """
-    if table.convention == MODIFIED and column in (D, THETA):
-        row += 1
-    if row >= len(table.rows):
+    if link >= len(table.rows):
         return True
-    return bool(abs(np.sin(table.rows[row][ALPHA].constant)) < 1e-9)
+    if table.convention == MODIFIED and link == 0:
+        return False  # leads from the base frame, which is no joint's axis
+    return bool(abs(np.sin(table.rows[link][ALPHA].constant)) < 1e-9)
 
 
 @dataclass(frozen=True)
@@ -235,7 +245,7 @@ def _try_one_slip(table: Table, tally: Tally, rng: np.random.Generator) -> None:
         return
     wrong = table.edited(edit.row, edit.column, edit.cell)
     place = (edit.row, edit.column)
-    group = "parallel" if joins_parallel_axes(table, *place) else "skew"
+    group = "parallel" if has_parallel_neighbour(table, *place) else "skew"
     tally.counts["slip"] += 1
     tally.counts[group] += 1
     tally.policies[table.policy.name, "slip"] += 1

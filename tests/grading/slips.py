@@ -44,8 +44,10 @@ def slips(robot: Robot, i: int, j: int) -> Iterator[Slip]:
 def _of_cell(
     robot: Robot, own: str | None, column: int, cell: str
 ) -> Iterator[tuple[str, str, str]]:
-    yield "off by 0.05", f"{cell} + 0.05", "value"
-    yield "a little off", f"{cell} + 0.004", "value"
+    nothing_there = column in (A, D) and cell in ("0", own)
+    off = "distance_extra" if nothing_there else "value"
+    yield "off by 0.05", f"{cell} + 0.05", off
+    yield "a little off", f"{cell} + 0.004", off
     yield "undefined", f"{cell} + 1/0", "undefined"
     yield "nowhere real", "sqrt(-1)", "undefined"
     if cell == own:
@@ -69,7 +71,7 @@ def _of_joint_cell(robot: Robot, own: str, column: int) -> Iterator[tuple[str, s
         yield "home position", "pi/2", "joint_variable_missing"
     else:
         yield "home position", robot.lengths[0], "joint_variable_missing"
-        yield "another length too", f"{own} + {robot.lengths[0]}", "value"
+        yield "another length too", f"{own} + {robot.lengths[0]}", "distance_extra"
 
 
 def _of_constant_cell(
@@ -86,13 +88,15 @@ def _of_constant_cell(
 
 
 def _of_length(robot: Robot, cell: str) -> Iterator[tuple[str, str, str]]:
-    yield "other length", next(name for name in robot.lengths if name != cell), "value"
+    other = next(name for name in robot.lengths if name != cell)
     if cell == "0":
-        yield "a number", "1", "value"
-        yield "tiny", "0.000001", "value"
+        yield "a length", other, "distance_extra"
+        yield "a number", "1", "distance_extra"
+        yield "tiny", "0.000001", "distance_extra"
     else:
+        yield "other length", other, "value"
         yield "sign", f"-{cell}", "sign"
-        yield "zero", "0", "value"
+        yield "zero", "0", "distance_left_out"
         yield "doubled", f"2*{cell}", "value"
 
 

@@ -3,12 +3,9 @@
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-
 from service.catalogue import Joint
 from service.expressions import Expression
 from service.grading.compare import same
-from service.grading.motion import joint_counts
 from service.grading.samples import Lanes, Samples
 
 
@@ -42,28 +39,17 @@ class WrongValue:
 class WrongCell(WrongValue):
     """A wrong table cell. ``joint`` is the row's joint, or None in a fixed row.
 
-    ``shared`` says that the joint's axis has a parallel neighbour, so that offsets along it add up.
+    The coefficients say how often each of ``joints`` is contained in what was written, None if not
+    linearly, and in what was expected. ``shared`` says that the joint's axis has a parallel
+    neighbour, so that offsets along it add up.
     """
 
     column: str
     joint: Joint | None
-    joints: tuple[Joint, ...]
+    joints: tuple[Joint, ...] = ()
+    actual_coefficients: tuple[int, ...] | None = ()
+    expected_coefficients: tuple[int, ...] = ()
     shared: bool = False
-
-    @cached_property
-    def actual_coefficients(self) -> tuple[int, ...] | None:
-        """How often each joint variable is contained in what was written; None if not linearly."""
-        return self._coefficients(self.actual)
-
-    @cached_property
-    def expected_coefficients(self) -> tuple[int, ...]:
-        """How often each joint variable is contained in what was expected."""
-        return self._coefficients(self.expected) or (0,) * len(self.joints)
-
-    def _coefficients(self, values: Lanes) -> tuple[int, ...] | None:
-        angle = np.array([self.angle])
-        counts, linear = joint_counts(values[None], self.joints, self.samples, angle)
-        return tuple(int(count) for count in counts[0]) if linear[0] else None
 
     @property
     def same_motion(self) -> bool:
@@ -76,5 +62,6 @@ class WrongCell(WrongValue):
         motion = sum(
             count * self.samples.values[joint.variable]
             for count, joint in zip(self.expected_coefficients, self.joints, strict=True)
+            if count
         )
         return self.actual - motion, self.expected - motion

@@ -144,6 +144,38 @@ def sign(case: WrongCell) -> Finding | None:
     )
 
 
+def distance_left_out(case: WrongCell) -> Finding | None:
+    """A distance between the frames was overlooked."""
+    if case.angle or not case.same_motion:
+        return None
+    actual, expected = case.constants
+    if not case.equal(actual, 0 * actual) or case.equal(expected, 0 * expected):
+        return None
+    beside = " beside the joint variable" if any(case.expected_coefficients) else ""
+    return Finding(
+        "distance_left_out",
+        f"A distance is left out of {SYMBOLS[case.column]}{beside}: these two frames are apart "
+        f"{AXES[case.column]}.",
+        case.correction,
+    )
+
+
+def distance_extra(case: WrongCell) -> Finding | None:
+    """A distance was put where there is none: into the wrong cell, or counted twice."""
+    if case.angle or not case.same_motion:
+        return None
+    actual, expected = case.constants
+    if not case.equal(expected, 0 * expected) or case.equal(actual, 0 * actual):
+        return None
+    beside = " beside the joint variable" if any(case.expected_coefficients) else ""
+    return Finding(
+        "distance_extra",
+        f"There is no distance {AXES[case.column]} here{beside}: look along which axis of which "
+        f"frame it is measured.",
+        case.correction,
+    )
+
+
 def degrees_as_radians(case: WrongCell) -> Finding | None:
     """A number meant in degrees was handed in where radians are read."""
     if not case.angle or not case.same_motion:
@@ -212,6 +244,8 @@ MISCONCEPTIONS: tuple[Callable[[WrongCell], Finding | None], ...] = (
     joint_variable_column,
     joint_variable_extra,
     sign,
+    distance_left_out,
+    distance_extra,
     degrees_as_radians,
     radians_as_degrees,
     quarter_turn,

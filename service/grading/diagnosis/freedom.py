@@ -59,7 +59,6 @@ def lost_freedom(
     not be read: then nothing can be said. ``joint_rows`` names the row of each of the robot's
     joints; one without a row is left out.
     """
-    few = samples.few(FEW)
     table = samples.few_of(values, FEW)
     if not np.isfinite(table).all():
         return ()
@@ -69,9 +68,12 @@ def lost_freedom(
     still = (_without_effect([exercise.robot.joints[j] for j in idle]),) if idle else ()
     if len(moving) < 2:
         return still
+    written = _arm(table, convention, moving, exercise)
+    if rank(written.screws) == len(moving):
+        return still
+    few = samples.few(FEW)
     reference = exercise.robot.tables[exercise.robot.convention]
     own = reference.values(few.values, few.lanes)
-    written = _arm(table, convention, moving, exercise)
     intended = _arm(own, reference.convention, [(j, j) for j, _ in moving], exercise)
     shared = _shared_axes(written, intended, convention)
     # A joint that moves nothing may also leave lengths at 0 that would keep the others apart.

@@ -6,7 +6,9 @@ been written without it; where that table describes the robot, the belief explai
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,38 +29,41 @@ SYMBOLS = ("a", "α", "d", "θ")
 
 @dataclass(frozen=True, slots=True)
 class WrittenTable:
-    """A table that is wrong: ``values`` ``(rows, 4, lanes)``, angles in radians, all cells read.
+    """A table that is wrong: numbers ``(rows, 4, lanes)``, angles in radians, all cells read.
 
-    ``motion`` is what the joint variables contribute to ``values``. ``reference`` is the
-    reference's table where it has as many rows, to tell what fell off the end.
+    Its values are the sum of ``constants`` and ``motion``, which is what the joint variables
+    contribute. ``reference`` is the reference's table where it has as many rows, to tell what fell
+    off the end.
     """
 
-    values: Table
+    constants: Table
     motion: Table
     convention: Convention
     reference: Table | None = None
 
     @property
-    def constants(self) -> Table:
-        """The values without the joint variables."""
-        return self.values - self.motion
+    def values(self) -> Table:
+        """The table as it was handed in."""
+        return self.constants + self.motion
 
     def at_few(self, count: int) -> "WrittenTable":
         """The same table at few of its samples."""
-        values, motion = (Samples.few_of(cells, count) for cells in (self.values, self.motion))
-        return replace(self, values=values, motion=motion)
+        constants, motion = (
+            Samples.few_of(cells, count) for cells in (self.constants, self.motion)
+        )
+        return replace(self, constants=constants, motion=motion)
 
-    def changed(self, constants: Table) -> "WrittenTable":
-        """The same table with other constants."""
-        return replace(self, values=constants + self.motion)
+    def changed(self, constants: Table, motion: Table | None = None) -> "WrittenTable":
+        """The same table with other constants, or with other joint variables too."""
+        moves = self.motion if motion is None else motion
+        return WrittenTable(constants, moves, self.convention, self.reference)
 
 
-@dataclass(frozen=True, slots=True)
-class Repair:
-    """The table without one belief, and what to say of the belief."""
+class Repair(NamedTuple):
+    """The table without one belief, and how to tell of the belief."""
 
     table: WrittenTable
-    finding: Finding
+    finding: Callable[[], Finding]
 
 
 Misconception = Callable[[WrittenTable], Iterator[Repair]]
@@ -76,10 +81,9 @@ def written_table(
     cells = values.reshape(-1, values.shape[-1])
     counts, _ = joint_counts(cells, joints, samples, np.tile(IS_ANGLE, len(values)))
     motion = counts @ np.array([samples.values[joint.variable] for joint in joints])
+    motion = motion.reshape(values.shape)
     same_size = reference is not None and len(reference) == len(values)
-    return WrittenTable(
-        values, motion.reshape(values.shape), convention, reference if same_size else None
-    )
+    return WrittenTable(values - motion, motion, convention, reference if same_size else None)
 
 
 def other_convention(table: WrittenTable) -> Iterator[Repair]:
@@ -90,7 +94,7 @@ def other_convention(table: WrittenTable) -> Iterator[Repair]:
     names = {Convention.STANDARD: "standard (distal)", Convention.MODIFIED: "modified (proximal)"}
     yield Repair(
         replace(table, convention=used),
-        Finding(
+        lambda: Finding(
             "other_convention",
             f"This is a right table in the {names[used]} convention, but it was read in the "
             f"{names[meant]} one: look which link's a and α belong in row i.",
@@ -101,16 +105,16 @@ def other_convention(table: WrittenTable) -> Iterator[Repair]:
 
 def link_columns_shifted(table: WrittenTable) -> Iterator[Repair]:
     """The link's own columns, a and α or one of them, stand one row too early or too late."""
-    for columns in ([A, ALPHA], [A], [ALPHA]):
-        for step, where, end in ((-1, "late", -1), (1, "early", 0)):
-            named = " and ".join(SYMBOLS[column] for column in columns)
-            finding = Finding(
-                "link_columns_shifted",
-                f"{named} stand one row too {where}: check which link each of them describes.",
-                f"Move {named} {'up' if step < 0 else 'down'} by one row.",
-            )
-            constants = table.constants
-            constants[:, columns] = np.roll(constants[:, columns], step, axis=0)
+    for columns in (slice(A, ALPHA + 1), slice(A, A + 1), slice(ALPHA, ALPHA + 1)):
+        for late in (True, False):
+            finding = partial(_shifted, " and ".join(SYMBOLS[columns]), late=late)
+            constants = table.constants.copy()
+            end = -1 if late else 0
+            if late:
+                constants[:-1, columns] = table.constants[1:, columns]
+            else:
+                constants[1:, columns] = table.constants[:-1, columns]
+            constants[end, columns] = table.constants[0 if late else -1, columns]
             yield Repair(table.changed(constants), finding)
             if table.reference is not None:
                 completed = constants.copy()
@@ -118,48 +122,59 @@ def link_columns_shifted(table: WrittenTable) -> Iterator[Repair]:
                 yield Repair(table.changed(completed), finding)
 
 
+def _shifted(named: str, *, late: bool) -> Finding:
+    return Finding(
+        "link_columns_shifted",
+        f"{named} stand one row too {'late' if late else 'early'}: check which link each of them "
+        f"describes.",
+        f"Move {named} {'up' if late else 'down'} by one row.",
+    )
+
+
 def columns_swapped(table: WrittenTable) -> Iterator[Repair]:
     """What is measured on x was taken for what is measured on z: a for d, or α for θ.
 
     In the whole table or in one row; the joint variables may have gone along or not.
     """
-    every = list(range(len(table.values)))
     for one, other in ((A, D), (ALPHA, THETA)):
-        for rows in (every, *([i] for i in every)):
-            where = f" in row {rows[0] + 1}" if rows != every else ""
-            finding = Finding(
-                "columns_swapped",
-                f"{SYMBOLS[one]} and {SYMBOLS[other]} are exchanged{where}: one is measured along "
-                f"or about x, the other along or about z.",
-                f"Exchange {SYMBOLS[one]} and {SYMBOLS[other]}{where}.",
-            )
+        still = np.abs(table.constants[:, one] - table.constants[:, other]).max(axis=-1) > 0
+        moving = np.abs(table.motion[:, one] - table.motion[:, other]).max(axis=-1) > 0
+        for row in (None, *range(len(still))):
+            rows = slice(None) if row is None else slice(row, row + 1)
+            finding = partial(_swapped, SYMBOLS[one], SYMBOLS[other], row)
             constants = _exchanged(table.constants, rows, one, other)
-            yield Repair(table.changed(constants), finding)
-            motion = _exchanged(table.motion, rows, one, other)
-            yield Repair(replace(table, values=constants + motion, motion=motion), finding)
+            if still[rows].any():
+                yield Repair(table.changed(constants), finding)
+            if moving[rows].any():
+                motion = _exchanged(table.motion, rows, one, other)
+                yield Repair(table.changed(constants, motion), finding)
 
 
-def _exchanged(cells: Table, rows: list[int], one: int, other: int) -> Table:
+def _exchanged(cells: Table, rows: slice, one: int, other: int) -> Table:
     exchanged = cells.copy()
     exchanged[rows, one], exchanged[rows, other] = cells[rows, other], cells[rows, one]
     return exchanged
 
 
+def _swapped(one: str, other: str, row: int | None) -> Finding:
+    where = "" if row is None else f" in row {row + 1}"
+    return Finding(
+        "columns_swapped",
+        f"{one} and {other} are exchanged{where}: one is measured along or about x, the other "
+        f"along or about z.",
+        f"Exchange {one} and {other}{where}.",
+    )
+
+
 def row_order(table: WrittenTable) -> Iterator[Repair]:
     """Two rows, or all of them, stand in the wrong order."""
-    rows = range(len(table.values))
+    rows = range(len(table.constants))
     orders = [_with_exchanged(rows, i, j) for i, j in combinations(rows, 2)]
     if len(rows) > 2:
         orders.append(list(reversed(rows)))
     for order in orders:
-        moved = [str(i + 1) for i in rows if order[i] != i]
         yield Repair(
-            replace(table, values=table.values[order], motion=table.motion[order]),
-            Finding(
-                "row_order",
-                f"Rows {' and '.join(moved) if len(moved) == 2 else ', '.join(moved)} stand in the "
-                f"wrong order: row i belongs to joint i, counted from the base.",
-            ),
+            table.changed(table.constants[order], table.motion[order]), partial(_reordered, order)
         )
 
 
@@ -169,57 +184,66 @@ def _with_exchanged(rows: range, i: int, j: int) -> list[int]:
     return order
 
 
+def _reordered(order: list[int]) -> Finding:
+    moved = [str(i + 1) for i, row in enumerate(order) if row != i]
+    return Finding(
+        "row_order",
+        f"Rows {' and '.join(moved) if len(moved) == 2 else ', '.join(moved)} stand in the wrong "
+        f"order: row i belongs to joint i, counted from the base.",
+    )
+
+
 def degrees_as_radians(table: WrittenTable) -> Iterator[Repair]:
     """All angles were meant in degrees, where radians are read."""
-    if np.abs(table.constants[:, IS_ANGLE]).max() <= 2 * np.pi:
-        return
-    yield _angles_rescaled(
-        table,
-        np.pi / 180,
-        Finding(
-            "degrees_as_radians",
-            "The angles were read in radians, but they fit in degrees: write the unit (90deg or "
-            "90°), use pi, or hand the table in with the angle unit degrees.",
-        ),
-    )
+    if np.abs(table.constants[:, IS_ANGLE]).max() > 2 * np.pi:
+        yield _angles_rescaled(
+            table,
+            np.pi / 180,
+            Finding(
+                "degrees_as_radians",
+                "The angles were read in radians, but they fit in degrees: write the unit (90deg "
+                "or 90°), use pi, or hand the table in with the angle unit degrees.",
+            ),
+        )
 
 
 def radians_as_degrees(table: WrittenTable) -> Iterator[Repair]:
     """All angles were meant in radians, where degrees are read."""
-    if np.abs(table.constants[:, IS_ANGLE]).max() > np.radians(2 * np.pi):
-        return
-    yield _angles_rescaled(
-        table,
-        180 / np.pi,
-        Finding(
-            "radians_as_degrees",
-            "The angles were read in degrees, but they fit in radians: use pi, or hand the table "
-            "in with the angle unit radians.",
-        ),
-    )
+    if np.abs(table.constants[:, IS_ANGLE]).max() <= np.radians(2 * np.pi):
+        yield _angles_rescaled(
+            table,
+            180 / np.pi,
+            Finding(
+                "radians_as_degrees",
+                "The angles were read in degrees, but they fit in radians: use pi, or hand the "
+                "table in with the angle unit radians.",
+            ),
+        )
 
 
 def _angles_rescaled(table: WrittenTable, factor: float, finding: Finding) -> Repair:
-    constants = table.constants
+    constants = table.constants.copy()
     constants[:, IS_ANGLE] *= factor
-    return Repair(table.changed(constants), finding)
+    return Repair(table.changed(constants), lambda: finding)
 
 
 def column_sign(table: WrittenTable) -> Iterator[Repair]:
     """One kind of parameter was measured in the wrong sense throughout."""
-    sense = ("along x", "about x", "along z", "about z")
     for column in range(len(COLUMNS)):
-        constants = table.constants
-        constants[:, column] *= -1
-        yield Repair(
-            table.changed(constants),
-            Finding(
-                "column_sign",
-                f"{SYMBOLS[column]} has the wrong sign throughout: it is measured "
-                f"{sense[column]}, positive by the right-hand rule.",
-                f"Turn the sign of every {SYMBOLS[column]}.",
-            ),
-        )
+        if table.constants[:, column].any():
+            constants = table.constants.copy()
+            constants[:, column] *= -1
+            yield Repair(table.changed(constants), partial(_turned_sign, column))
+
+
+def _turned_sign(column: int) -> Finding:
+    sense = ("along x", "about x", "along z", "about z")[column]
+    return Finding(
+        "column_sign",
+        f"{SYMBOLS[column]} has the wrong sign throughout: it is measured {sense}, positive by the "
+        f"right-hand rule.",
+        f"Turn the sign of every {SYMBOLS[column]}.",
+    )
 
 
 # A student may do two of these at once, or one of them and another slip.
@@ -249,7 +273,8 @@ def explanations(table: WrittenTable, valid: Validity, *, combine: bool) -> tupl
             for second in _repairs(first.table, MISCONCEPTIONS[i + 1 :])
         ]
         found = _explaining(table, pairs, valid)[:1]
-    told = {repair.finding.code: repair.finding for chain in reversed(found) for repair in chain}
+    findings = [repair.finding() for chain in reversed(found) for repair in chain]
+    told = {finding.code: finding for finding in findings}
     if "other_convention" in told:
         # To be one row off is the same thing seen from the other side.
         told.pop("link_columns_shifted", None)

@@ -1,0 +1,232 @@
+"""The valid table that a handed-in one is, or that it differs from in one cell or two.
+
+Where base, tool and directions are given, a table is valid if and only if its pose is the
+reference's wherever the joints are, and every cell moves as its own joint does and not otherwise.
+So nothing has to be searched: what a cell would have to be follows from all the others.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import chain
+
+import numpy as np
+
+from service.grading.compare import Numbers, difference
+from service.grading.likelihood import unlikelihood
+from service.grading.mechanism import reference_frames
+from service.grading.motion import TOLERANCE, changes, moves_with
+from service.grading.protocol import Grading
+from service.grading.roles import Role, joint_cells, motion_of
+from service.grading.samples import SAMPLES
+from service.grading.tables import IS_ANGLE
+from service.kinematics.chain import Table, frames, joint_frames
+from service.kinematics.dh import Convention
+from service.kinematics.factors import Cell, factors_of
+from service.kinematics.frame_choice import WRONG_CELL, departure
+from service.kinematics.mending import (
+    SAME,
+    Mend,
+    mended,
+    one_factor_mends,
+    two_factor_mends,
+)
+from service.kinematics.transforms import Matrices, inverse
+
+# Enough samples to find out which cells mend a table; what they must be is told by all.
+FEW = 3
+FEW_LANES = np.r_[:FEW, SAMPLES : SAMPLES + FEW]
+MOST = 2
+
+
+@dataclass(frozen=True, slots=True)
+class FrameReading:
+    """A table read in the student's own frames: ``expected`` is ``(rows, 4, LANES)``.
+
+    ``frames`` ``(joints, lanes, 4, 4)`` are where the student's frames on the joint axes lie in the
+    reference's. ``cost`` is that of ``frame_choice``: below 1 the table is valid.
+    """
+
+    roles: tuple[Role, ...]
+    expected: Table
+    frames: Matrices
+    cost: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Case:
+    """A table to be mended: its values, and how each cell changes with the joints if it is right.
+
+    ``table`` is ``(rows, 4, lanes)``, ``motion`` ``(rows, 4, lanes / 2)``; ``wrong`` are the cells
+    that are wrong whatever the others are; ``variables`` what belongs in the cells of the joints'
+    variables, in the order of the joints.
+    """
+
+    table: Table
+    motion: Numbers
+    wrong: frozenset[Cell]
+    variables: Mapping[Cell, Numbers]
+    convention: Convention
+    grading: Grading
+
+    @property
+    def unit(self) -> float:
+        """What lengths are measured in."""
+        return self.grading.exercise.length_scale
+
+    @property
+    def reference(self) -> Matrices:
+        """The reference's frames on the axes and its tool's, ``(joints + 1, LANES, 4, 4)``."""
+        return reference_frames(self.grading.exercise, self.convention, self.grading.samples)
+
+    def apart(self, reached: Matrices) -> Matrices:
+        """Of the frames ``(rows + 1, T, few, 4, 4)`` of T tables those on the joint axes.
+
+        They are seen from the reference's, ``(joints, T, few, 4, 4)``.
+        """
+        on_axes = joint_frames(reached, self.convention)[[row for row, _ in self.variables]]
+        return np.asarray(inverse(self.reference[:-1, FEW_LANES])[:, None] @ on_axes)
+
+
+def nearest_by_few_cells(
+    roles: tuple[Role, ...], convention: Convention, grading: Grading
+) -> FrameReading | None:
+    """The table as it is, or the valid one that differs from it in one cell or else in two.
+
+    Of several the one that asks for the likeliest slip. None where there is none; every role must
+    have a row.
+    """
+    case = _case(roles, convention, grading)
+    if len(case.wrong) > MOST:
+        return None
+    if not case.wrong:
+        reached = frames(case.table, convention)
+        if _coincide(reached[-1], case.reference[-1], case.unit):
+            apart = case.apart(reached[:, None, FEW_LANES])
+            return FrameReading(roles, case.table, apart[:, 0], 0.0)
+    mends = _mends(case)
+    return _likeliest(mends, roles, case) if mends else None
+
+
+def frames_from_reference(
+    table: Table, roles: tuple[Role, ...], convention: Convention, grading: Grading
+) -> Matrices:
+    """A table's frames on the joint axes as seen from the reference's, ``(joints, few, 4, 4)``."""
+    case = _case(roles, convention, grading)
+    return case.apart(frames(table, convention)[:, None, FEW_LANES])[:, 0]
+
+
+def _case(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> _Case:
+    table = np.array([role.row.values for role in roles if role.row])
+    finite = np.isfinite(table).all(axis=-1)
+    table[~finite] = 0.0
+    motion = motion_of(roles, grading.samples)
+    right = finite & moves_with(table, motion, IS_ANGLE[:, None])
+    wrong = frozenset((i, column) for i, column in np.argwhere(~right).tolist())
+    variables = {
+        cell: grading.samples.values[joint.variable] for cell, joint in joint_cells(roles).items()
+    }
+    return _Case(table, motion, wrong, variables, convention, grading)
+
+
+def _coincide(one: Matrices, other: Matrices, unit: float) -> bool:
+    """Whether frames ``(lanes, 4, 4)`` are the same."""
+    off = np.abs(one - other).max(axis=0)
+    return bool(off[:3, :3].max() < SAME and off[:3, 3].max() < SAME * unit)
+
+
+def _mends(case: _Case) -> list[Mend]:
+    """The ways to make the table valid by one cell; if there are none, by two."""
+    factors = factors_of(case.table[..., FEW_LANES], case.convention, case.unit)
+    pose = _in_unit(case.reference[-1, FEW_LANES], case.unit)
+    by_factor = one_factor_mends(factors, pose)
+    of_one = _fitting([mend for mend in by_factor if len(mend.cells) == 1], case)
+    if of_one:
+        return of_one
+    of_two = chain(by_factor, two_factor_mends(factors, pose))
+    return _fitting([mend for mend in of_two if len(mend.cells) == MOST], case)
+
+
+def _likeliest(mends: Sequence[Mend], roles: tuple[Role, ...], case: _Case) -> FrameReading | None:
+    """The table as one of the mends makes it: the one that asks for the likeliest slip.
+
+    They are taken in the order of what their frames cost, until that alone is too much.
+    """
+    tables = np.repeat(case.table[:, :, None, FEW_LANES], len(mends), axis=2)
+    for k, mend in enumerate(mends):
+        _fill(tables[:, :, k], mend, case.unit)
+    apart = case.apart(frames(tables, case.convention))
+    departures = np.array([departure(frames, case.unit) for frames in apart]).sum(axis=0)
+    best = None
+    for k in np.argsort(departures, kind="stable").tolist():
+        wrong = WRONG_CELL * len(mends[k].cells)
+        cost = wrong + float(departures[k])
+        if best is not None and cost >= best.cost:
+            break
+        table = _at_all_lanes(mends[k].cells, case)
+        if table is None:
+            continue
+        if len(mends) > 1:
+            cost += sum(_unlikelihood(cell, table, case) for cell in mends[k].cells)
+        if best is None or cost < best.cost:
+            best = FrameReading(roles, table, apart[:, k], cost)
+    return best
+
+
+def _unlikelihood(cell: Cell, mended: Table, case: _Case) -> float:
+    """How unlikely the slip is that a mended cell stands for."""
+    angle = bool(IS_ANGLE[cell[1]])
+    right = _at_rest(mended[cell], cell, case)
+    written = None if cell in case.wrong else _at_rest(case.table[cell], cell, case)
+    return unlikelihood(written, right, angle, case.grading)
+
+
+def _at_rest(values: Numbers, cell: Cell, case: _Case) -> Numbers:
+    """A cell that moves as it should without its joint's variable, in whichever sense it has it."""
+    variable = case.variables.get(cell)
+    if variable is None:
+        return values
+    angle = IS_ANGLE[cell[1]]
+    agrees = np.abs(difference(changes(values), changes(variable), angle)).max() < TOLERANCE
+    return values - variable if agrees else values + variable
+
+
+def _fitting(mends: Sequence[Mend], case: _Case) -> list[Mend]:
+    """The mends after which every cell moves with the joints as it should."""
+    return [
+        mend
+        for mend in mends
+        if case.wrong <= set(mend.cells)
+        and all(
+            _fits(value, cell, case.motion[cell][:FEW])
+            for cell, value in zip(mend.cells, mend.values, strict=True)
+        )
+    ]
+
+
+def _fits(value: Numbers, cell: Cell, motion: Numbers) -> bool:
+    return bool(moves_with(value, motion, IS_ANGLE[cell[1]]))
+
+
+def _at_all_lanes(cells: Sequence[Cell], case: _Case) -> Table | None:
+    """The table with these cells mended, ``(rows, 4, LANES)``; None where they do not mend it."""
+    factors = factors_of(case.table, case.convention, case.unit)
+    values = mended(factors, _in_unit(case.reference[-1], case.unit), cells)
+    if values is None:
+        return None
+    if not all(_fits(v, cell, case.motion[cell]) for cell, v in zip(cells, values, strict=True)):
+        return None
+    table = case.table.copy()
+    _fill(table, Mend(tuple(cells), values), case.unit)
+    return table
+
+
+def _fill(table: Table, mend: Mend, unit: float) -> None:
+    """Write the values of a mend into their cells of a table ``(rows, 4, lanes)``."""
+    for (row, column), value in zip(mend.cells, mend.values, strict=True):
+        table[row, column] = value if IS_ANGLE[column] else value * unit
+
+
+def _in_unit(pose: Matrices, unit: float) -> Matrices:
+    measured = pose.copy()
+    measured[..., :3, 3] /= unit
+    return measured

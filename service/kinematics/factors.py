@@ -1,0 +1,137 @@
+"""A table as the product of its factors: screws about x and z in turn.
+
+X = Trans_x(a) Rot_x(α) and Z = Rot_z(θ) Trans_z(d) are screws: a shift along an axis and a turn
+about it, which commute. A standard table is Z_1 X_1 Z_2 X_2 …, a modified one X_0 Z_1 X_1 Z_2 ….
+
+Shapes: L lanes (samples), K factors; a table is ``(rows, 4, L)`` in the column order a, α, d, θ,
+joint variables and all; angles in radians. Axes are numbered: 0 is x, 2 is z.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.kinematics.chain import A, D, Table
+from service.kinematics.dh import Convention
+from service.kinematics.transforms import Matrices
+
+Numbers = NDArray[np.float64]
+Integers = NDArray[np.int_]
+
+X, Z = 0, 2
+# The cells of a factor: how far it shifts and how far it turns.
+SHIFT, TURN = 0, 1
+
+Cell = tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Factors:
+    """The factors of a table, in the order of the product.
+
+    ``sizes`` ``(K, 2, L)`` are the SHIFT and the TURN of each, about the axes ``(K,)``.
+    """
+
+    convention: Convention
+    sizes: Numbers
+    axes: Integers
+
+    @cached_property
+    def screws(self) -> Matrices:
+        """The factors themselves, ``(K, L, 4, 4)``."""
+        return screws(self.axes, self.sizes[:, SHIFT], self.sizes[:, TURN])
+
+    @cached_property
+    def before(self) -> Matrices:
+        """The product of the first k factors for k = 0..K: ``(K + 1, L, 4, 4)``."""
+        products = np.empty((len(self.axes) + 1, *self.screws.shape[1:]))
+        products[0] = np.eye(4)
+        for k, screw in enumerate(self.screws):
+            np.matmul(products[k], screw, out=products[k + 1])
+        return products
+
+    @cached_property
+    def behind(self) -> Matrices:
+        """The product of the factors from the k-th on for k = 0..K: ``(K + 1, L, 4, 4)``."""
+        products = np.empty((len(self.axes) + 1, *self.screws.shape[1:]))
+        products[-1] = np.eye(4)
+        for k in reversed(range(len(self.axes))):
+            np.matmul(self.screws[k], products[k + 1], out=products[k])
+        return products
+
+    @property
+    def pose(self) -> Matrices:
+        """The whole product, ``(L, 4, 4)``."""
+        whole: Matrices = self.before[-1]
+        return whole
+
+    def joint_frames(self, rows: list[int], convention: Convention) -> Matrices:
+        """Frames on the joint axes of these rows as a convention has them: ``(rows, L, 4, 4)``.
+
+        In the standard convention they are where the joint's Z starts from, in the modified one
+        where it leads to; this table may be of either.
+        """
+        z_first = self.convention is Convention.STANDARD
+        at_end = convention is Convention.MODIFIED
+        return self.before[[2 * row + (not z_first) + at_end for row in rows]]
+
+    def cell(self, factor: int, kind: int) -> Cell:
+        """The row and column that the SHIFT or TURN of a factor stands in."""
+        return factor // 2, (A if self.axes[factor] == X else D) + kind
+
+    def place(self, cell: Cell) -> tuple[int, int]:
+        """The factor of a cell, and whether it is its SHIFT or its TURN."""
+        row, column = cell
+        in_z = column >= D
+        z_first = self.convention is Convention.STANDARD
+        return 2 * row + (in_z != z_first), column - (D if in_z else A)
+
+    def at(self, lanes: slice) -> "Factors":
+        """The same factors at some of the lanes."""
+        return Factors(self.convention, self.sizes[..., lanes], self.axes)
+
+
+def factors_of(table: Table, convention: Convention, unit: float = 1.0) -> Factors:
+    """The factors of a table ``(rows, 4, L)``, its lengths measured in ``unit``."""
+    sizes = table.reshape(len(table), 2, 2, -1)
+    z_first = convention is Convention.STANDARD
+    if z_first:
+        sizes = sizes[:, ::-1]
+    sizes = sizes / np.array([[unit], [1.0]])
+    axes = np.tile([Z, X] if z_first else [X, Z], len(table))
+    return Factors(convention, sizes.reshape(2 * len(table), 2, -1), axes)
+
+
+def screws(axes: Integers, shifts: Numbers, turns: Numbers) -> Matrices:
+    """A shift along and a turn about an axis: ``(K, L, 4, 4)`` of ``(K,)`` and twice ``(K, L)``."""
+    here = np.arange(len(axes))
+    one, other = (axes + 1) % 3, (axes + 2) % 3
+    cosine, sine = np.cos(turns), np.sin(turns)
+    matrices = np.zeros((*shifts.shape, 4, 4))
+    matrices[here, :, axes, axes] = 1.0
+    matrices[..., 3, 3] = 1.0
+    matrices[here, :, one, one] = cosine
+    matrices[here, :, other, other] = cosine
+    matrices[here, :, one, other] = -sine
+    matrices[here, :, other, one] = sine
+    matrices[here, :, axes, 3] = shifts
+    return matrices
+
+
+def read_screws(transforms: Matrices, axes: Integers) -> tuple[Numbers, Numbers]:
+    """Shift along and turn about each axis, and by how much a transform is no such screw.
+
+    From ``(K, L, 4, 4)`` and axes ``(K,)``: sizes ``(K, 2, L)``, and by how much each misses,
+    ``(K, L)``: how far the axis is turned away, or how far the origin lies beside it.
+    """
+    here = np.arange(len(axes))
+    one, other = (axes + 1) % 3, (axes + 2) % 3
+    sizes = np.empty((len(axes), 2, transforms.shape[1]))
+    sizes[:, SHIFT] = transforms[here, :, axes, 3]
+    sizes[:, TURN] = np.arctan2(transforms[here, :, other, one], transforms[here, :, one, one])
+    missed = np.abs(transforms[here, :, one, 3]) + np.abs(transforms[here, :, other, 3])
+    missed += np.abs(transforms[here, :, one, axes]) + np.abs(transforms[here, :, other, axes])
+    missed += 1 - transforms[here, :, axes, axes]
+    return sizes, missed

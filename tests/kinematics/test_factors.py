@@ -1,0 +1,69 @@
+"""A table as the product of screws, held against the link transforms written out in textbooks."""
+
+import numpy as np
+import pytest
+
+from service.kinematics.chain import frames, pose
+from service.kinematics.dh import Convention
+from service.kinematics.factors import factors_of, read_screws, screws
+from service.kinematics.transforms import rot_x, rot_z, trans
+
+BOTH = pytest.mark.parametrize("convention", list(Convention))
+RNG = np.random.default_rng(4)
+TABLE = RNG.uniform(-2, 2, (5, 4, 3))
+
+
+@BOTH
+def test_the_product_of_the_factors_is_the_pose(convention: Convention) -> None:
+    factors = factors_of(TABLE, convention)
+    np.testing.assert_allclose(factors.pose, pose(TABLE, convention), atol=1e-12)
+    for k in range(len(factors.axes) + 1):
+        whole = factors.before[k] @ factors.behind[k]
+        np.testing.assert_allclose(whole, factors.pose, atol=1e-12)
+
+
+@BOTH
+def test_a_cell_is_found_where_it_was_put(convention: Convention) -> None:
+    factors = factors_of(TABLE, convention)
+    for row in range(len(TABLE)):
+        for column in range(4):
+            factor, kind = factors.place((row, column))
+            assert factors.cell(factor, kind) == (row, column)
+            np.testing.assert_array_equal(factors.sizes[factor, kind], TABLE[row, column])
+
+
+@BOTH
+def test_lengths_are_measured_in_the_unit(convention: Convention) -> None:
+    in_unit = factors_of(TABLE, convention, unit=0.25).pose
+    expected = pose(TABLE, convention)
+    expected[:, :3, 3] *= 4
+    np.testing.assert_allclose(in_unit, expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("written", list(Convention))
+def test_the_frames_on_the_axes_are_those_of_each_convention(written: Convention) -> None:
+    factors = factors_of(TABLE, written)
+    reached = frames(TABLE, written)
+    rows = list(range(len(TABLE)))
+    own = reached[:-1] if written is Convention.STANDARD else reached[1:]
+    np.testing.assert_allclose(factors.joint_frames(rows, written), own, atol=1e-12)
+    # From where Z starts to where it leads is Z itself.
+    starts = factors.joint_frames(rows, Convention.STANDARD)
+    z = rot_z(TABLE[:, 3]) @ trans(0, 0, TABLE[:, 2])
+    ends = factors.joint_frames(rows, Convention.MODIFIED)
+    np.testing.assert_allclose(starts @ z, ends, atol=1e-12)
+
+
+def test_a_screw_is_read_back_and_another_transform_is_none() -> None:
+    axes, sizes = np.array([0, 2]), RNG.uniform(-1, 1, (2, 2, 3))
+    made = screws(axes, sizes[:, 0], sizes[:, 1])
+    np.testing.assert_allclose(made[0], trans(sizes[0, 0], 0, 0) @ rot_x(sizes[0, 1]), atol=1e-12)
+    np.testing.assert_allclose(made[1], trans(0, 0, sizes[1, 0]) @ rot_z(sizes[1, 1]), atol=1e-12)
+    read, missed = read_screws(made, axes)
+    np.testing.assert_allclose(read, sizes, atol=1e-12)
+    assert missed.max() < 1e-12
+    aside = made @ trans(0, 1e-3, 0)
+    turned = made @ rot_x(1e-3) @ rot_z(1e-3)
+    opposite = made @ rot_x(np.pi) @ rot_z(np.pi)
+    for other in (aside, turned, opposite):
+        assert read_screws(other, axes)[1].min() > 1e-4
