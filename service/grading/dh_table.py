@@ -13,7 +13,13 @@ from service.grading.diagnosis.cells import diagnose
 from service.grading.diagnosis.values import UNEXPLAINED
 from service.grading.findings import ROUNDED, Finding
 from service.grading.formulas import sum_text
-from service.grading.judgement import JudgedRow, Judgement, column_scales, judged_table
+from service.grading.judgement import (
+    JudgedRow,
+    Judgement,
+    column_scales,
+    judged_table,
+    roles_in,
+)
 from service.grading.motion import coefficients
 from service.grading.pasted import length_unit
 from service.grading.protocol import Grading, OwnChain, PartTerms
@@ -60,14 +66,7 @@ class DhTableKind:
             return terms.unread(Verdict.MISSING)
         convention, findings = _convention(part, table, grading.exercise)
         judgement = judged_table(part, table.rows, convention, grading)
-        explained: tuple[Finding, ...] = ()
-        if judgement.wrong > 1:
-            combine = judgement.wrong >= WRONG_THROUGHOUT
-            explained = beliefs(table.rows, convention, part, grading, combine=combine)
-        # Where the whole is explained, what it seems to describe was not meant.
-        lost: tuple[Finding, ...] = ()
-        if judgement.wrong and not explained:
-            lost = freedom_lost(table.rows, convention, grading)
+        explained, lost = _of_the_whole(part, table.rows, judgement, convention, grading)
         rows = _row_reports(judgement, part.points, grading, explained=bool(explained))
         told = grading.show((*table.findings, *findings, *explained, *lost, *judgement.findings))
         missing = tuple(
@@ -78,6 +77,26 @@ class DhTableKind:
         )
         extra = grading.show(tuple(_extra_row(i) for i in judgement.extra))
         return terms.report(rows, (*told, *missing, *extra), lost=judgement.lost)
+
+
+def _of_the_whole(
+    part: DhTableSpec,
+    rows: tuple[HandedInRow, ...],
+    judgement: Judgement,
+    convention: Convention,
+    grading: Grading,
+) -> tuple[tuple[Finding, ...], tuple[Finding, ...]]:
+    """What explains the whole of a wrong table; or else which freedom its joints have lost."""
+    if not judgement.wrong:
+        return (), ()
+    roles = judgement.roles or roles_in(rows, convention, grading)
+    if judgement.wrong > 1:
+        combine = judgement.wrong >= WRONG_THROUGHOUT
+        explained = beliefs(roles, convention, part, grading, combine=combine)
+        if explained:
+            # What the table seems to describe was not meant.
+            return explained, ()
+    return (), freedom_lost(roles, convention, grading)
 
 
 def _convention(

@@ -50,12 +50,14 @@ class JudgedRow:
 class Judgement:
     """A table held against what it should be, in the frames that it is judged in.
 
-    ``matches`` is the Match of each cell, ``(rows, 4)``; a missing row matches nowhere. ``extra``
-    are rows that answer to nothing; ``reached`` says that the rows lead to the given tool frame.
+    ``matches`` is the Match of each cell, ``(rows, 4)``; a missing row matches nowhere. ``roles``
+    are those that the handed-in rows were taken for, where that was asked. ``extra`` are rows that
+    answer to nothing; ``reached`` says that the rows lead to the given tool frame.
     """
 
     rows: tuple[JudgedRow, ...]
     matches: NDArray[np.int_]
+    roles: tuple[Role, ...] = ()
     extra: tuple[int, ...] = ()
     findings: tuple[Finding, ...] = ()
     reached: bool = True
@@ -116,7 +118,7 @@ def _judged_as_given(
         joint = reference.joints[j] if j < len(reference.joints) else None
         row = None if i is None else rows[i]
         judged.append(JudgedRow(reference.labels[j], joint, row, expected[j]))
-    return Judgement(tuple(judged), _all_matches(judged, grading), tuple(extra))
+    return Judgement(tuple(judged), _all_matches(judged, grading), extra=tuple(extra))
 
 
 def _judged_in_own_frames(
@@ -124,34 +126,42 @@ def _judged_in_own_frames(
 ) -> Judgement:
     """The table held against the valid one nearest to it."""
     exercise = grading.exercise
-    freedom = freedom_of(part)
-    roles = roles_in(rows, convention, grading)
-    reading = nearest_reading(roles, convention, freedom, grading)
+    roles, reading = _read_in_own_frames(part, rows, convention, grading)
     right = reading.cost < WRONG_CELL
-    if not right and len(reading.roles) < len(rows):
-        # A row of zeros that was left out may be one in which something is missing.
-        with_all = roles_in(rows, convention, grading, wanted=len(rows))
-        longer = read_in_own_frames(with_all, convention, freedom, grading)
-        reading = longer if longer.cost < reading.cost else reading
-    shared = (
-        np.zeros(len(reading.roles), np.bool_)
-        if right
-        else parallel_neighbours(reading.roles, convention, grading)
-    )
+    shared = [False] * len(reading.roles)
+    if not right:
+        shared = parallel_neighbours(reading.roles, convention, grading).tolist()
     judged = tuple(
-        JudgedRow(label, role.joint, role.row, expected, bool(adds_up))
+        JudgedRow(label, role.joint, role.row, expected, adds_up)
         for label, role, expected, adds_up in zip(
             _labels(reading.roles), reading.roles, reading.expected, shared, strict=True
         )
     )
     findings = choices(reading.frames, exercise.robot.joints, convention, exercise)
-    if not (reading.cost or any(role.row and role.row.as_written is not None for role in roles)):
-        everything = np.full((len(judged), len(COLUMNS)), int(Match.EXACT))
-        return Judgement(judged, everything, findings=findings)
-    matches = _all_matches(judged, grading)
+    as_it_stands = not reading.cost and all(role.row and role.row.is_exact for role in roles)
+    if as_it_stands:
+        matches = np.full((len(judged), len(COLUMNS)), int(Match.EXACT))
+    else:
+        matches = _all_matches(judged, grading)
     if reading.cost >= NO_SUCH_CELL and not np.count_nonzero(matches < Match.ROUNDED):
         findings = (_UNREACHED, *findings)
-    return Judgement(judged, matches, findings=findings, reached=_UNREACHED not in findings)
+    reached = _UNREACHED not in findings
+    return Judgement(judged, matches, roles, findings=findings, reached=reached)
+
+
+def _read_in_own_frames(
+    part: DhTableSpec, rows: tuple[HandedInRow, ...], convention: Convention, grading: Grading
+) -> tuple[tuple[Role, ...], FrameReading]:
+    """What each row was taken for, and the reading of least cost."""
+    freedom = freedom_of(part)
+    roles = roles_in(rows, convention, grading)
+    reading = nearest_reading(roles, convention, freedom, grading)
+    if reading.cost < WRONG_CELL or len(reading.roles) >= len(rows):
+        return roles, reading
+    # A row of zeros that was left out may be one in which something is missing.
+    with_all = roles_in(rows, convention, grading, wanted=len(rows))
+    longer = read_in_own_frames(with_all, convention, freedom, grading)
+    return (with_all, longer) if longer.cost < reading.cost else (roles, reading)
 
 
 _UNREACHED = Finding(

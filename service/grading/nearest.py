@@ -155,7 +155,8 @@ def _likeliest(mends: Sequence[Mend], roles: tuple[Role, ...], case: _Case) -> F
     for k, mend in enumerate(mends):
         _fill(tables[:, :, k], mend, case.unit)
     apart = case.apart(frames(tables, case.convention))
-    departures = np.array([departure(frames, case.unit) for frames in apart]).sum(axis=0)
+    departures = departure(apart.reshape(-1, *apart.shape[2:]), case.unit)
+    departures = departures.reshape(apart.shape[:2]).sum(axis=0)
     best = None
     for k in np.argsort(departures, kind="stable").tolist():
         wrong = WRONG_CELL * len(mends[k].cells)

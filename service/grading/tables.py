@@ -42,6 +42,11 @@ class HandedInRow:
     as_written: Table | None = None
 
     @property
+    def is_exact(self) -> bool:
+        """Whether the values are those that were written."""
+        return self.as_written is None
+
+    @property
     def handed_in(self) -> Table:
         """The numbers as they were handed in."""
         return self.values if self.as_written is None else self.as_written

@@ -8,16 +8,12 @@ from service.grading.compare import Numbers
 from service.grading.diagnosis.freedom import lost_freedom
 from service.grading.diagnosis.tables import TOLERANCE, explanations, written_table
 from service.grading.findings import Finding
-from service.grading.judgement import freedom_of, roles_in
+from service.grading.judgement import freedom_of
 from service.grading.mechanism import reference_values
 from service.grading.protocol import Grading
-from service.grading.report import (
-    Severity,
-)
-from service.grading.tables import (
-    HandedInRow,
-    values_of,
-)
+from service.grading.report import Severity
+from service.grading.roles import Role
+from service.grading.tables import values_of
 from service.grading.validity import valid_tables
 from service.kinematics.dh import Convention
 
@@ -26,7 +22,7 @@ FEW = 3
 
 
 def beliefs(
-    rows: tuple[HandedInRow, ...],
+    roles: tuple[Role, ...],
     convention: Convention,
     part: DhTableSpec,
     grading: Grading,
@@ -35,9 +31,8 @@ def beliefs(
 ) -> tuple[Finding, ...]:
     """What explains the whole of a wrong table at once."""
     robot, samples = grading.exercise.robot, grading.samples
-    roles = roles_in(rows, convention, grading)
-    rows = tuple(role.row for role in roles if role.row is not None)
-    if not all(role.row is not None for role in roles):
+    rows = [role.row for role in roles if role.row is not None]
+    if len(rows) < len(roles):
         return ()
     values = values_of(rows)
     if not np.isfinite(values).all():
@@ -55,10 +50,10 @@ def beliefs(
 
 
 def freedom_lost(
-    rows: tuple[HandedInRow, ...], convention: Convention, grading: Grading
+    roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> tuple[Finding, ...]:
     """Joints of the written table that share an axis or have no effect."""
-    held = [role for role in roles_in(rows, convention, grading) if role.row is not None]
+    held = [role for role in roles if role.row is not None]
     joints = grading.exercise.robot.joints
     where = [next((i for i, role in enumerate(held) if role.joint is j), None) for j in joints]
     if None in where:

@@ -8,7 +8,7 @@ joint variables and all; angles in radians. Axes are numbered: 0 is x, 2 is z.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,6 +60,11 @@ class Factors:
         for k in reversed(range(len(self.axes))):
             np.matmul(self.screws[k], products[k + 1], out=products[k])
         return products
+
+    def around(self, factor: int) -> tuple[Matrices, Matrices]:
+        """The products of the factors before and behind one of them, ``(L, 4, 4)`` each."""
+        before = reduce(np.matmul, self.screws[:factor], np.eye(4))
+        return before, reduce(np.matmul, self.screws[factor + 1 :], np.eye(4))
 
     @property
     def pose(self) -> Matrices:

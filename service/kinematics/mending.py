@@ -87,7 +87,8 @@ def mended(factors: Factors, pose: Matrices, cells: Sequence[Cell]) -> Numbers |
         values, solved = _solved(factors, pose, np.array([[one], [other], [kind], [other_kind]]))
         values = values[:, 0] if places[0] == (one, kind) else values[::-1, 0]
         return values if solved[0] else None
-    needed = inverse(factors.before[one]) @ pose @ inverse(factors.behind[one + 1])
+    before, behind = factors.around(one)
+    needed = inverse(before) @ pose @ inverse(behind)
     sizes, missed = read_screws(needed[None], factors.axes[one : one + 1])
     if missed.max() >= SAME:
         return None

@@ -18,6 +18,12 @@ GRADE = "/v1/exercises/stanford-arm/grade"
 TRIVIAL = "/trivial"
 
 
+def right_tables(i: int) -> bytes:
+    """A right table, spelled in a way of its own."""
+    wrong_ones = i // 2 + 1
+    return json.dumps({"answers": {"table": table(one_student_s_table(i + wrong_ones))}}).encode()
+
+
 def tables(i: int) -> bytes:
     """A student's table, spelled in a way of its own; one in three is wrong somewhere."""
     return json.dumps({"answers": {"table": table(one_student_s_table(i))}}).encode()
@@ -30,8 +36,9 @@ def tables_and_poses(i: int) -> bytes:
 
 
 BODIES: dict[str, Callable[[int], bytes]] = {
-    "tables": tables,
-    "tables and new poses": tables_and_poses,
+    "right tables": right_tables,
+    "tables, one in three wrong": tables,
+    "the same and new poses": tables_and_poses,
 }
 
 
