@@ -1,7 +1,6 @@
 """Answer kind ``dh_table``: a Denavit-Hartenberg table of the exercise's robot."""
 
 from dataclasses import dataclass
-from itertools import accumulate
 
 import numpy as np
 
@@ -27,10 +26,10 @@ from service.grading.report import (
     CellReport,
     PartReport,
     RowReport,
+    Severity,
     Verdict,
     row_report,
 )
-from service.grading.samples import LANES
 from service.grading.tables import (
     IS_ANGLE,
     HandedInRow,
@@ -40,9 +39,9 @@ from service.grading.tables import (
     values_of,
 )
 from service.grading.whole_table import beliefs, freedom_lost
-from service.kinematics.chain import COLUMNS, links
+from service.kinematics.chain import COLUMNS, frames, links
 from service.kinematics.dh import Convention
-from service.kinematics.transforms import identity
+from service.kinematics.transforms import Matrices
 
 EXACT = int(Match.EXACT)
 _RIGHT = tuple(CellReport(label, Verdict.CORRECT) for label in COLUMNS)
@@ -112,26 +111,45 @@ def _convention(
             "convention_not_asked_for",
             f"This part asks for the {part.convention.value} convention and was graded in it, but "
             f"the answer says {table.convention.value if table.convention else ''}.",
+            severity=Severity.WARNING,
         ),
     )
 
 
 def read_chain(part: DhTableSpec, answer: object, grading: Grading) -> OwnChain | None:
     """A table as the chain that later parts may follow from; None where not all of it is read."""
+    read = _read_whole(part, answer, grading)
+    if read is None:
+        return None
+    rows, convention = read
+    judgement = judged_table(part, rows, convention, grading)
+    return OwnChain(
+        frames=frames(values_of(rows), convention),
+        nearest_links=links(np.array([row.expected for row in judgement.rows]), convention),
+    )
+
+
+def read_frames(part: DhTableSpec, answer: object, grading: Grading) -> Matrices | None:
+    """The frames of that chain alone, ``(rows + 1, LANES, 4, 4)``, without a judgement."""
+    read = _read_whole(part, answer, grading)
+    if read is None:
+        return None
+    rows, convention = read
+    return frames(values_of(rows), convention)
+
+
+def _read_whole(
+    part: DhTableSpec, answer: object, grading: Grading
+) -> tuple[tuple[HandedInRow, ...], Convention] | None:
+    """The rows of a table of which all was read, and the convention that it is read in."""
     try:
         table = read_table(answer, grading.reader, length_unit(grading.exercise))
     except UnreadableTableError:
         return None
-    values = values_of(table.rows) if table.rows else np.array([np.nan])
-    if np.isnan(values).any():
+    if not table.rows or np.isnan(values_of(table.rows)).any():
         return None
     convention, _ = _convention(part, table, grading.exercise)
-    judgement = judged_table(part, table.rows, convention, grading)
-    frames = np.array(list(accumulate((identity((LANES,)), *links(values, convention)), np.matmul)))
-    return OwnChain(
-        frames=frames,
-        nearest_links=links(np.array([row.expected for row in judgement.rows]), convention),
-    )
+    return table.rows, convention
 
 
 def _row_reports(

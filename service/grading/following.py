@@ -17,7 +17,7 @@ from service.catalogue import (
     PartSpec,
     TransformSpec,
 )
-from service.grading.dh_table import read_chain
+from service.grading.dh_table import read_chain, read_frames
 from service.grading.entries import MAX_CHARACTERS
 from service.grading.expected import is_whole_chain
 from service.grading.findings import Finding
@@ -88,6 +88,9 @@ def carries(
         return False
 
     def own_pose(grading: Grading) -> Matrices | None:
+        if isinstance(source, DhTableSpec):
+            own = read_frames(source, answer, grading)
+            return None if own is None else own[-1]
         chain = own_chain(source, answer, grading)
         return None if chain is None else chain.frames[-1]
 

@@ -13,6 +13,7 @@ from service.grading.report import (
     Verdict,
     combined,
     rounded_points,
+    total_of,
 )
 from service.grading.samples import Samples
 from service.kinematics.transforms import Matrices, inverse
@@ -82,7 +83,7 @@ class PartTerms:
         verdict = combined(row.verdict for row in rows)
         if lost and verdict is Verdict.CORRECT:
             verdict = Verdict.PARTIAL
-        earned = sum(row.points for row in rows) - lost * self.points
+        earned = total_of(rows) - lost * self.points
         if verdict is Verdict.CORRECT:
             earned = self.points
         elif self.all_or_nothing:

@@ -115,6 +115,11 @@ def rounded_points(points: float) -> float:
     return round(points, 6)
 
 
+def total_of(rows: Iterable[RowReport]) -> float:
+    """The points of all rows. They are rounded to six figures: three thirds of one make one."""
+    return round(sum(row.points for row in rows), 5)
+
+
 def row_report(
     label: str,
     max_points: float,

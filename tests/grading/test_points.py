@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from service.catalogue import Exercise
-from service.grading import Verdict
+from service.grading import Severity, Verdict
 from tests.grading.robots import EXACT, ROBOTS, STANFORD, Robot
 from tests.grading.submitting import graded_table, handed_in, part, table
 
@@ -102,3 +102,37 @@ def test_thirds_leave_no_dust(make_exercise: Callable[[str], Exercise]) -> None:
     assert (report.points, report.score) == (7.1, 1.0)
     one_off = handed_in(exercise, {"again": table([RIGHT[0], ("a2", "0", "1", "q2")])})
     assert part(one_off, "again").points == 0.0875
+
+
+ROTATION = """
+title = "Turned about x"
+source = "made for this test"
+statement = "A rotation by q1 about x."
+[symbols.q1]
+kind = "angle"
+description = "the angle"
+[[parts]]
+id = "rotation"
+kind = "rotation"
+title = "Rotation"
+points = 3
+expected = [["1", "0", "0"], ["0", "cos(q1)", "-sin(q1)"], ["0", "sin(q1)", "cos(q1)"]]
+"""
+
+
+def test_three_thirds_of_a_point_are_a_point(make_exercise: Callable[[str], Exercise]) -> None:
+    """One entry of three is right in each row; each row is worth a point."""
+    rows = [["1", "2", "2"], ["0", "2", "2"], ["0", "2", "2"]]
+    report = part(handed_in(make_exercise(ROTATION), {"rotation": rows}), "rotation")
+    assert [row.points for row in report.rows] == [0.333333] * 3
+    assert report.points == 1
+
+
+def test_another_convention_named_costs_nothing(given_frames: Mapping[str, Exercise]) -> None:
+    """The table is right in the convention that is asked for; its label is not."""
+    answer = table(EXACT.rows(STANFORD)) | {"convention": "modified"}
+    report = part(handed_in(given_frames[STANFORD.exercise], {"table": answer}), "table")
+    assert report.points == report.max_points
+    assert [(m.code, m.severity) for m in report.feedback] == [
+        ("convention_not_asked_for", Severity.WARNING)
+    ]

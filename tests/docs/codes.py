@@ -1,0 +1,156 @@
+"""Finds the codes that the program may tell, by reading its source.
+
+A code is whatever is handed over as ``code``: to a class that has a field or an argument of that
+name (Finding, Note, ExpressionError …), or to a function that passes it on to one. It must be
+written out there as a string, or be a name that nothing but such strings is given to; a code that
+is put together while the program runs could not be found by reading, and so is refused.
+"""
+
+import ast
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+CODE = "code"
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+# Names and what they are given, one pair for each time.
+Given = list[tuple[str, ast.expr]]
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """A code, and the file and line where it is handed over."""
+
+    code: str
+    file: str
+    line: int
+
+
+class HiddenCodeError(Exception):
+    """A code that is not written out."""
+
+    def __init__(self, file: str, value: ast.expr) -> None:
+        super().__init__(f"{file}:{value.lineno}: not written out: {ast.unparse(value)}")
+
+
+def sources(folder: Path) -> dict[str, str]:
+    """All Python files below a folder, by their paths in it."""
+    return {
+        file.relative_to(folder).as_posix(): file.read_text(encoding="utf-8")
+        for file in sorted(folder.rglob("*.py"))
+    }
+
+
+def codes_in(files: Mapping[str, str]) -> list[Told]:
+    """Every code that is handed over in these files. Raises HiddenCodeError."""
+    trees = {file: ast.parse(text) for file, text in files.items()}
+    classes = dict(found for tree in trees.values() for found in _classes(tree))
+    functions = dict(found for tree in trees.values() for found in _functions(tree))
+    constants = [given for tree in trees.values() for given in _given(tree.body)]
+    told: list[Told] = []
+    for file, tree in trees.items():
+        imported = _imported(tree)
+        passing = {name: functions[name] for name in imported & functions.keys()}
+        carriers = {**classes, **passing, **dict(_functions(tree))}
+        known = [given for given in constants if given[0] in imported]
+        known += _given(tree.body)
+        for function, call in _calls(tree, None):
+            value = _handed_over(call, carriers)
+            if value is not None:
+                found = _texts(value, function, known, file)
+                told += [Told(text, file, call.lineno) for text in found]
+    return told
+
+
+def _classes(tree: ast.Module) -> Iterator[tuple[str, int]]:
+    """The classes that carry a code, each with its place among the arguments."""
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.ClassDef):
+            continue
+        arguments = [
+            statement.target.id
+            for statement in node.body
+            if isinstance(statement, ast.AnnAssign) and isinstance(statement.target, ast.Name)
+        ]
+        for statement in node.body:
+            if isinstance(statement, Function) and statement.name == "__init__":
+                arguments = _arguments(statement)
+        if CODE in arguments:
+            yield node.name, arguments.index(CODE)
+
+
+def _functions(tree: ast.Module) -> Iterator[tuple[str, int]]:
+    """The functions and methods that pass a code on, likewise."""
+    for node in ast.walk(tree):
+        if isinstance(node, Function) and node.name != "__init__" and CODE in _arguments(node):
+            yield node.name, _arguments(node).index(CODE)
+
+
+def _arguments(function: Function) -> list[str]:
+    given = function.args
+    names = [each.arg for each in (*given.posonlyargs, *given.args, *given.kwonlyargs)]
+    return names[1:] if names[:1] in (["self"], ["cls"]) else names
+
+
+def _imported(tree: ast.Module) -> set[str]:
+    imports = (node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom))
+    return {alias.name for node in imports for alias in node.names}
+
+
+def _given(nodes: Iterable[ast.AST]) -> Given:
+    """What these statements give to names."""
+    given: Given = []
+    for node in nodes:
+        if isinstance(node, ast.Assign):
+            names = [target.id for target in node.targets if isinstance(target, ast.Name)]
+            given += [(name, node.value) for name in names]
+        elif isinstance(node, ast.AnnAssign | ast.NamedExpr | ast.AugAssign) and node.value:
+            given += [(node.target.id, node.value)] if isinstance(node.target, ast.Name) else []
+    return given
+
+
+def _calls(node: ast.AST, around: Function | None) -> Iterator[tuple[Function | None, ast.Call]]:
+    """All calls below a node, each with the function that it stands in."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.Call):
+            yield around, child
+        yield from _calls(child, child if isinstance(child, Function) else around)
+
+
+def _handed_over(call: ast.Call, carriers: Mapping[str, int]) -> ast.expr | None:
+    """What a call hands over as a code, if anything; the call itself where that cannot be seen."""
+    for keyword in call.keywords:
+        if keyword.arg == CODE:
+            return keyword.value
+    name = ""
+    if isinstance(call.func, ast.Name):
+        name = call.func.id
+    elif isinstance(call.func, ast.Attribute):
+        name = call.func.attr
+    if name not in carriers:
+        return None
+    place, values = carriers[name], call.args
+    unpacked = any(isinstance(value, ast.Starred) for value in values[: place + 1])
+    return call if unpacked or place >= len(values) else values[place]
+
+
+def _texts(value: ast.expr, function: Function | None, known: Given, file: str) -> list[str]:
+    """The codes that an expression may stand for; none where it passes on that of another."""
+    match value:
+        case ast.Constant(str(text)):
+            return [text]
+        case ast.Attribute(attr="code"):
+            return []
+        case ast.IfExp(body=one, orelse=other):
+            branches = [_texts(branch, function, known, file) for branch in (one, other)]
+            return [text for texts in branches for text in texts]
+        case ast.Name(name) if function and name == CODE and CODE in _arguments(function):
+            return []
+        case ast.Name(name):
+            inside = [] if function is None else _given(ast.walk(function))
+            values = [given for each, given in inside if each == name]
+            values = values or [given for each, given in known if each == name]
+            if values:
+                return [text for each in values for text in _texts(each, None, known, file)]
+    raise HiddenCodeError(file, value)

@@ -1,0 +1,352 @@
+"""docs/messages.md lists every code that the program tells, in its place, and no other."""
+
+import json
+import re
+from collections import Counter
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from service.catalogue import Exercise
+from service.expressions import LIMITS, ExpressionError, read
+from service.expressions.grids import GRID_LIMITS
+from service.grading import FeedbackLevel
+from service.grading.entries import MAX_CHARACTERS
+from service.grading.preview import preview_pasted
+from service.grading.tables import MAX_ROWS
+from tests.docs.codes import HiddenCodeError, codes_in, sources
+from tests.expressions.corpus_files import ROBOT
+from tests.grading.exercise_texts import told
+from tests.grading.robots import COLUMNS, EXACT, STANFORD
+from tests.grading.submitting import as_data, handed_in, part, table
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "messages.md").read_text(encoding="utf-8")
+PROGRAM = codes_in(sources(ROOT / "service"))
+
+UNREAD = "A formula that cannot be read"
+NOTED = "A formula that is read, with a note"
+PASTED_UNREAD = "A pasted table or matrix that cannot be read"
+PASTED_NOTED = "A pasted table or matrix that is read, with a note"
+IN_CELLS = "Slips in table cells"
+SINGLE = "Single entries"
+DIAGNOSIS = "grading/diagnosis/"
+VALUES = f"{DIAGNOSIS}values.py"
+# The sections, and the files that tell what they list; a folder stands for all that is in it.
+PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
+    ((UNREAD,), ("expressions/repairs/",)),
+    ((NOTED,), ("expressions/build.py", "expressions/degrees.py", "expressions/remarks.py")),
+    (
+        (PASTED_UNREAD, PASTED_NOTED),
+        (
+            "expressions/grids/",
+            "grading/labels.py",
+            "grading/lengths.py",
+            "grading/pasted.py",
+        ),
+    ),
+    (
+        ("The shape of an answer",),
+        (
+            "formats/text.py",
+            "grading/dh_row.py",
+            "grading/entries.py",
+            "grading/link_transforms.py",
+            "grading/lists.py",
+            "grading/matrices.py",
+            "grading/tables.py",
+        ),
+    ),
+    (
+        ("Accepted, with a remark",),
+        (
+            "grading/choices.py",
+            "grading/euler_angles.py",
+            "grading/findings.py",
+            "grading/screw_axes.py",
+        ),
+    ),
+    ((IN_CELLS,), (f"{DIAGNOSIS}cells.py", VALUES)),
+    (
+        ("Slips through a whole table",),
+        (
+            "grading/dh_table.py",
+            "grading/judgement.py",
+            f"{DIAGNOSIS}freedom.py",
+            f"{DIAGNOSIS}tables.py",
+        ),
+    ),
+    (("The row of a transform",), (f"{DIAGNOSIS}dh_row.py",)),
+    (
+        ("Matrices",),
+        (
+            f"{DIAGNOSIS}exponentials.py",
+            f"{DIAGNOSIS}matrices.py",
+            f"{DIAGNOSIS}products.py",
+            f"{DIAGNOSIS}steps.py",
+        ),
+    ),
+    ((SINGLE,), (f"{DIAGNOSIS}entries.py", VALUES)),
+    (("Positions",), (f"{DIAGNOSIS}positions.py",)),
+    (("Angles",), (f"{DIAGNOSIS}angles.py", VALUES)),
+    (("Screws",), (f"{DIAGNOSIS}screws.py",)),
+    (("Parts as a whole",), ("grading/following.py",)),
+)
+
+
+class Line(NamedTuple):
+    """A line of a table of codes; ``example`` is what stands behind the meaning, if anything."""
+
+    section: str
+    code: str
+    example: tuple[str, ...]
+
+
+def lines(page: str) -> list[Line]:
+    """The lines of all tables whose first column is the code."""
+    found: list[Line] = []
+    section, heads = "", ""
+    for line in page.split("\n"):
+        if heading := re.fullmatch(r"##+ (.+)", line):
+            section = heading[1]
+        cells = [cell.strip() for cell in line.split("|")[1:-1]]
+        heads = (heads or cells[0]) if cells else ""
+        if heads == "Code" and (code := re.fullmatch(r"`(\w+)`", cells[0])):
+            example = tuple(cell.strip("`") for cell in cells[2:])
+            found.append(Line(section, code[1], example if any(example) else ()))
+    return found
+
+
+LINES = lines(PAGE)
+
+
+# --- the page and the program
+
+
+def test_every_code_of_the_program_is_on_the_page() -> None:
+    assert {told.code for told in PROGRAM} - {line.code for line in LINES} == set()
+
+
+def test_every_code_on_the_page_is_one_of_the_programs() -> None:
+    assert {line.code for line in LINES} - {told.code for told in PROGRAM} == set()
+
+
+def test_every_file_that_tells_codes_has_its_section() -> None:
+    files = tuple(file for _, files in PLACES for file in files)
+    assert {told.file for told in PROGRAM if not told.file.startswith(files)} == set()
+
+
+@pytest.mark.parametrize(("sections", "files"), PLACES, ids=lambda names: names[0])
+def test_a_section_lists_what_its_files_tell(
+    sections: tuple[str, ...], files: tuple[str, ...]
+) -> None:
+    listed = {line.code for line in LINES if line.section in sections}
+    assert listed == {told.code for told in PROGRAM if told.file.startswith(files)}
+
+
+def test_a_section_lists_a_code_once() -> None:
+    times = Counter((line.section, line.code) for line in LINES)
+    assert [place for place, count in times.items() if count > 1] == []
+
+
+def test_a_line_of_the_page_without_its_example() -> None:
+    page = "## A\n| Code | It |\n|---|---|\n| `one` | x |\n\n| No | `two` |\n| `three` | y |\n"
+    assert lines(page) == [Line("A", "one", ())]
+
+
+# --- the examples
+
+
+def codes_of(exercise: Exercise, part_id: str, answer: object) -> tuple[set[str], set[str]]:
+    """The codes that an answer draws, at the level full and at the level score."""
+    full, verdicts, score = (
+        told(part(handed_in(exercise, {part_id: answer}, feedback=level), part_id))
+        for level in (FeedbackLevel.FULL, FeedbackLevel.VERDICTS, FeedbackLevel.SCORE)
+    )
+    assert full == verdicts
+    return full, score
+
+
+def examples(*sections: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Runs a test for each line of these sections that has an example."""
+    chosen = [line for line in LINES if line.section in sections and line.example]
+    return pytest.mark.parametrize("line", chosen, ids=lambda line: line.code)
+
+
+@examples(UNREAD)
+def test_a_formula_is_not_read(line: Line) -> None:
+    with pytest.raises(ExpressionError) as caught:
+        read(line.example[0], ROBOT)
+    assert caught.value.code == line.code
+
+
+@examples(NOTED)
+def test_a_formula_is_read_with_a_note(line: Line) -> None:
+    assert line.code in {note.code for note in read(line.example[0], ROBOT).notes}
+
+
+@examples(PASTED_UNREAD, PASTED_NOTED)
+def test_a_pasted_text_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
+    exercise, text = catalogue["planar-rr"], line.example[0].replace(" ↵ ", "\n")
+    found: set[str] = set()
+    for part_id in ("table", "pose"):
+        pasted = preview_pasted(text, exercise, part_id)
+        found |= {note.code for note in pasted.notes}
+        found |= {pasted.problem.code} if pasted.problem else codes_of(exercise, part_id, text)[1]
+    assert line.code in found
+
+
+def test_a_text_that_is_no_grid_has_another_code_in_a_report(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    [line] = [line for line in LINES if line.code == "no_grid"]
+    full, score = codes_of(catalogue["planar-rr"], "pose", line.example[0])
+    assert full == score == {"wrong_shape"}
+
+
+@examples(IN_CELLS)
+def test_a_table_cell_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
+    place, right, written = line.example
+    row, column = place.removeprefix("row ").split(", ")
+    rows = [list(cells) for cells in EXACT.rows(STANFORD)]
+    assert rows[int(row) - 1][COLUMNS.index(column)] == right
+    rows[int(row) - 1][COLUMNS.index(column)] = written
+    assert codes_of(catalogue["stanford-arm"], "table", table(rows)) == ({line.code}, set())
+
+
+@examples(SINGLE)
+def test_an_entry_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
+    right, written = line.example
+    matrix = [["c12", "-s12", "0", "a1 c1 + a2 c12"], ["s12", "c12", "0", "a1 s1 + a2 s12"]]
+    matrix += [["0", "0", "1", "0"], ["0", "0", "0", "1"]]
+    assert f"which is {', '.join(f'`{entry}`' for entry in matrix[0])}" in PAGE.replace("\n", " ")
+    matrix[0][matrix[0].index(right)] = written
+    full, score = codes_of(catalogue["planar-rr"], "pose", matrix)
+    assert (full - {"rotation_not_orthonormal"}, score) == ({line.code}, set())
+
+
+@examples("Positions")
+def test_a_position_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
+    exercise, [answer] = catalogue["planar-rr"], line.example
+    assert codes_of(exercise, "position", answer) == ({line.code}, set())
+
+
+@examples("Angles")
+def test_angles_draw_their_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
+    full, score = codes_of(catalogue["spherical-wrist"], "zyz", line.example[0])
+    assert line.code in full
+    assert line.code not in score
+
+
+@examples("Screws")
+def test_a_screw_axis_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
+    body = line.code == "space_for_body"
+    axes = [["0", "0", "1", "0", "L1 + L2" if body else "0", "0"], ["0", "0", "0", "1", "0", "0"]]
+    answer = [*axes, line.example[0].strip("[]").split(", ")]
+    part_id = "body-screws" if body else "space-screws"
+    assert codes_of(catalogue["planar-rpr-poe"], part_id, answer) == ({line.code}, set())
+
+
+def test_most_codes_have_an_example() -> None:
+    assert len({line.code for line in LINES if line.example}) > 120
+
+
+# --- what else the page says
+
+
+def test_the_message_on_the_page_is_in_the_report(catalogue: Mapping[str, Exercise]) -> None:
+    [block] = re.findall(r"^```json\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
+    shown = json.loads(block)
+    body = json.loads((ROOT / "docs" / "examples" / "stanford-arm.json").read_text("utf-8"))
+    report = as_data(handed_in(catalogue["stanford-arm"], body["answers"]))
+    messages = [
+        {name: value for name, value in message.items() if value is not None}
+        for row in report["parts"][0]["rows"]
+        for cell in row["cells"]
+        for message in cell["feedback"]
+    ]
+    assert shown in json.loads(json.dumps(messages))
+
+
+def test_the_limits_of_the_page() -> None:
+    for limit in (
+        f"more than {LIMITS.characters} characters",
+        f"more than {LIMITS.nodes} operations and operands",
+        f"more than {LIMITS.depth} levels deep",
+        f"more than {GRID_LIMITS.characters:,} characters",
+        f"more than {GRID_LIMITS.rows - 1} rows and a header",
+        f"more than {GRID_LIMITS.columns} columns",
+        f"more than {MAX_CHARACTERS:,} characters",
+        f"a table of more than {MAX_ROWS} rows",
+    ):
+        assert limit in PAGE
+
+
+def test_links_within_the_page_lead_somewhere() -> None:
+    headings = re.findall(r"^##+ (.+)$", PAGE, re.MULTILINE)
+    anchors = {re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in headings}
+    links = set(re.findall(r"\]\(#([\w-]+)\)", PAGE))
+    assert len(links) > 3
+    assert links - anchors == set()
+
+
+# --- finding the codes
+
+
+CARRIER = "class Finding:\n    code: str\n    look: str\n"
+ERROR = "class E(Exception):\n    def __init__(self, code: str, span: int) -> None: ...\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "codes"),
+    [
+        ('Finding("one", "x")', {"one"}),
+        ('Finding(look="x", code="one")', {"one"}),
+        ('module.Finding("one", "x")', {"one"}),
+        ('raise E("one", 0)', {"one"}),
+        ('f = lambda: Finding("one", "x")', {"one"}),
+        ('Finding("one" if a else "two", "x")', {"one", "two"}),
+        ('ONE = "one"\nFinding(ONE, "x")', {"one"}),
+        ('def f(a):\n    c = "one" if a else "two"\n    return Finding(c, "")', {"one", "two"}),
+        ('def f(a):\n    c = "one"\n    if a: c = "two"\n    Finding(c, "")', {"one", "two"}),
+        ('def f(e):\n    return Finding("one" if e.code == "two" else e.code, "x")', {"one"}),
+        ('def f(code, look):\n    return Finding(code, look)\nf("one", "x")', {"one"}),
+        ('class A:\n    def f(self, code): Finding(code, "")\nA().f("one")', {"one"}),
+        ('replace(finding, code="one")', {"one"}),
+        ('other("one", "x")', set()),
+        ("Finding(finding.code, finding.look)", set()),
+    ],
+)
+def test_codes_are_found(text: str, codes: set[str]) -> None:
+    assert {told.code for told in codes_in({"a.py": f"{CARRIER}{ERROR}{text}\n"})} == codes
+
+
+def test_codes_are_found_across_files() -> None:
+    files = {
+        "carrier.py": f'{CARRIER}ONE = "one"\ndef info(code): return Finding(code, "")\n',
+        "a.py": 'from carrier import Finding, ONE\nFinding(ONE, "x")\n',
+        "b.py": 'from carrier import info\ninfo("two")\n',
+        "c.py": 'def info(text): ...\ninfo("three")\n',
+    }
+    assert {(told.code, told.file, told.line) for told in codes_in(files)} == {
+        ("one", "a.py", 2),
+        ("two", "b.py", 2),
+    }
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'Finding(f"{a}_sign", "x")',
+        'for code in ("one", "two"):\n    Finding(code, "x")',
+        'def f(name):\n    return Finding(name, "x")',
+        'Finding(CODES[0], "x")',
+        "Finding(*both)",
+        "Finding(**both)",
+    ],
+)
+def test_a_code_that_is_not_written_out_is_refused(text: str) -> None:
+    with pytest.raises(HiddenCodeError, match=r"a\.py:\d+: not written out: "):
+        codes_in({"a.py": f"{CARRIER}{text}\n"})
