@@ -12,7 +12,7 @@ from service.catalogue import (
 )
 from service.catalogue.robot import Robot, Values, at_home
 from service.grading.compare import Numbers
-from service.grading.mechanism import tool_pose
+from service.grading.frames.mechanism import tool_pose
 from service.grading.protocol import Grading
 from service.grading.samples import LANES, Samples
 from service.kinematics.transforms import Matrices, inverse

@@ -7,17 +7,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import DhTableSpec, Joint, ReferenceTable
-from service.grading.choices import choices
 from service.grading.compare import Match, Numbers, difference, matches
 from service.grading.findings import Finding
-from service.grading.frames import parallel_neighbours, read_in_own_frames
-from service.grading.freedom import Freedom
-from service.grading.mechanism import reference_values
-from service.grading.nearest import FrameReading
+from service.grading.frames.choices import choices
+from service.grading.frames.freedom import Freedom
+from service.grading.frames.mechanism import reference_values
+from service.grading.frames.nearest import FrameReading
+from service.grading.frames.own import parallel_neighbours, read_in_own_frames
+from service.grading.frames.roles import Role, roles_of
+from service.grading.frames.steadied import steadied
 from service.grading.protocol import Grading
-from service.grading.roles import Role, roles_of
 from service.grading.samples import LANES
-from service.grading.steadied import steadied
 from service.grading.tables import (
     IS_ANGLE,
     HandedInRow,

@@ -8,7 +8,8 @@ from service.catalogue import LinkTransformsSpec
 from service.expressions import Vocabulary, read
 from service.grading.entries import Entry
 from service.grading.findings import Finding
-from service.grading.freedom import Freedom
+from service.grading.frames.freedom import Freedom
+from service.grading.frames.roles import Role
 from service.grading.judgement import nearest_reading
 from service.grading.matrices import (
     PATIENCE,
@@ -26,7 +27,6 @@ from service.grading.report import (
     RowReport,
     Verdict,
 )
-from service.grading.roles import Role
 from service.grading.samples import LANES
 from service.grading.tables import HandedInRow
 from service.grading.transform import HOMOGENEOUS

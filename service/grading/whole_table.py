@@ -8,13 +8,13 @@ from service.grading.compare import Numbers
 from service.grading.diagnosis.freedom import lost_freedom
 from service.grading.diagnosis.tables import TOLERANCE, explanations, written_table
 from service.grading.findings import Finding
+from service.grading.frames.mechanism import reference_values
+from service.grading.frames.roles import Role
+from service.grading.frames.validity import valid_tables
 from service.grading.judgement import freedom_of
-from service.grading.mechanism import reference_values
 from service.grading.protocol import Grading
 from service.grading.report import Severity
-from service.grading.roles import Role
 from service.grading.tables import values_of
-from service.grading.validity import valid_tables
 from service.kinematics.dh import Convention
 
 # Enough samples to tell tables apart that are tried by the dozen.

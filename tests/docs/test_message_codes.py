@@ -62,7 +62,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (
         ("Accepted, with a remark",),
         (
-            "grading/choices.py",
+            "grading/frames/choices.py",
             "grading/euler_angles.py",
             "grading/findings.py",
             "grading/screw_axes.py",

@@ -14,8 +14,8 @@ import numpy as np
 from service.catalogue import Exercise
 from service.catalogue.robot import at_home
 from service.grading.compare import LARGEST_ANGLE, ROUNDED, Numbers
+from service.grading.frames.roles import Role, joint_cells
 from service.grading.motion import changes
-from service.grading.roles import Role, joint_cells
 from service.grading.samples import Samples
 from service.grading.tables import IS_ANGLE
 

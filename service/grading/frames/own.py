@@ -9,21 +9,21 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from service.grading.free_base import own_bases
-from service.grading.freedom import Freedom
-from service.grading.meant import read_as_meant
-from service.grading.mechanism import (
+from service.grading.frames.free_base import own_bases
+from service.grading.frames.freedom import Freedom
+from service.grading.frames.meant import read_as_meant
+from service.grading.frames.mechanism import (
     Mechanism,
     as_table,
     mechanism_at,
     reference_frames,
 )
-from service.grading.nearest import FrameReading, nearest_by_few_cells
+from service.grading.frames.nearest import FrameReading, nearest_by_few_cells
+from service.grading.frames.roles import Role, variable_column
+from service.grading.frames.validity import stops_of
+from service.grading.frames.written import Written, written_constants, written_rows
 from service.grading.protocol import Grading
-from service.grading.roles import Role, variable_column
 from service.grading.samples import Samples
-from service.grading.validity import stops_of
-from service.grading.written import Written, written_constants, written_rows
 from service.kinematics.chain import THETA, D, Table
 from service.kinematics.dh import Convention, standard_link
 from service.kinematics.fit import PARALLEL

@@ -7,11 +7,11 @@ each cell should be: nothing has to be guessed from which cells agree with some 
 import numpy as np
 
 from service.grading.diagnosis.tables import BASIC, TOLERANCE, WrittenTable, written_table
-from service.grading.freedom import Freedom
-from service.grading.nearest import FrameReading, frames_from_reference
+from service.grading.frames.freedom import Freedom
+from service.grading.frames.nearest import FrameReading, frames_from_reference
+from service.grading.frames.roles import Role
+from service.grading.frames.validity import valid_tables
 from service.grading.protocol import Grading
-from service.grading.roles import Role
-from service.grading.validity import valid_tables
 from service.kinematics.chain import Table, modified_rows, standard_rows
 from service.kinematics.dh import Convention
 from service.kinematics.frame_choice import WRONG_CELL

@@ -12,11 +12,11 @@ from itertools import chain
 import numpy as np
 
 from service.grading.compare import Numbers, difference
-from service.grading.likelihood import unlikelihood
-from service.grading.mechanism import reference_frames
+from service.grading.frames.likelihood import unlikelihood
+from service.grading.frames.mechanism import reference_frames
+from service.grading.frames.roles import Role, joint_cells, motion_of
 from service.grading.motion import TOLERANCE, changes, moves_with
 from service.grading.protocol import Grading
-from service.grading.roles import Role, joint_cells, motion_of
 from service.grading.samples import SAMPLES
 from service.grading.tables import IS_ANGLE
 from service.kinematics.chain import Table, frames, joint_frames

@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import Joint
-from service.grading.freedom import Freedom
-from service.grading.mechanism import Mechanism, start_frames
+from service.grading.frames.freedom import Freedom
+from service.grading.frames.mechanism import Mechanism, start_frames
+from service.grading.frames.roles import Role
+from service.grading.frames.written import without_motion
 from service.grading.motion import halves
-from service.grading.roles import Role
 from service.grading.samples import SAMPLES
-from service.grading.written import without_motion
 from service.kinematics.base_fit import carry
 from service.kinematics.chain import pose
 from service.kinematics.dh import Convention

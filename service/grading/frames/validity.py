@@ -7,13 +7,13 @@ from numpy.typing import NDArray
 
 from service.catalogue import Exercise
 from service.grading.compare import Numbers
-from service.grading.freedom import Freedom
-from service.grading.mechanism import Mechanism, mechanism_at, reference_frames, regrouped
+from service.grading.frames.freedom import Freedom
+from service.grading.frames.mechanism import Mechanism, mechanism_at, reference_frames, regrouped
+from service.grading.frames.roles import Role, motion_of
+from service.grading.frames.written import without_motion
 from service.grading.motion import moves_with
-from service.grading.roles import Role, motion_of
 from service.grading.samples import Samples
 from service.grading.tables import IS_ANGLE
-from service.grading.written import without_motion
 from service.kinematics.chain import pose
 from service.kinematics.dh import Convention
 from service.kinematics.fit import Place

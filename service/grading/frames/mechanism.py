@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from service.catalogue import Exercise, ReferenceTable
 from service.grading.compare import Numbers
+from service.grading.frames.roles import variable_column
 from service.grading.motion import halves
-from service.grading.roles import variable_column
 from service.grading.samples import Samples
 from service.kinematics.chain import THETA, D, Table, frames, joint_frames, pose
 from service.kinematics.dh import Convention, standard_link

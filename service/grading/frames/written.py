@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from service.catalogue import Joint
 from service.grading.compare import ROUNDED, Numbers, difference
-from service.grading.mechanism import regrouped
+from service.grading.frames.mechanism import regrouped
+from service.grading.frames.roles import Role, variable_column
 from service.grading.motion import TOLERANCE, halves, joint_counts
-from service.grading.roles import Role, variable_column
 from service.grading.samples import LANES, SAMPLES, Samples
 from service.grading.tables import IS_ANGLE
 from service.kinematics.chain import COLUMNS
