@@ -89,6 +89,14 @@ def test_a_slip_between_parallel_axes_is_blamed_on_one_row(given: Tally) -> None
 
 def test_two_slips_that_have_nothing_to_do_with_each_other_are_both_found(given: Tally) -> None:
     assert given.counts["two unshared"] >= 150
-    assert given.share("two unshared found", "two unshared") >= 0.90, shown(
+    assert given.share("two unshared found", "two unshared") >= 0.95, shown(
         given, lambda what: what.startswith("two slips")
     )
+
+
+def test_of_slips_that_could_be_mended_elsewhere_the_likeliest_is_blamed(given: Tally) -> None:
+    """Ties and all. Of 31,000 tables 98.7 % and 90.5 %; the bounds are three deviations below."""
+    assert given.counts["skew"] >= 100
+    assert given.share("skew exact", "skew") >= 0.95
+    assert given.counts["two slips"] >= 300
+    assert given.share("two found", "two slips") >= 0.85
