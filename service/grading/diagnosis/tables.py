@@ -288,15 +288,14 @@ def _repairs(table: WrittenTable, misconceptions: Sequence[Misconception]) -> li
 def _explaining(
     table: WrittenTable, chains: Sequence[tuple[Repair, ...]], valid: Validity
 ) -> list[tuple[Repair, ...]]:
-    """The chains of repairs that change the table and end in a valid one."""
-    found: list[tuple[Repair, ...]] = []
+    """The chains of repairs that change the table and end in a valid one, in their order."""
+    explains = np.zeros(len(chains), dtype=np.bool_)
     for convention in Convention:
-        ending = [chain for chain in chains if chain[-1].table.convention is convention]
-        if not ending:
-            continue
-        tables = np.array([chain[-1].table.values for chain in ending])
-        explains = valid(tables, convention)
-        if convention is table.convention:
-            explains &= np.abs(tables - table.values).max(axis=(1, 2, 3)) > TOLERANCE
-        found.extend(ending[i] for i in np.flatnonzero(explains))
-    return found
+        ending = [i for i, chain in enumerate(chains) if chain[-1].table.convention is convention]
+        if ending:
+            tables = np.array([chains[i][-1].table.values for i in ending])
+            explains[ending] = valid(tables, convention)
+            if convention is table.convention:
+                changed = np.abs(tables - table.values).max(axis=(1, 2, 3)) > TOLERANCE
+                explains[ending] &= changed
+    return [chain for chain, yes in zip(chains, explains, strict=True) if yes]

@@ -1,0 +1,107 @@
+"""Each belief about a table cell: one cell that it explains, one that it leaves alone."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from service.catalogue import Joint
+from service.expressions import Symbol, Vocabulary, read
+from service.grading.diagnosis import cells
+from service.grading.diagnosis.case import WrongCell
+from service.grading.diagnosis.cells import MISCONCEPTIONS, diagnose
+from service.grading.diagnosis.values import undefined
+from service.grading.findings import Finding
+from service.grading.motion import coefficients
+from service.grading.samples import LANES, SAMPLES, Samples
+
+RNG = np.random.default_rng(5)
+JOINTS = (Joint(1, "q1", False), Joint(2, "q2", False), Joint(3, "d3", True))
+LETTERS = {name: np.tile(RNG.uniform(0.2, 0.9, SAMPLES), 2) for name in ("a1", "a2")}
+VALUES = {joint.variable: RNG.uniform(-3, 3, LANES) for joint in JOINTS} | LETTERS
+SAMPLE = Samples(VALUES)
+KINDS = {"q1": "angle", "q2": "angle", "d3": "length", "a1": "length", "a2": "length"}
+WORDS = Vocabulary([Symbol(name, kind) for name, kind in KINDS.items()])  # type: ignore[arg-type]
+
+# The column, the number of the row's joint, what was written there and what is right.
+Cell = tuple[str, int, str, str]
+Belief = Callable[[WrongCell], Finding | None]
+
+
+def wrong(cell: Cell) -> WrongCell:
+    column, number, written, right = cell
+    angle = column in ("alpha", "theta")
+    quantity = "angle" if angle else "length"
+    expression = read(written, WORDS, quantity=quantity)  # type: ignore[arg-type]
+    expected = read(right, WORDS, quantity=quantity)  # type: ignore[arg-type]
+    values = [np.zeros(LANES) + text.evaluate(VALUES) for text in (expression, expected)]
+    values[0][~np.isfinite(values[0])] = np.nan
+    actual_counts, expected_counts = coefficients(
+        np.array(values), JOINTS, SAMPLE, np.array([angle, angle])
+    )
+    return WrongCell(
+        expression=expression,
+        actual=values[0],
+        expected=values[1],
+        expected_text=right,
+        samples=SAMPLE,
+        scale=1.0 if angle else 0.5,
+        angle=angle,
+        column=column,
+        joint=JOINTS[number - 1],
+        joints=JOINTS,
+        actual_coefficients=actual_counts,
+        expected_coefficients=expected_counts or (0, 0, 0),
+    )
+
+
+PAIRS: list[tuple[Belief, Cell, Cell]] = [
+    (undefined, ("d", 1, "a1/0", "a1"), ("d", 1, "a2", "a1")),
+    (
+        cells.joint_variable_missing,
+        ("theta", 1, "pi/2", "q1 + pi/2"),
+        ("theta", 1, "q2", "q1"),
+    ),
+    (cells.joint_variable_sign, ("d", 3, "-d3", "d3"), ("d", 3, "d3 + a1", "d3")),
+    (cells.joint_variable_index, ("theta", 1, "q2", "q1"), ("theta", 1, "q1 + q2", "q1")),
+    (cells.joint_variable_doubled, ("theta", 2, "2*q2", "q2"), ("theta", 2, "-q2", "q2")),
+    (cells.joint_variable_column, ("alpha", 1, "q1", "0"), ("alpha", 1, "q2", "0")),
+    (cells.joint_variable_extra, ("theta", 1, "q1 + q2", "q1"), ("theta", 1, "-q1", "q1")),
+    (cells.sign, ("a", 1, "-a1", "a1"), ("a", 1, "-a2", "a1")),
+    (cells.distance_left_out, ("d", 1, "0", "a1"), ("d", 1, "a2", "a1")),
+    (cells.distance_extra, ("d", 3, "d3 + a1", "d3"), ("a", 3, "a1", "a2")),
+    (cells.degrees_as_radians, ("alpha", 1, "90", "pi/2"), ("alpha", 1, "91", "pi/2")),
+    (cells.radians_as_degrees, ("alpha", 1, "pi*pi/360", "pi/2"), ("alpha", 1, "0", "pi/2")),
+    (cells.quarter_turn, ("theta", 1, "q1", "q1 + pi/2"), ("theta", 1, "q1 + pi", "q1")),
+    (cells.half_turn, ("theta", 1, "q1 + pi", "q1"), ("theta", 1, "q1 + pi/2", "q1")),
+]
+
+
+@pytest.mark.parametrize(
+    ("belief", "explained", "left"), PAIRS, ids=lambda p: getattr(p, "__name__", "")
+)
+def test_a_belief_about_a_cell(belief: Belief, explained: Cell, left: Cell) -> None:
+    finding = belief(wrong(explained))
+    assert finding is not None
+    assert finding.code == belief.__name__
+    assert "should be" not in finding.look  # the answer is in the correction alone
+    assert finding.correction == f"It should be {explained[3]}."
+    assert belief(wrong(left)) is None
+
+
+@pytest.mark.parametrize(
+    ("belief", "explained", "_"), PAIRS, ids=lambda p: getattr(p, "__name__", "")
+)
+def test_it_is_the_first_that_explains_its_cell(belief: Belief, explained: Cell, _: Cell) -> None:
+    assert diagnose(wrong(explained)).code == belief.__name__
+
+
+def test_every_belief_about_a_cell_is_tested_and_tried() -> None:
+    assert [pair[0] for pair in PAIRS] == list(MISCONCEPTIONS)
+
+
+def test_what_no_belief_explains_shows_a_counterexample() -> None:
+    finding = diagnose(wrong(("a", 1, "a1 + 0.3", "a1")))
+    assert finding.code == "value"
+    assert finding.values is not None
+    assert finding.values["yours"] == pytest.approx(float(VALUES["a1"][0]) + 0.3, rel=1e-3)

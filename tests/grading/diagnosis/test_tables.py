@@ -1,0 +1,159 @@
+"""Each belief about a whole table: one table that it explains, one that it leaves alone.
+
+What a belief is tried on is the Stanford arm of Spong, Hutchinson and Vidyasagar, with d1 and a2
+added so that every column holds something. A table is right if its pose is, multiplied out here.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from service.catalogue import Joint
+from service.grading.diagnosis import tables
+from service.grading.diagnosis.tables import (
+    MISCONCEPTIONS,
+    Misconception,
+    WrittenTable,
+    explanations,
+    written_table,
+)
+from service.grading.samples import LANES, SAMPLES, Samples
+from service.kinematics.chain import ALPHA, THETA, A, D, Table
+from service.kinematics.dh import Convention
+from tests.frame_choice.kinematics import screw_x, screw_z
+
+RNG = np.random.default_rng(6)
+JOINTS = tuple(Joint(i + 1, f"q{i + 1}", i == 2) for i in range(6))
+SAMPLE = Samples({joint.variable: RNG.uniform(0.2, 1.4, LANES) for joint in JOINTS})
+LENGTHS = {name: np.tile(RNG.uniform(0.2, 0.9, SAMPLES), 2) for name in ("d1", "d2", "a2", "d6")}
+QUARTER = np.pi / 2
+
+
+def right() -> Table:
+    table = np.zeros((6, 4, LANES))
+    table[:, ALPHA] = np.array([-QUARTER, QUARTER, 0, -QUARTER, QUARTER, 0])[:, None]
+    table[0, D], table[1, D], table[5, D] = LENGTHS["d1"], LENGTHS["d2"], LENGTHS["d6"]
+    table[1, A] = LENGTHS["a2"]
+    for i, joint in enumerate(JOINTS):
+        table[i, D if joint.prismatic else THETA] += SAMPLE.values[joint.variable]
+    return table
+
+
+def pose(table: Table, convention: Convention) -> NDArray[np.float64]:
+    reached = np.tile(np.eye(4), (table.shape[-1], 1, 1))
+    for a, alpha, d, theta in table:
+        z, x = screw_z(d, theta), screw_x(a, alpha)
+        reached = reached @ (z @ x if convention is Convention.STANDARD else x @ z)
+    return reached
+
+
+def valid(candidates: NDArray[np.float64], convention: Convention) -> NDArray[np.bool_]:
+    wanted = pose(right(), Convention.STANDARD)
+    return np.array([np.abs(pose(t, convention) - wanted).max() < 1e-6 for t in candidates])
+
+
+def written(table: Table) -> WrittenTable:
+    return written_table(table, Convention.STANDARD, right(), JOINTS, SAMPLE)
+
+
+def in_modified_rows(table: Table) -> Table:
+    """Row i with the link before joint i: the last link has no row, here it is none."""
+    table[:, :2] = np.concatenate([np.zeros((1, 2, LANES)), table[:-1, :2]])
+    return table
+
+
+def twists_too_late(table: Table) -> Table:
+    """Only the twists: with the lengths it would be the other convention."""
+    table[:, ALPHA] = np.roll(table[:, ALPHA], 1, axis=0)
+    return table
+
+
+def with_columns(table: Table, one: int, other: int, row: int) -> Table:
+    table[row, [one, other]] = table[row, [other, one]]
+    return table
+
+
+def with_rows(table: Table, i: int, j: int) -> Table:
+    table[[i, j]] = table[[j, i]]
+    return table
+
+
+def with_angles(table: Table, factor: float) -> Table:
+    motion = written(right()).motion
+    constants = table - motion
+    constants[:, [ALPHA, THETA]] *= factor
+    return constants + motion
+
+
+def with_sign(table: Table, column: int) -> Table:
+    motion = written(right()).motion
+    constants = table - motion
+    constants[:, column] *= -1
+    return constants + motion
+
+
+def with_cell(table: Table, row: int, column: int, value: float) -> Table:
+    table[row, column] = value
+    return table
+
+
+Change = Callable[[Table], Table]
+PAIRS: list[tuple[Misconception, Change, Change]] = [
+    (tables.other_convention, in_modified_rows, lambda t: with_rows(t, 0, 1)),
+    (
+        tables.degrees_as_radians,
+        lambda t: with_angles(t, 180 / np.pi),
+        lambda t: with_angles(t, 2.0),
+    ),
+    (
+        tables.radians_as_degrees,
+        lambda t: with_angles(t, np.pi / 180),
+        lambda t: with_angles(t, 0.5),
+    ),
+    (tables.link_columns_shifted, twists_too_late, lambda t: with_cell(t, 0, ALPHA, QUARTER)),
+    (tables.column_sign, lambda t: with_sign(t, ALPHA), lambda t: with_cell(t, 0, ALPHA, 0.3)),
+    (
+        tables.columns_swapped,
+        lambda t: with_columns(t, A, D, 1),
+        lambda t: with_cell(t, 1, A, 0.0),
+    ),
+    (tables.row_order, lambda t: with_rows(t, 3, 4), lambda t: with_cell(t, 3, ALPHA, QUARTER)),
+]
+IDS = [belief.__name__ for belief, _, _ in PAIRS]
+
+
+def repairs(belief: Misconception, table: Table) -> list[str]:
+    """The codes of what the belief offers, where that makes the table right."""
+    offered = list(belief(written(table)))
+    return [
+        repair.finding().code
+        for repair in offered
+        if valid(repair.table.values[None], repair.table.convention)[0]
+    ]
+
+
+@pytest.mark.parametrize(("belief", "explained", "left"), PAIRS, ids=IDS)
+def test_a_belief_about_a_table(belief: Misconception, explained: Change, left: Change) -> None:
+    for change in (explained, left):
+        assert not valid(change(right())[None], Convention.STANDARD)[0]
+    assert set(repairs(belief, explained(right()))) == {belief.__name__}
+    assert repairs(belief, left(right())) == []
+
+
+@pytest.mark.parametrize(("belief", "explained", "_"), PAIRS, ids=IDS)
+def test_it_is_what_is_told(belief: Misconception, explained: Change, _: Change) -> None:
+    told = explanations(written(explained(right())), valid, combine=True)
+    assert belief.__name__ in [finding.code for finding in told]
+
+
+def test_two_beliefs_at_once() -> None:
+    both = in_modified_rows(with_angles(right(), 180 / np.pi))
+    told = explanations(written(both), valid, combine=True)
+    assert {finding.code for finding in told} == {"other_convention", "degrees_as_radians"}
+    assert explanations(written(both), valid, combine=False) == ()
+
+
+def test_every_belief_about_a_table_is_tested_and_tried() -> None:
+    assert [pair[0] for pair in PAIRS] == list(MISCONCEPTIONS)
