@@ -1,6 +1,6 @@
 """Answer kind ``dh_table``: a Denavit-Hartenberg table of the exercise's robot."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -9,7 +9,6 @@ from service.expressions import Expression
 from service.grading.compare import Match
 from service.grading.diagnosis.case import WrongCell
 from service.grading.diagnosis.cells import diagnose
-from service.grading.diagnosis.values import UNEXPLAINED
 from service.grading.findings import ROUNDED, Finding
 from service.grading.formulas import sum_text
 from service.grading.judgement import (
@@ -38,7 +37,7 @@ from service.grading.tables import (
     read_table,
     values_of,
 )
-from service.grading.whole_table import beliefs, freedom_lost
+from service.grading.whole_table import explained, freedom_lost
 from service.kinematics.chain import COLUMNS, frames, links
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices
@@ -65,9 +64,9 @@ class DhTableKind:
             return terms.unread(Verdict.MISSING)
         convention, findings = _convention(part, table, grading.exercise)
         judgement = judged_table(part, table.rows, convention, grading)
-        explained, lost = _of_the_whole(part, table.rows, judgement, convention, grading)
-        rows = _row_reports(judgement, part.points, grading, explained=bool(explained))
-        told = grading.show((*table.findings, *findings, *explained, *lost, *judgement.findings))
+        judgement, found, lost = _of_the_whole(part, table.rows, judgement, convention, grading)
+        rows = _row_reports(judgement, part.points, grading, found)
+        told = grading.show((*table.findings, *findings, *found, *lost, *judgement.findings))
         missing = tuple(
             message
             for judged in judgement.rows
@@ -84,18 +83,20 @@ def _of_the_whole(
     judgement: Judgement,
     convention: Convention,
     grading: Grading,
-) -> tuple[tuple[Finding, ...], tuple[Finding, ...]]:
-    """What explains the whole of a wrong table; or else which freedom its joints have lost."""
+) -> tuple[Judgement, tuple[Finding, ...], tuple[Finding, ...]]:
+    """What explains the whole of a wrong table; or else which freedom its joints have lost.
+
+    With the judgement that agrees with it.
+    """
     if not judgement.wrong:
-        return (), ()
+        return judgement, (), ()
     roles = judgement.roles or roles_in(rows, convention, grading)
+    found: tuple[Finding, ...] = ()
     if judgement.wrong > 1:
         combine = judgement.wrong >= WRONG_THROUGHOUT
-        explained = beliefs(roles, convention, part, grading, combine=combine)
-        if explained:
-            # What the table seems to describe was not meant.
-            return explained, ()
-    return (), freedom_lost(roles, convention, grading)
+        found, judgement = explained(part, roles, convention, judgement, grading, combine=combine)
+    # Where all is explained, what the table seems to describe was not meant.
+    return judgement, found, () if found else freedom_lost(roles, convention, grading)
 
 
 def _convention(
@@ -153,13 +154,16 @@ def _read_whole(
 
 
 def _row_reports(
-    judgement: Judgement, points: float, grading: Grading, *, explained: bool
+    judgement: Judgement, points: float, grading: Grading, of_the_whole: tuple[Finding, ...]
 ) -> tuple[RowReport, ...]:
-    """The rows with their cells; ``explained`` says that the whole table's slip has been found."""
+    """The rows with their cells, which belong to the slip of the whole table if there is one."""
     share = points / len(judgement.rows)
     slips = _slips(judgement, grading)
-    if explained:
-        slips = {place: slip for place, slip in slips.items() if slip.code != UNEXPLAINED}
+    if of_the_whole:
+        belongs = replace(of_the_whole[0], look=_PART_OF_IT)
+        slips = {
+            place: replace(belongs, correction=slip.correction) for place, slip in slips.items()
+        }
     return tuple(
         row_report(
             judged.label,
@@ -230,6 +234,9 @@ def _slips(judgement: Judgement, grading: Grading) -> dict[tuple[int, int], Find
             )
         )
     return slips
+
+
+_PART_OF_IT = "This belongs to what is said of the table as a whole."
 
 
 def _missing(judged: JudgedRow) -> Finding:

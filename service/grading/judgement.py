@@ -1,7 +1,7 @@
 """A handed-in table held against what it should be, in the frames that it is judged in."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from service.grading.findings import Finding
 from service.grading.frames.choices import choices
 from service.grading.frames.freedom import Freedom
 from service.grading.frames.mechanism import reference_values
-from service.grading.frames.nearest import FrameReading
+from service.grading.frames.nearest import FrameReading, frames_from_reference
 from service.grading.frames.own import parallel_neighbours, read_in_own_frames
 from service.grading.frames.roles import Role, roles_of
 from service.grading.frames.steadied import steadied
@@ -26,7 +26,8 @@ from service.grading.tables import (
 )
 from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh import Convention
-from service.kinematics.frame_choice import NO_SUCH_CELL, WRONG_CELL
+from service.kinematics.frame_choice import NO_SUCH_CELL, WRONG_CELL, departure
+from service.kinematics.transforms import Matrices
 
 # Far beyond what rounding does to a cell.
 PLAIN = 0.02
@@ -51,13 +52,15 @@ class Judgement:
     """A table held against what it should be, in the frames that it is judged in.
 
     ``matches`` is the Match of each cell, ``(rows, 4)``; a missing row matches nowhere. ``roles``
-    are those that the handed-in rows were taken for, where that was asked. ``extra`` are rows that
-    answer to nothing; ``reached`` says that the rows lead to the given tool frame.
+    are those that the handed-in rows were taken for, where that was asked; ``departures`` is what
+    their frames cost, infinitely much where nobody can say which were meant. ``extra`` are rows
+    that answer to nothing; ``reached`` says that the rows lead to the given tool frame.
     """
 
     rows: tuple[JudgedRow, ...]
     matches: NDArray[np.int_]
     roles: tuple[Role, ...] = ()
+    departures: float = 0.0
     extra: tuple[int, ...] = ()
     findings: tuple[Finding, ...] = ()
     reached: bool = True
@@ -88,7 +91,7 @@ def judged_table(
     # Of a table that is mostly wrong nobody can say which frames were meant; to follow it
     # there would reward cells that any number fits.
     if in_own_frames.wrong > in_own_frames.matches.size / 2:
-        return _judged_as_given(rows, reference, grading)
+        return replace(_judged_as_given(rows, reference, grading), departures=np.inf)
     return in_own_frames
 
 
@@ -125,8 +128,25 @@ def _judged_in_own_frames(
     part: DhTableSpec, rows: tuple[HandedInRow, ...], convention: Convention, grading: Grading
 ) -> Judgement:
     """The table held against the valid one nearest to it."""
-    exercise = grading.exercise
     roles, reading = _read_in_own_frames(part, rows, convention, grading)
+    judgement = _held_against(reading, roles, convention, grading)
+    if reading.cost < NO_SUCH_CELL or judgement.wrong:
+        return judgement
+    return replace(judgement, findings=(_UNREACHED, *judgement.findings), reached=False)
+
+
+def judged_against(
+    meant: Table, roles: tuple[Role, ...], convention: Convention, grading: Grading
+) -> Judgement:
+    """The table held against what it was meant to be, ``(rows, 4, LANES)``; all roles have rows."""
+    apart = frames_from_reference(meant, roles, convention, grading)
+    return _held_against(FrameReading(roles, meant, apart, WRONG_CELL), roles, convention, grading)
+
+
+def _held_against(
+    reading: FrameReading, roles: tuple[Role, ...], convention: Convention, grading: Grading
+) -> Judgement:
+    """The judgement on rows that were taken for ``roles``, in the frames of the reading."""
     right = reading.cost < WRONG_CELL
     shared = [False] * len(reading.roles)
     if not right:
@@ -137,16 +157,24 @@ def _judged_in_own_frames(
             _labels(reading.roles), reading.roles, reading.expected, shared, strict=True
         )
     )
-    findings = choices(reading.frames, exercise.robot.joints, convention, exercise)
     as_it_stands = not reading.cost and all(role.row and role.row.is_exact for role in roles)
     if as_it_stands:
         matches = np.full((len(judged), len(COLUMNS)), int(Match.EXACT))
     else:
         matches = _all_matches(judged, grading)
-    if reading.cost >= NO_SUCH_CELL and not np.count_nonzero(matches < Match.ROUNDED):
-        findings = (_UNREACHED, *findings)
-    reached = _UNREACHED not in findings
-    return Judgement(judged, matches, roles, findings=findings, reached=reached)
+    exercise = grading.exercise
+    return Judgement(
+        judged,
+        matches,
+        roles,
+        departures=0.0 if right else departures_of(reading.frames, grading),
+        findings=choices(reading.frames, exercise.robot.joints, convention, exercise),
+    )
+
+
+def departures_of(apart: Matrices, grading: Grading) -> float:
+    """What the frames ``(joints, lanes, 4, 4)``, seen from the reference's, cost altogether."""
+    return float(departure(apart, grading.exercise.length_scale).sum())
 
 
 def _read_in_own_frames(

@@ -51,7 +51,8 @@ class WrittenTable:
         constants, motion = (
             Samples.few_of(cells, count) for cells in (self.constants, self.motion)
         )
-        return replace(self, constants=constants, motion=motion)
+        reference = None if self.reference is None else Samples.few_of(self.reference, count)
+        return WrittenTable(constants, motion, self.convention, reference)
 
     def changed(self, constants: Table, motion: Table | None = None) -> "WrittenTable":
         """The same table with other constants, or with other joint variables too."""
@@ -257,45 +258,71 @@ MISCONCEPTIONS: tuple[Misconception, ...] = (
 )
 
 
-def explanations(table: WrittenTable, valid: Validity, *, combine: bool) -> tuple[Finding, ...]:
+# Beliefs one after the other, and of each which of its repairs, by number.
+Chain = tuple[tuple[Misconception, int], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """Beliefs that explain the whole of a table, and how to repair it at any samples."""
+
+    chain: Chain
+    findings: tuple[Finding, ...]
+
+    def repaired(self, table: WrittenTable) -> WrittenTable:
+        """The table, at whatever samples, as it would have been without the beliefs."""
+        for belief, which in self.chain:
+            table = list(belief(table))[which].table
+        return table
+
+
+def explanations(table: WrittenTable, valid: Validity, *, combine: bool) -> list[Explanation]:
     """What explains the whole table: one belief, or else two of them where ``combine`` allows.
 
     ``valid`` tells which tables describe the robot. A belief that would change nothing is no
-    explanation; of several with one code the first is told.
+    explanation.
     """
-    single = [(repair,) for repair in _repairs(table, MISCONCEPTIONS)]
-    found = _explaining(table, single, valid)
+    found = _explaining(table, _repairs(table, MISCONCEPTIONS), valid)
     if not found and combine:
         pairs = [
-            (first, second)
+            (chain + rest, (*repairs, *later))
             for i, basic in enumerate(BASIC)
-            for first in _repairs(table, (basic,))
-            for second in _repairs(first.table, MISCONCEPTIONS[i + 1 :])
+            for chain, repairs in _repairs(table, (basic,))
+            for rest, later in _repairs(repairs[-1].table, MISCONCEPTIONS[i + 1 :])
         ]
         found = _explaining(table, pairs, valid)[:1]
-    findings = [repair.finding() for chain in reversed(found) for repair in chain]
-    told = {finding.code: finding for finding in findings}
-    if "other_convention" in told:
-        # To be one row off is the same thing seen from the other side.
-        told.pop("link_columns_shifted", None)
-    return tuple(reversed(told.values()))
+    return [
+        Explanation(chain, tuple(repair.finding() for repair in repairs))
+        for chain, repairs in found
+    ]
 
 
-def _repairs(table: WrittenTable, misconceptions: Sequence[Misconception]) -> list[Repair]:
-    return [repair for misconception in misconceptions for repair in misconception(table)]
+_Repaired = tuple[Chain, tuple[Repair, ...]]
+
+
+def _repairs(table: WrittenTable, misconceptions: Sequence[Misconception]) -> list[_Repaired]:
+    return [
+        (((misconception, which),), (repair,))
+        for misconception in misconceptions
+        for which, repair in enumerate(misconception(table))
+    ]
 
 
 def _explaining(
-    table: WrittenTable, chains: Sequence[tuple[Repair, ...]], valid: Validity
-) -> list[tuple[Repair, ...]]:
+    table: WrittenTable, repaired: Sequence[_Repaired], valid: Validity
+) -> list[_Repaired]:
     """The chains of repairs that change the table and end in a valid one, in their order."""
-    explains = np.zeros(len(chains), dtype=np.bool_)
+    explains = np.zeros(len(repaired), dtype=np.bool_)
     for convention in Convention:
-        ending = [i for i, chain in enumerate(chains) if chain[-1].table.convention is convention]
+        ending = [
+            i
+            for i, (_, repairs) in enumerate(repaired)
+            if repairs[-1].table.convention is convention
+        ]
         if ending:
-            tables = np.array([chains[i][-1].table.values for i in ending])
+            tables = np.array([repaired[i][1][-1].table.values for i in ending])
             explains[ending] = valid(tables, convention)
             if convention is table.convention:
                 changed = np.abs(tables - table.values).max(axis=(1, 2, 3)) > TOLERANCE
                 explains[ending] &= changed
-    return [chain for chain, yes in zip(chains, explains, strict=True) if yes]
+    return [found for found, yes in zip(repaired, explains, strict=True) if yes]

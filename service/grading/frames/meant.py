@@ -34,7 +34,7 @@ def read_as_meant(
             valid = valid_tables(
                 table.values[None], roles, table.convention, freedom, exercise, samples, TOLERANCE
             )
-            meant = _in_convention(table, convention) if valid[0] else None
+            meant = in_convention(table, convention) if valid[0] else None
             if meant is not None:
                 apart = frames_from_reference(meant, roles, convention, grading)
                 wrong = int(np.count_nonzero(np.abs(meant - values).max(axis=-1) > SAME))
@@ -42,7 +42,7 @@ def read_as_meant(
     return None
 
 
-def _in_convention(table: WrittenTable, convention: Convention) -> Table | None:
+def in_convention(table: WrittenTable, convention: Convention) -> Table | None:
     """The same chain in a convention, ``(rows, 4, lanes)``; None where that takes other rows."""
     values = table.values
     if table.convention is convention:
