@@ -139,11 +139,13 @@ def read(
     *,
     quantity: Kind = "number",
     angle_unit: AngleUnits = "radians",
+    repairs: bool = True,
 ) -> Expression:
     """Return the expression that `source` is, in the names of `vocabulary`.
 
     With `angle_unit` in degrees, bare numbers are degrees inside sin, cos and tan, and in the
     whole entry if `quantity` is "angle". What was read, or why it could not be, is remembered.
+    Without `repairs`, repaired texts are not tried, which costs more than all else.
     Raises ExpressionError, and nothing else, whatever the text or number.
     """
     if isinstance(source, str):
@@ -154,7 +156,8 @@ def read(
         span = (LIMITS.characters, len(text))
         stop = UnreadableError("beyond", span, limit="characters", length=len(text))
         raise _explained(text, stop, vocabulary)
-    result = _remembered(text, vocabulary, quantity == "angle", angle_unit == "degrees")
+    manner = (vocabulary, quantity == "angle", angle_unit == "degrees")
+    result = _remembered(text, *manner, _ATTEMPTS if repairs else 0)
     if isinstance(result, ExpressionError):
         raise result.again()
     return result
@@ -178,18 +181,18 @@ def _explained(text: str, stop: UnreadableError, vocabulary: Vocabulary) -> Expr
 
 @lru_cache(maxsize=_REMEMBERED)
 def _remembered(
-    text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool
+    text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool, attempts: int
 ) -> Expression | ExpressionError:
     # An error is kept without its traceback, which would hold every frame of the parse.
-    return _Attempts((vocabulary, is_angle, degrees)).read(text)
+    return _Attempts((vocabulary, is_angle, degrees), attempts).read(text)
 
 
 class _Attempts:
     """The reading of a text and, where it cannot be read, of a few repaired ones."""
 
-    def __init__(self, manner: Manner) -> None:
+    def __init__(self, manner: Manner, attempts: int) -> None:
         self.manner = manner
-        self.left = _ATTEMPTS
+        self.left = attempts
 
     def read(self, text: str) -> Expression | ExpressionError:
         try:

@@ -33,6 +33,9 @@ MOVES = 1e-9
 # A 4×4 matrix of a six-joint arm, multiplied out and not simplified, takes a third of it.
 MAX_CHARACTERS = 12_000
 
+# Of so many unreadable cells of a submission a repaired text is looked for; that costs most.
+REPAIRED = 16
+
 # Beyond these nobody measures a robot, and an angle has lost its digits to whole turns.
 BOUNDS: Mapping[Kind, float] = {"angle": 1e6, "length": 1e9, "number": 1e9}
 
@@ -64,7 +67,8 @@ class Reader:
     """Reads the cells of one submission.
 
     Together they may hold so many characters and no more (``left``): reading is what costs time.
-    ``moving`` says whether any value met so far changes with the joints.
+    ``moving`` says whether any value met so far changes with the joints, ``unread`` how many texts
+    could not be read.
     """
 
     vocabulary: Vocabulary
@@ -72,6 +76,7 @@ class Reader:
     angle_unit: AngleUnit
     left: int = MAX_CHARACTERS
     moving: bool = False
+    unread: int = 0
 
     def read(self, raw: object, quantity: Kind) -> Entry:
         """The entry for a JSON value. Whatever it is, the worst that comes back is unreadable."""
@@ -87,8 +92,15 @@ class Reader:
         if self.left < 0:
             return unreadable(_TOO_MUCH)
         try:
-            expression = read(raw, self.vocabulary, quantity=quantity, angle_unit=self.angle_unit)
+            expression = read(
+                raw,
+                self.vocabulary,
+                quantity=quantity,
+                angle_unit=self.angle_unit,
+                repairs=self.unread < REPAIRED,
+            )
         except ExpressionError as error:
+            self.unread += 1
             return unreadable(_from_error(error))
         if not expression.notes:
             return Entry(expression)
@@ -149,6 +161,8 @@ def _wrong_type(raw: object) -> Finding:
 
 def _from_error(error: ExpressionError) -> Finding:
     suggestion = f"Did you mean {error.suggestion}?" if error.suggestion else ""
+    if suggestion in error.message:
+        suggestion = ""
     return Finding(error.code, error.message, suggestion, span=error.span, reading=True)
 
 

@@ -120,7 +120,7 @@ def _nudged(grading: Grading, variable: str) -> Grading:
     values = {name: np.tile(lanes[:SAMPLES], 2) for name, lanes in grading.samples.values.items()}
     values[variable][SAMPLES:] += NUDGE
     samples = Samples(values)
-    reader = replace(grading.reader, samples=samples, left=MAX_CHARACTERS)
+    reader = replace(grading.reader, samples=samples, left=MAX_CHARACTERS, unread=0)
     return replace(grading, samples=samples, reader=reader)
 
 

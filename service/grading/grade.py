@@ -135,7 +135,7 @@ def _without_points(report: PartReport, grading: Grading) -> PartReport:
 
 def _afresh(grading: Grading) -> Grading:
     """The same grading with nothing read yet."""
-    return replace(grading, reader=replace(grading.reader, left=MAX_CHARACTERS))
+    return replace(grading, reader=replace(grading.reader, left=MAX_CHARACTERS, unread=0))
 
 
 def _without_rows(report: PartReport) -> PartReport:

@@ -14,8 +14,9 @@ from service.grading.frames.freedom import Freedom
 from service.grading.frames.mechanism import reference_values
 from service.grading.frames.nearest import FrameReading, frames_from_reference
 from service.grading.frames.own import parallel_neighbours, read_in_own_frames
-from service.grading.frames.roles import Role, roles_of
+from service.grading.frames.roles import Role, roles_of, variable_column
 from service.grading.frames.steadied import steadied
+from service.grading.motion import TOLERANCE, changes
 from service.grading.protocol import Grading
 from service.grading.samples import LANES
 from service.grading.tables import (
@@ -31,6 +32,8 @@ from service.kinematics.transforms import Matrices
 
 # Far beyond what rounding does to a cell.
 PLAIN = 0.02
+# Far beyond what floating-point numbers lose, and far below any slip.
+FAR = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,9 +133,10 @@ def _judged_in_own_frames(
     """The table held against the valid one nearest to it."""
     roles, reading = _read_in_own_frames(part, rows, convention, grading)
     judgement = _held_against(reading, roles, convention, grading)
-    if reading.cost < NO_SUCH_CELL or judgement.wrong:
+    if reading.cost - WRONG_CELL * judgement.wrong < NO_SUCH_CELL - WRONG_CELL / 2:
         return judgement
-    return replace(judgement, findings=(_UNREACHED, *judgement.findings), reached=False)
+    # Nothing can be said of frames that lead nowhere.
+    return replace(judgement, findings=(_UNREACHED,), reached=bool(judgement.wrong))
 
 
 def judged_against(
@@ -181,15 +185,31 @@ def _read_in_own_frames(
     part: DhTableSpec, rows: tuple[HandedInRow, ...], convention: Convention, grading: Grading
 ) -> tuple[tuple[Role, ...], FrameReading]:
     """What each row was taken for, and the reading of least cost."""
-    freedom = freedom_of(part)
+    exercise, freedom = grading.exercise, freedom_of(part)
     roles = roles_in(rows, convention, grading)
     reading = nearest_reading(roles, convention, freedom, grading)
-    if reading.cost < WRONG_CELL or len(reading.roles) >= len(rows):
+    if reading.cost < WRONG_CELL:
         return roles, reading
-    # A row of zeros that was left out may be one in which something is missing.
-    with_all = roles_in(rows, convention, grading, wanted=len(rows))
-    longer = read_in_own_frames(with_all, convention, freedom, grading)
-    return (with_all, longer) if longer.cost < reading.cost else (roles, reading)
+    other, price = None, 0.0
+    if len(reading.roles) < len(rows):
+        # A row of zeros that was left out may be one in which something is missing.
+        other = roles_in(rows, convention, grading, wanted=len(rows))
+    elif len(rows) == len(exercise.robot.joints) and _lacks_row(len(rows), convention, grading):
+        # The row that is missing need not be the last.
+        other, price = roles_in(rows, convention, grading, in_order=False), WRONG_CELL
+    elif len(rows) > len(exercise.robot.joints):
+        # A wrong variable may have made a joint's row look like a fixed one.
+        other = roles_in(rows, convention, grading, in_order=True)
+    if other is None or other == roles:
+        return roles, reading
+    found = read_in_own_frames(other, convention, freedom, grading)
+    return (other, found) if found.cost + price < reading.cost else (roles, reading)
+
+
+def _lacks_row(count: int, convention: Convention, grading: Grading) -> bool:
+    """Whether the reference's table has more rows."""
+    own_table = grading.exercise.robot.tables.get(convention)
+    return own_table is not None and len(own_table.rows) > count
 
 
 _UNREACHED = Finding(
@@ -204,12 +224,18 @@ def roles_in(
     convention: Convention,
     grading: Grading,
     wanted: int | None = None,
+    *,
+    in_order: bool | None = None,
 ) -> tuple[Role, ...]:
-    """Which handed-in row is for which joint; ``wanted`` rows, or as many as the reference has."""
+    """Which handed-in row is for which joint; ``wanted`` rows, or as many as the reference has.
+
+    ``in_order`` says whether they are in the order of the joints, where that is known.
+    """
     robot = grading.exercise.robot
     own_table = robot.tables.get(convention)
     wanted = wanted or len(robot.joints if own_table is None else own_table.rows)
-    roles = roles_of(_without_idle_rows(rows, wanted), robot.joints, grading.samples, wanted)
+    rows = _without_idle_rows(rows, wanted)
+    roles = roles_of(rows, robot.joints, grading.samples, wanted, in_order=in_order)
     return steadied(roles, grading.exercise, grading.samples)
 
 
@@ -225,9 +251,7 @@ def nearest_reading(
 ) -> FrameReading:
     """The reading of least cost: with the rows as they are, or with the tool row they lack."""
     reading = read_in_own_frames(roles, convention, freedom, grading)
-    own_table = grading.exercise.robot.tables.get(convention)
-    lacks_row = own_table is not None and len(own_table.rows) > len(roles)
-    if reading.cost < WRONG_CELL or not lacks_row:
+    if reading.cost < WRONG_CELL or not _lacks_row(len(roles), convention, grading):
         return reading
     longer = read_in_own_frames((*roles, Role(None, None)), convention, freedom, grading)
     return longer if longer.cost + WRONG_CELL <= reading.cost else reading
@@ -270,9 +294,32 @@ def column_scales(grading: Grading) -> Numbers:
 
 
 def _all_matches(judged: Sequence[JudgedRow], grading: Grading) -> NDArray[np.int_]:
-    """The Match of each cell of each row, ``(rows, 4)``."""
+    """The Match of each cell of each row, ``(rows, 4)``.
+
+    What is rounded is a cell's constant: its size decides, and the joints must move it as they
+    should. A student's own large offset must not widen what is let through.
+    """
     nothing = np.full((len(COLUMNS), LANES), np.nan)
     actual = np.array([nothing if row.row is None else row.row.handed_in for row in judged])
     rounded = [[False] * len(COLUMNS) if row.row is None else row.row.rounded for row in judged]
     expected = np.array([row.expected for row in judged])
-    return matches(actual, expected, column_scales(grading), IS_ANGLE[:, None], rounded)
+    motion = _motion(judged, expected, grading)
+    angle, scales = IS_ANGLE[:, None], column_scales(grading)
+    found = matches(actual - motion, expected - motion, scales, angle, rounded)
+    off = np.abs(difference(actual, expected, angle))
+    moved = np.abs(difference(changes(actual), changes(expected), angle)).max(axis=-1)
+    far = (found == Match.EXACT) & (off.max(axis=-1) > FAR * scales)
+    moves_otherwise = (found == Match.ROUNDED) & (moved > TOLERANCE)
+    return np.where(far | moves_otherwise, int(Match.DIFFERENT), found)
+
+
+def _motion(judged: Sequence[JudgedRow], expected: Table, grading: Grading) -> Table:
+    """What the joint variables contribute to what is expected, ``(rows, 4, LANES)``."""
+    motion = np.zeros_like(expected)
+    for i, row in enumerate(judged):
+        if row.joint is not None:
+            column = variable_column(row.joint)
+            variable = grading.samples.values[row.joint.variable]
+            sense = np.sign(changes(variable) @ changes(expected[i, column]))
+            motion[i, column] = sense * variable
+    return motion

@@ -64,8 +64,9 @@ class Robot:
         return D if self.structure[joint] == "P" else THETA
 
     def range(self, symbol: str) -> tuple[float, float]:
-        """Where a length is drawn from, in metres."""
-        return self.ranges.get(symbol, (0.2, 1.0))
+        """Where a length is drawn from; small robots and large ones."""
+        usual = ((0.2, 1.0), (0.1, 0.4), (0.5, 2.5))[len(self.name) % 3]
+        return self.ranges.get(symbol, usual)
 
     def labels(self, rows: int) -> list[str]:
         """What the report calls the rows of a table of so many rows."""

@@ -9,9 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from service.grading.compare import ROUNDED, difference
 from service.grading.diagnosis.case import WrongCell
 from service.grading.diagnosis.values import differs, undefined
 from service.grading.findings import Finding
+from service.grading.samples import Lanes
 
 AXES = {
     "a": "along x",
@@ -181,12 +183,14 @@ def degrees_as_radians(case: WrongCell) -> Finding | None:
     if not case.angle or not case.same_motion:
         return None
     actual, expected = case.constants
-    if not case.equal(np.radians(actual), expected):
+    meant = np.radians(actual)
+    turned = case.equal(meant, -expected)
+    if not (case.equal(meant, expected) or turned):
         return None
     return Finding(
         "degrees_as_radians",
         "This number was read in radians, but it fits in degrees: write the unit (90deg or "
-        "90°), or write it with pi.",
+        f"90°), or write it with pi.{' Its sign is wrong, too.' if turned else ''}",
         case.correction,
     )
 
@@ -210,7 +214,7 @@ def quarter_turn(case: WrongCell) -> Finding | None:
     if not case.angle or not case.same_motion:
         return None
     actual, expected = case.constants
-    if not any(case.equal(actual + turn, expected) for turn in (np.pi / 2, -np.pi / 2)):
+    if not any(_is_off_by(turn, actual, expected) for turn in (np.pi / 2, -np.pi / 2)):
         return None
     return Finding(
         "quarter_turn",
@@ -225,7 +229,7 @@ def half_turn(case: WrongCell) -> Finding | None:
     if not case.angle or not case.same_motion:
         return None
     actual, expected = case.constants
-    if not case.equal(actual + np.pi, expected):
+    if not _is_off_by(np.pi, actual, expected):
         return None
     return Finding(
         "half_turn",
@@ -233,6 +237,12 @@ def half_turn(case: WrongCell) -> Finding | None:
         f"it is measured between.",
         case.correction,
     )
+
+
+def _is_off_by(turn: float, actual: Lanes, expected: Lanes) -> bool:
+    """Whether an angle is expected so much further on; the turn itself may have been rounded."""
+    off = difference(actual + turn, expected, angle=True)
+    return bool(np.abs(off).max() < ROUNDED * np.pi)
 
 
 MISCONCEPTIONS: tuple[Callable[[WrongCell], Finding | None], ...] = (
@@ -269,8 +279,15 @@ def _first(case: WrongCell) -> Finding:
     return differs(
         case,
         f"{SYMBOLS[case.column]} is not right here: measure the "
-        f"{'angle' if case.angle else 'distance'} {AXES[case.column]} again.",
+        f"{'angle' if case.angle else 'distance'} {AXES[case.column]} again.{_bare(case)}",
     )
+
+
+def _bare(case: WrongCell) -> str:
+    """A hint where a number is far too large for radians."""
+    if not case.angle or not case.same_motion or np.abs(case.constants[0]).max() < 3 * np.pi:
+        return ""
+    return " Its number was read in radians: write the unit (90deg or 90°) if degrees were meant."
 
 
 def _others(case: WrongCell, own: int) -> bool:

@@ -91,11 +91,15 @@ def _arm(
 
 
 def _shared_axes(written: _Arm, intended: _Arm, convention: Convention) -> tuple[Finding, ...]:
-    joined = coincident(written.screws) & ~coincident(intended.screws)
-    return tuple(
-        _one_axis(int(i), int(j), written, intended, convention)
-        for i, j in np.argwhere(np.triu(joined))
-    )
+    """A message for each axis that joints share: they are one joint several times."""
+    joined = np.triu(coincident(written.screws) & ~coincident(intended.screws))
+    found, told = [], set[int]()
+    for i, others in enumerate(joined):
+        together = [i, *np.flatnonzero(others).tolist()]
+        if len(together) > 1 and not told.intersection(together):
+            told.update(together)
+            found.append(_one_axis(together, written, intended, convention))
+    return tuple(found)
 
 
 def _lost_rank(written: _Arm, intended: _Arm) -> tuple[Finding, ...]:
@@ -112,19 +116,28 @@ def _names(arm: _Arm, involved: NDArray[np.bool_]) -> list[str]:
     ] or [str(joint.index) for joint in arm.joints]
 
 
-def _one_axis(i: int, j: int, written: _Arm, intended: _Arm, convention: Convention) -> Finding:
-    """Two joints were given one axis."""
-    one, other = written.joints[i], written.joints[j]
-    if one.prismatic:
+def _one_axis(
+    together: list[int], written: _Arm, intended: _Arm, convention: Convention
+) -> Finding:
+    """Joints were given one axis."""
+    first, last = together[0], together[-1]
+    if written.joints[first].prismatic:
         motion = "slide along one and the same direction"
     else:
         motion = "turn about one and the same line"
-    parallel, right = _lie(intended.directions(i), intended.directions(j))
-    column = "a" if parallel else "α"
+    named = _listed([str(written.joints[k].index) for k in together])
+    between = _rows_between(first, last, written, convention)
+    if len(together) > 2:
+        return Finding(
+            "lost_freedom",
+            f"Joints {named} {motion}, so the arm has lost degrees of freedom: check a and α of "
+            f"{between}.",
+        )
+    parallel, right = _lie(intended.directions(first), intended.directions(last))
     return Finding(
         "lost_freedom",
-        f"Joints {one.index} and {other.index} {motion}, so the arm has lost a degree of freedom: "
-        f"check {column} of {_rows_between(i, j, written, convention)}.",
+        f"Joints {named} {motion}, so the arm has lost a degree of freedom: check "
+        f"{'a' if parallel else 'α'} of {between}.",
         f"The axes of these joints are {right}.",
     )
 

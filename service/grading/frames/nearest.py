@@ -5,7 +5,7 @@ reference's wherever the joints are, and every cell moves as its own joint does 
 So nothing has to be searched: what a cell would have to be follows from all the others.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
@@ -139,11 +139,8 @@ def _mends(case: _Case) -> list[Mend]:
     factors = factors_of(case.table[..., FEW_LANES], case.convention, case.unit)
     pose = _in_unit(case.reference[-1, FEW_LANES], case.unit)
     by_factor = one_factor_mends(factors, pose)
-    of_one = _fitting([mend for mend in by_factor if len(mend.cells) == 1], case)
-    if of_one:
-        return of_one
-    of_two = chain(by_factor, two_factor_mends(factors, pose))
-    return _fitting([mend for mend in of_two if len(mend.cells) == MOST], case)
+    of_one = _fitting(by_factor, 1, case)
+    return of_one or _fitting(chain(by_factor, two_factor_mends(factors, pose)), MOST, case)
 
 
 def _likeliest(mends: Sequence[Mend], roles: tuple[Role, ...], case: _Case) -> FrameReading | None:
@@ -153,7 +150,7 @@ def _likeliest(mends: Sequence[Mend], roles: tuple[Role, ...], case: _Case) -> F
     """
     tables = np.repeat(case.table[:, :, None, FEW_LANES], len(mends), axis=2)
     for k, mend in enumerate(mends):
-        _fill(tables[:, :, k], mend, case.unit)
+        _fill(tables[:, :, k], mend)
     apart = case.apart(frames(tables, case.convention))
     departures = departure(apart.reshape(-1, *apart.shape[2:]), case.unit)
     departures = departures.reshape(apart.shape[:2]).sum(axis=0)
@@ -191,21 +188,25 @@ def _at_rest(values: Numbers, cell: Cell, case: _Case) -> Numbers:
     return values - variable if agrees else values + variable
 
 
-def _fitting(mends: Sequence[Mend], case: _Case) -> list[Mend]:
-    """The mends after which every cell moves with the joints as it should."""
+def _fitting(mends: Iterable[Mend], count: int, case: _Case) -> list[Mend]:
+    """The mends of so many cells after which each moves with the joints as it should.
+
+    Their lengths are the table's own.
+    """
+    of_so_many = (_in_own_lengths(mend, case) for mend in mends if len(mend.cells) == count)
     return [
         mend
-        for mend in mends
-        if case.wrong <= set(mend.cells)
-        and all(
-            _fits(value, cell, case.motion[cell][:FEW])
-            for cell, value in zip(mend.cells, mend.values, strict=True)
-        )
+        for mend in of_so_many
+        if case.wrong <= set(mend.cells) and _moves_so(mend, case, slice(FEW))
     ]
 
 
-def _fits(value: Numbers, cell: Cell, motion: Numbers) -> bool:
-    return bool(moves_with(value, motion, IS_ANGLE[cell[1]]))
+def _moves_so(mend: Mend, case: _Case, lanes: slice) -> bool:
+    """Whether each value changes with the joints as its cell should."""
+    return all(
+        moves_with(value, case.motion[cell][lanes], IS_ANGLE[cell[1]])
+        for cell, value in zip(mend.cells, mend.values, strict=True)
+    )
 
 
 def _at_all_lanes(cells: Sequence[Cell], case: _Case) -> Table | None:
@@ -214,17 +215,24 @@ def _at_all_lanes(cells: Sequence[Cell], case: _Case) -> Table | None:
     values = mended(factors, _in_unit(case.reference[-1], case.unit), cells)
     if values is None:
         return None
-    if not all(_fits(v, cell, case.motion[cell]) for cell, v in zip(cells, values, strict=True)):
+    mend = _in_own_lengths(Mend(tuple(cells), values), case)
+    if not _moves_so(mend, case, slice(None)):
         return None
     table = case.table.copy()
-    _fill(table, Mend(tuple(cells), values), case.unit)
+    _fill(table, mend)
     return table
 
 
-def _fill(table: Table, mend: Mend, unit: float) -> None:
+def _fill(table: Table, mend: Mend) -> None:
     """Write the values of a mend into their cells of a table ``(rows, 4, lanes)``."""
-    for (row, column), value in zip(mend.cells, mend.values, strict=True):
-        table[row, column] = value if IS_ANGLE[column] else value * unit
+    for cell, value in zip(mend.cells, mend.values, strict=True):
+        table[cell] = value
+
+
+def _in_own_lengths(mend: Mend, case: _Case) -> Mend:
+    """The same mend, its lengths no longer measured in the unit."""
+    units = [[1.0 if IS_ANGLE[column] else case.unit] for _, column in mend.cells]
+    return Mend(mend.cells, mend.values * np.array(units))
 
 
 def _in_unit(pose: Matrices, unit: float) -> Matrices:

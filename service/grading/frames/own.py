@@ -87,6 +87,8 @@ def parallel_neighbours(
     axes = reference[:, :2, :3, 2]
     apart = np.abs(np.cross(axes[:-1], axes[1:])).max(axis=(1, 2))
     beside = apart < PARALLEL
+    # The tool's axis counts only if there is a row whose d lies along it.
+    beside[-1] &= roles[-1].joint is None
     of_joints = iter((beside | np.append(False, beside[:-1])).tolist())
     return np.array([role.joint is not None and next(of_joints) for role in roles])
 

@@ -43,17 +43,23 @@ def motion_of(roles: Sequence[Role], samples: Samples) -> Numbers:
 
 
 def roles_of(
-    rows: Sequence[HandedInRow], joints: tuple[Joint, ...], samples: Samples, wanted: int
+    rows: Sequence[HandedInRow],
+    joints: tuple[Joint, ...],
+    samples: Samples,
+    wanted: int,
+    *,
+    in_order: bool | None = None,
 ) -> tuple[Role, ...]:
     """Which row is for which joint; ``wanted`` is how many rows the reference's table has.
 
-    As many rows as joints are taken in order. Otherwise the joint variables tell: the pairing in
-    order that meets most of them, rows left over being fixed ones. Where they do not tell, and
-    there are as many rows as wanted, these are the joints' rows and then the fixed ones.
+    As many rows as joints are taken in order, unless ``in_order`` says otherwise. Else the joint
+    variables tell: the pairing in order that meets most of them, rows left over being fixed ones.
+    Where they do not tell, and there are as many rows as wanted, these are the joints' rows and
+    then the fixed ones.
     """
-    in_order = tuple(Role(row, joint) for row, joint in zip_longest(rows, joints))
-    if len(rows) == len(joints):
-        return in_order
+    one_by_one = tuple(Role(row, joint) for row, joint in zip_longest(rows, joints))
+    if len(rows) == len(joints) if in_order is None else in_order:
+        return one_by_one
     values = values_of(rows).reshape(-1, LANES)
     counts, _ = joint_counts(values, joints, samples, np.tile(IS_ANGLE, len(rows)))
     holds = np.abs(counts.reshape(len(rows), len(COLUMNS), len(joints))) > 0
@@ -63,7 +69,7 @@ def roles_of(
     pairs = aligned(scores)
     told = sum(scores[i, j] > 1 for i, j in pairs if i is not None and j is not None)
     if told < len(joints) and len(rows) == wanted:
-        return in_order
+        return one_by_one
     return tuple(
         Role(None if i is None else rows[i], None if j is None else joints[j]) for i, j in pairs
     )
