@@ -9,6 +9,7 @@ from service.authoring.model_answer import model_answer
 from service.authoring.ranges import badly_scaled
 from service.authoring.remarks import Remark
 from service.authoring.symbols import ambiguous_symbols, unused_symbols
+from service.authoring.units import bare_degrees
 from service.catalogue import Exercise
 
 EXAMINATIONS: tuple[Callable[[Exercise], Iterator[Remark]], ...] = (
@@ -18,6 +19,7 @@ EXAMINATIONS: tuple[Callable[[Exercise], Iterator[Remark]], ...] = (
     ambiguous_symbols,
     unused_symbols,
     badly_scaled,
+    bare_degrees,
     duplicate_parts,
     lost_freedom,
 )

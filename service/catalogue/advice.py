@@ -37,7 +37,7 @@ def advised(detail: Mapping[str, Any]) -> str:
     last = location[-1] if location else ""
     match detail["type"]:
         case "extra_forbidden":
-            return f"{reason}: {_known_keys(str(last), _model(location[:-1]))}"
+            return _no_such_key(str(last), _model(location[:-1]))
         case "missing" if isinstance(last, int):
             return f"{reason}: write entry {last + 1} as well"
         case "missing":
@@ -50,11 +50,11 @@ def advised(detail: Mapping[str, Any]) -> str:
             return reason
 
 
-def _known_keys(key: str, model: type[BaseModel]) -> str:
+def _no_such_key(key: str, model: type[BaseModel]) -> str:
     known = [field.alias or name for name, field in model.model_fields.items()]
     matches = difflib.get_close_matches(key, known, n=1)
-    meant = f"did you mean {matches[0]!r}? The keys here are" if matches else "the keys here are"
-    return f"{meant} {', '.join(known)}"
+    meant = f"did you mean {matches[0]!r}? The keys are" if matches else "the keys are"
+    return f"there is no key {key!r} here; {meant} {', '.join(known)}"
 
 
 def _model(location: Location) -> type[BaseModel]:

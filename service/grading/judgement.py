@@ -200,10 +200,16 @@ def _read_in_own_frames(
     elif len(rows) > len(exercise.robot.joints):
         # A wrong variable may have made a joint's row look like a fixed one.
         other = roles_in(rows, convention, grading, in_order=True)
-    if other is None or other == roles:
+    if other is None or _are_alike(other, roles):
         return roles, reading
     found = read_in_own_frames(other, convention, freedom, grading)
     return (other, found) if found.cost + price < reading.cost else (roles, reading)
+
+
+def _are_alike(one: Sequence[Role], other: Sequence[Role]) -> bool:
+    """Whether the same rows, of which there are as many, are for the same joints."""
+    first, second = ([(role.joint, role.row is None) for role in roles] for roles in (one, other))
+    return first == second
 
 
 def _lacks_row(count: int, convention: Convention, grading: Grading) -> bool:

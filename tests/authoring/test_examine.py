@@ -1,36 +1,13 @@
 """Each thing that an author is told, and nothing of a file that is in order."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import pytest
 
-from service.authoring import Level, Remark, examine
+from service.authoring import Level, examine
 from service.catalogue import Exercise, shipped_folder
+from tests.authoring.files import HEAD, POSE, ROBOT, Make, only, robot, told
 
-Make = Callable[[str], Exercise]
-
-HEAD = """
-title = "An arm"
-source = "made for this test"
-statement = "Two joints."
-"""
-ROBOT = """
-[robot]
-structure = "RP"
-convention = "standard"
-joints = ["theta1", "d2"]
-table = [["0", "90deg", "a1", "theta1"], ["0", "0", "d2", "0"]]
-[symbols]
-a1 = { kind = "length", range = [0.3, 0.9], description = "a length" }
-d2 = { kind = "length", range = [0.2, 0.8], description = "joint 2" }
-"""
-POSE = """
-[[parts]]
-id = "pose"
-kind = "transform"
-title = "Pose"
-points = 4
-"""
 RIGHT_ROWS = '[["c1", 0, "s1", "d2 s1"], ["s1", 0, "-c1", "-d2 c1"], [0, 1, 0, "a1"], [0, 0, 0, 1]]'
 WRONG_ROWS = RIGHT_ROWS.replace('"a1"', '"-a1"')
 CHECKS = f"""
@@ -54,19 +31,6 @@ answers.pose = "("
 expect.pose = {{ points = 0, verdict = "unreadable" }}
 """
 GOOD = HEAD + ROBOT + POSE + CHECKS
-
-
-def told(make: Make, text: str, *changes: tuple[str, str]) -> list[Remark]:
-    for old, new in changes:
-        assert old in text, old
-        text = text.replace(old, new, 1)
-    return examine(make(text))
-
-
-def only(remarks: list[Remark], level: Level) -> Remark:
-    [remark] = remarks
-    assert remark.level is level
-    return remark
 
 
 def test_of_a_file_in_order_nothing_is_said(make_exercise: Make) -> None:
@@ -261,19 +225,6 @@ LOST: dict[str, tuple[str, str, str]] = {
         "in 3 ways only",
     ),
 }
-
-
-def robot(structure: str, table: str) -> str:
-    joints = [f"q{i + 1}" for i in range(len(structure))]
-    return f"""
-[robot]
-structure = "{structure}"
-convention = "standard"
-joints = {joints}
-table = {table}
-[symbols]
-a1 = {{ kind = "length", range = [0.3, 0.9], description = "a length" }}
-"""
 
 
 @pytest.mark.parametrize("name", LOST)

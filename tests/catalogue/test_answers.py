@@ -189,7 +189,7 @@ FAULTS: dict[str, tuple[str, str, str]] = {
     "a robot given both ways": (
         HEAD + SCREWS.replace("home =", "table = []\nhome =") + PART,
         "robot.table",
-        "not permitted",
+        "there is no key",
     ),
 }
 

@@ -98,19 +98,21 @@ KEYS = "title, source, statement, robot, symbols, parts, checks"
 SAID: dict[tuple[str, str], list[str]] = {
     ("source =", "sauce ="): [
         "source: Field required: write source = …",
-        f"sauce (line 2): *: did you mean 'source'? The keys here are {KEYS}",
+        f"sauce (line 2): there is no key 'sauce' here; did you mean 'source'? The keys are {KEYS}",
     ],
     ('structure = "RP"', 'structure = "RX"'): [
         "robot.structure (line 6): *: write one letter for each joint, R if it turns and P if *",
     ],
-    ("points = 4", "marks = 4"): ["parts[1].marks (line 28): *: the keys here are id, title, *"],
+    ("points = 4", "marks = 4"): [
+        "parts[1].marks (line 28): there is no key 'marks' here; the keys are id, title, *",
+    ],
     ("range =", "limits ="): ["symbols.a1.limits (line 15): * kind, description, unit, range"],
     ('"0", "d2 + a1", "0"]', '"0", "d2 + a1"]'): [
         "robot.table[1][3] (line 11): Field required: write entry 4 as well",
     ],
     ('kind = "transform"\n', ""): ["parts[1] (line 24): *: write kind = *, one of dh_table, *"],
     ('id = "pose"', 'id = "The Pose"'): ["parts[1].id (line 25): *: write small letters *"],
-    ("joints =", "links = 3\njoints ="): ["robot.links (line 8): *: the keys here are *"],
+    ("joints =", "links = 3\njoints ="): ["robot.links (line 8): * here; the keys are *"],
 }
 
 

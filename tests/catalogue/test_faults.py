@@ -57,14 +57,14 @@ def changed(*changes: tuple[str, str]) -> str:
 FAULTS: dict[str, tuple[tuple[str, str], str, str]] = {
     "not TOML": (('structure = "RP"', 'structure = "RP'), "", r"TOML.*line 6"),
     "a key twice": (('title = "An arm"', 'title = "An arm"\ntitle = "B"'), "", r"TOML.*line 2"),
-    "unknown key": (("source =", 'sauce = "x"\nsource ='), "sauce", r"not permitted"),
+    "unknown key": (("source =", 'sauce = "x"\nsource ='), "sauce", "there is no key"),
     "unknown key of the robot": (
         ("joints =", "links = 3\njoints ="),
         "robot.links",
-        "not permitted",
+        "there is no key",
     ),
-    "unknown key of a part": (("points = 4", "marks = 4"), "parts[1].marks", "not permitted"),
-    "unknown key of a symbol": (("range =", "limits ="), "symbols.a1.limits", "not permitted"),
+    "unknown key of a part": (("points = 4", "marks = 4"), "parts[1].marks", "there is no key"),
+    "unknown key of a symbol": (("range =", "limits ="), "symbols.a1.limits", "there is no key"),
     "title missing": (('title = "An arm"\n', ""), "title", "required"),
     "title blank": (('"An arm"', '"  "'), "title", "at least 1"),
     "title of another type": (('"An arm"', "5"), "title", "string"),

@@ -37,7 +37,7 @@ def follow(page: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_page_that_is_true(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    page = PAGE.format(printed="…\narm.toml: a (line 1): …not permitted…")
+    page = PAGE.format(printed="…\narm.toml: a (line 1): …there is no key…")
     follow(page, tmp_path, monkeypatch)
 
 

@@ -148,3 +148,15 @@ def test_repairs_are_looked_for_in_so_many_cells_and_no_more(
     told = [m.message for row in report.rows for cell in row.cells for m in cell.feedback]
     helped = ["Did you mean (theta1 + " in message for message in told]
     assert helped == [True] * REPAIRED + [False] * (24 - REPAIRED)
+
+
+def test_rounded_angles_and_a_fixed_row_raise_nothing(catalogue: Mapping[str, Exercise]) -> None:
+    """Their rows are made anew each time, and must not be told apart by their values."""
+    rows = [
+        ("0", "0", "l1", "q1"),
+        ("l2", "3.14", "0", "-q2"),
+        ("l3", "0", "l4", "-q3"),
+        ("0", "0", "q4 + l1", "0"),
+        ("0", "0", "0", "1.57"),
+    ]
+    assert not_correct(graded_table(catalogue["rrrp-proximal"], rows))

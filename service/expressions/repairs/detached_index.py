@@ -21,7 +21,7 @@ def repair(failure: Failure) -> ExpressionError | None:
     pieces = split(joined, failure.vocabulary)
     if pieces is None or pieces[-1].kind not in {"symbol", "shorthand"}:
         return None
-    message = f"A name and its index stand together here: {joined}."
+    message = f"In {match[0]} a name and its index must stand together, without a space."
     return ExpressionError(
         "detached_index", message, match.span(), failure.replaced(joined, match.span())
     )

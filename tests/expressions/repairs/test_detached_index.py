@@ -1,5 +1,7 @@
 import pytest
 
+from service.expressions import ExpressionError, read
+from tests.expressions.corpus_files import ROBOT
 from tests.expressions.repairs.pairs import accept, refuse
 
 BROKEN = [
@@ -24,3 +26,10 @@ def test_refused(text: str, part: str, suggestion: str) -> None:
 @pytest.mark.parametrize(("text", "meaning"), FINE)
 def test_accepted(text: str, meaning: str) -> None:
     accept(text, meaning)
+
+
+def test_the_space_is_what_is_wrong() -> None:
+    with pytest.raises(ExpressionError) as caught:
+        read("l1 + theta 1", ROBOT)
+    told = "In theta 1 a name and its index must stand together, without a space."
+    assert caught.value.message == told
