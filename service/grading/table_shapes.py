@@ -75,8 +75,14 @@ def _are_numbered(rows: list[object]) -> bool:
 
 def _number(cell: object) -> int | None:
     """A row's number; none for 0, and for l1, which is a length in front of five values."""
-    place = label_place(str(cell))
+    place = _place(cell)
     return place if place == LAST or (place and str(cell).strip().isdecimal()) else None
+
+
+def _place(label: object) -> int | None:
+    """Where a row with this label belongs; Python refuses to write out a number of any length."""
+    is_number = isinstance(label, int | float) and abs(label) < _MOST_ROWS
+    return label_place(str(label)) if is_number or isinstance(label, str) else None
 
 
 def _read_row(row: object, columns: tuple[str, ...], names: dict[str, Header | None]) -> _Read:
@@ -117,7 +123,7 @@ def _header(name: object, names: dict[str, Header | None]) -> Header | None:
 
 def _in_order(rows: Sequence[_Read]) -> list[object]:
     """The rows in the order of their labels, where each has one of its own."""
-    places = [label_place(str(label)) for label, _ in rows]
+    places = [_place(label) for label, _ in rows]
     known = [place for place in places if place is not None]
     if len(known) < len(rows) or len(set(known)) < len(known):
         return [row for _, row in rows]

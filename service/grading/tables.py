@@ -164,7 +164,14 @@ def _entries(row: object, reader: Reader) -> tuple[Entry, ...]:
         return (MISSING,) * len(COLUMNS)
     if not isinstance(row, Mapping):
         return (unreadable(_NO_ROW),) * len(COLUMNS)
-    return tuple(reader.read(row.get(column), QUANTITIES[column]) for column in COLUMNS)
+    # A value under a name that is not understood must not pass for one that is not there.
+    stray = not row.keys() <= QUANTITIES.keys()
+    return tuple(
+        unreadable(_NO_ROW)
+        if stray and column not in row
+        else reader.read(row.get(column), QUANTITIES[column])
+        for column in COLUMNS
+    )
 
 
 _NO_ROW = Finding(

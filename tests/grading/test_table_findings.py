@@ -160,3 +160,13 @@ def test_rounded_angles_and_a_fixed_row_raise_nothing(catalogue: Mapping[str, Ex
         ("0", "0", "0", "1.57"),
     ]
     assert not_correct(graded_table(catalogue["rrrp-proximal"], rows))
+
+
+def test_a_value_under_an_unknown_name_is_not_said_to_be_missing(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    answer = table(EXACT.rows(STANFORD))
+    answer["rows"][1]["alpha [rad]"] = answer["rows"][1].pop("alpha")
+    report = part(handed_in(catalogue["stanford-arm"], {"table": answer}), "table")
+    [message] = report.rows[1].cells[1].feedback
+    assert message.code == "wrong_shape"

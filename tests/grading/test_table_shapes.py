@@ -123,3 +123,9 @@ def test_of_a_body_full_of_names_few_are_understood(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(table_shapes, "read_header", read.append)
     canonical_table([{f"α_{i}_{j}": 0 for j in range(200)} for i in range(50)])
     assert 4 < len(read) < 100
+
+
+def test_a_number_of_any_length_raises_nothing() -> None:
+    """Python refuses to write out an integer of more than 4,300 digits."""
+    rows = [{"i": 10**5000, "a": 0, "alpha": 0, "d": 0, "theta": "q1"}]
+    assert canonical_table(rows) == {"rows": [{"a": 0, "alpha": 0, "d": 0, "theta": "q1"}]}
