@@ -32,7 +32,8 @@ from service.kinematics.transforms import Matrices
 
 # Far beyond what rounding does to a cell.
 PLAIN = 0.02
-# Far beyond what floating-point numbers lose, and far below any slip.
+# A length of so many times the robot's own loses figures, but never so many that it is FAR off.
+HUGE = 100.0
 FAR = 1e-6
 
 
@@ -300,23 +301,25 @@ def column_scales(grading: Grading) -> Numbers:
 
 
 def _all_matches(judged: Sequence[JudgedRow], grading: Grading) -> NDArray[np.int_]:
-    """The Match of each cell of each row, ``(rows, 4)``.
-
-    What is rounded is a cell's constant: its size decides, and the joints must move it as they
-    should. A student's own large offset must not widen what is let through.
-    """
+    """The Match of each cell of each row, ``(rows, 4)``."""
     nothing = np.full((len(COLUMNS), LANES), np.nan)
     actual = np.array([nothing if row.row is None else row.row.handed_in for row in judged])
     rounded = [[False] * len(COLUMNS) if row.row is None else row.row.rounded for row in judged]
     expected = np.array([row.expected for row in judged])
-    motion = _motion(judged, expected, grading)
     angle, scales = IS_ANGLE[:, None], column_scales(grading)
-    found = matches(actual - motion, expected - motion, scales, angle, rounded)
-    off = np.abs(difference(actual, expected, angle))
-    moved = np.abs(difference(changes(actual), changes(expected), angle)).max(axis=-1)
-    far = (found == Match.EXACT) & (off.max(axis=-1) > FAR * scales)
-    moves_otherwise = (found == Match.ROUNDED) & (moved > TOLERANCE)
-    return np.where(far | moves_otherwise, int(Match.DIFFERENT), found)
+    found = matches(actual, expected, scales, angle, rounded)
+    if (found == Match.ROUNDED).any():
+        motion = _motion(judged, expected, grading)
+        constants = matches(actual - motion, expected - motion, scales, angle, rounded)
+        moved = np.abs(difference(changes(actual), changes(expected), angle)).max(axis=-1)
+        # What is rounded is a cell's constant; the joints must move it as they should.
+        not_so = (constants < Match.ROUNDED) | (moved > TOLERANCE)
+        found = np.where((found == Match.ROUNDED) & not_so, int(Match.DIFFERENT), found)
+    if np.abs(expected[..., 0]).max() > HUGE * grading.exercise.length_scale:
+        # A student's own large offset must not widen what is let through.
+        off = np.abs(difference(actual, expected, angle)).max(axis=-1)
+        found = np.where((found == Match.EXACT) & (off > FAR * scales), int(Match.DIFFERENT), found)
+    return found
 
 
 def _motion(judged: Sequence[JudgedRow], expected: Table, grading: Grading) -> Table:
