@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import DhTableSpec, Joint, ReferenceTable
-from service.grading.compare import Match, Numbers, difference, matches
+from service.grading.compare import Match, Numbers, difference, matches, same
 from service.grading.findings import Finding
 from service.grading.frames.choices import choices
 from service.grading.frames.freedom import Freedom
@@ -18,7 +18,7 @@ from service.grading.frames.roles import Role, roles_of, variable_column
 from service.grading.frames.steadied import steadied
 from service.grading.motion import TOLERANCE, changes
 from service.grading.protocol import Grading
-from service.grading.samples import LANES
+from service.grading.samples import LANES, Lanes
 from service.grading.tables import (
     IS_ANGLE,
     HandedInRow,
@@ -308,13 +308,11 @@ def _all_matches(judged: Sequence[JudgedRow], grading: Grading) -> NDArray[np.in
     expected = np.array([row.expected for row in judged])
     angle, scales = IS_ANGLE[:, None], column_scales(grading)
     found = matches(actual, expected, scales, angle, rounded)
-    if (found == Match.ROUNDED).any():
-        motion = _motion(judged, expected, grading)
-        constants = matches(actual - motion, expected - motion, scales, angle, rounded)
-        moved = np.abs(difference(changes(actual), changes(expected), angle)).max(axis=-1)
-        # What is rounded is a cell's constant; the joints must move it as they should.
-        not_so = (constants < Match.ROUNDED) | (moved > TOLERANCE)
-        found = np.where((found == Match.ROUNDED) & not_so, int(Match.DIFFERENT), found)
+    for i, column in np.argwhere(found == Match.ROUNDED).tolist():
+        if not _is_rounded(
+            actual[i, column], expected[i, column], column, judged[i].joint, grading
+        ):
+            found[i, column] = Match.DIFFERENT
     if np.abs(expected[..., 0]).max() > HUGE * grading.exercise.length_scale:
         # A student's own large offset must not widen what is let through.
         off = np.abs(difference(actual, expected, angle)).max(axis=-1)
@@ -322,13 +320,21 @@ def _all_matches(judged: Sequence[JudgedRow], grading: Grading) -> NDArray[np.in
     return found
 
 
-def _motion(judged: Sequence[JudgedRow], expected: Table, grading: Grading) -> Table:
-    """What the joint variables contribute to what is expected, ``(rows, 4, LANES)``."""
-    motion = np.zeros_like(expected)
-    for i, row in enumerate(judged):
-        if row.joint is not None:
-            column = variable_column(row.joint)
-            variable = grading.samples.values[row.joint.variable]
-            sense = np.sign(changes(variable) @ changes(expected[i, column]))
-            motion[i, column] = sense * variable
-    return motion
+def _is_rounded(
+    actual: Lanes, expected: Lanes, column: int, joint: Joint | None, grading: Grading
+) -> bool:
+    """Whether a cell within rounding is rounded: in its constant, and moved as it should be."""
+    angle = bool(IS_ANGLE[column])
+    if not _moves_as(changes(actual), changes(expected), angle):
+        return False
+    if joint is None or column != variable_column(joint):
+        return True
+    variable = grading.samples.values[joint.variable]
+    if not _moves_as(changes(expected), changes(variable), angle):
+        variable = -variable
+    scale = float(column_scales(grading)[column])
+    return same(actual - variable, expected - variable, scale, angle)
+
+
+def _moves_as(one: Lanes, other: Lanes, angle: bool) -> bool:
+    return bool(np.abs(difference(one, other, angle)).max() < TOLERANCE)
