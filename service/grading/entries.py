@@ -34,7 +34,7 @@ MOVES = 1e-9
 MAX_CHARACTERS = 12_000
 
 # Of so many unreadable cells of a submission a repaired text is looked for; that costs most.
-REPAIRED = 16
+REPAIRED = 12
 
 # Beyond these nobody measures a robot, and an angle has lost its digits to whole turns.
 BOUNDS: Mapping[Kind, float] = {"angle": 1e6, "length": 1e9, "number": 1e9}
