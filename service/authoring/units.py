@@ -15,18 +15,8 @@ from service.catalogue.schema import (
     VectorSpec,
 )
 from service.expressions import Expression
-from service.expressions.functions import INVERSE, TRIGONOMETRIC
-from service.expressions.tree import (
-    Binary,
-    Call,
-    Negation,
-    Node,
-    Number,
-    Pi,
-    Unit,
-    Variable,
-    children,
-)
+from service.expressions.degrees import in_degrees
+from service.expressions.tree import Node, Number, Unit, children
 from service.kinematics.chain import COLUMNS
 
 # Nobody writes more than a full turn in radians without π.
@@ -44,43 +34,25 @@ def bare_degrees(exercise: Exercise) -> Iterator[Remark]:
             constant = Expression(formula.source, term, (), frozenset())
             value = float(constant.evaluate({}))
             if abs(value) > MOST:
-                text = f"{value:.12g}" if _is_number(term) else f"({constant.text()})"
+                text = f"{value:.12g}" if isinstance(term, Number) else f"({constant.text()})"
                 yield warning(
                     field, f"{text} has no unit and is read in radians; did you mean {text}deg?"
                 )
 
 
-def _bare_terms(node: Node, *, is_angle: bool) -> Iterator[Node]:
-    """The constant terms without a unit in the sums of angles that a tree holds."""
-    if is_angle and _is_bare(node):
+def _bare_terms(tree: Node, *, is_angle: bool) -> Iterator[Node]:
+    """What would be in degrees if the file's numbers were: the rule that students are read by."""
+    written = {(unit.start, unit.end) for unit in _units(tree)}
+    for unit in _units(in_degrees(tree, is_angle=is_angle, notes=[])):
+        if (unit.start, unit.end) not in written:
+            yield unit.operand
+
+
+def _units(node: Node) -> Iterator[Unit]:
+    if isinstance(node, Unit):
         yield node
-        return
-    is_sum = isinstance(node, Negation) or (isinstance(node, Binary) and node.operator in "+-")
     for child in children(node):
-        match node:
-            case Unit():
-                return
-            case Call(function):
-                below = function in TRIGONOMETRIC
-            case _:
-                # A constant factor is no angle: 10*k.
-                below = is_angle and (is_sum or not _is_bare(child))
-        yield from _bare_terms(child, is_angle=below)
-
-
-def _is_bare(node: Node) -> bool:
-    """Whether a tree is a constant that nothing in it makes an angle."""
-    match node:
-        case Variable() | Pi() | Unit():
-            return False
-        case Call(function) if function in INVERSE:
-            return False
-        case _:
-            return all(map(_is_bare, children(node)))
-
-
-def _is_number(node: Node) -> bool:
-    return isinstance(node.operand if isinstance(node, Negation) else node, Number)
+        yield from _units(child)
 
 
 def _formulas(exercise: Exercise) -> Iterator[_Place]:

@@ -27,7 +27,8 @@ from service.grading.protocol import Grading, OwnChain
 from service.grading.report import PartReport, Severity
 from service.grading.samples import LANES, SAMPLES, Samples
 from service.grading.transform import HOMOGENEOUS
-from service.kinematics.transforms import Matrices, identity, inverse
+from service.kinematics.chain import products
+from service.kinematics.transforms import Matrices, inverse
 
 # A joint's small motion, and what is small beside a chain's larger motions.
 NUDGE = 1e-5
@@ -70,10 +71,7 @@ def _pose_chain(answer: object, grading: Grading) -> OwnChain | None:
 def _chain(links: Matrices) -> OwnChain | None:
     if np.isnan(links).any():
         return None
-    frames = [identity((LANES,))]
-    for link in links:
-        frames.append(frames[-1] @ link)
-    return OwnChain(np.array(frames), None)
+    return OwnChain(products(links), None)
 
 
 def carries(

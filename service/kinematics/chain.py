@@ -64,7 +64,11 @@ def compound(transforms: Matrices) -> Matrices:
 
 def frames(table: Table, convention: Convention) -> Matrices:
     """The base frame and that behind each row of a table: ``(rows + 1, ...)``."""
-    transforms = links(table, convention)
+    return products(links(table, convention))
+
+
+def products(transforms: Matrices) -> Matrices:
+    """The product of the first k transforms for k = 0..K: ``(K + 1, ...)`` from ``(K, ...)``."""
     reached = np.empty((len(transforms) + 1, *transforms.shape[1:]))
     reached[0] = np.eye(4)
     for i, transform in enumerate(transforms):

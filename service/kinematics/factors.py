@@ -13,7 +13,7 @@ from functools import cached_property, reduce
 import numpy as np
 from numpy.typing import NDArray
 
-from service.kinematics.chain import A, D, Table
+from service.kinematics.chain import A, D, Table, products
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices
 
@@ -46,20 +46,16 @@ class Factors:
     @cached_property
     def before(self) -> Matrices:
         """The product of the first k factors for k = 0..K: ``(K + 1, L, 4, 4)``."""
-        products = np.empty((len(self.axes) + 1, *self.screws.shape[1:]))
-        products[0] = np.eye(4)
-        for k, screw in enumerate(self.screws):
-            np.matmul(products[k], screw, out=products[k + 1])
-        return products
+        return products(self.screws)
 
     @cached_property
     def behind(self) -> Matrices:
         """The product of the factors from the k-th on for k = 0..K: ``(K + 1, L, 4, 4)``."""
-        products = np.empty((len(self.axes) + 1, *self.screws.shape[1:]))
-        products[-1] = np.eye(4)
+        reached = np.empty((len(self.axes) + 1, *self.screws.shape[1:]))
+        reached[-1] = np.eye(4)
         for k in reversed(range(len(self.axes))):
-            np.matmul(self.screws[k], products[k + 1], out=products[k])
-        return products
+            np.matmul(self.screws[k], reached[k + 1], out=reached[k])
+        return reached
 
     def around(self, factor: int) -> tuple[Matrices, Matrices]:
         """The products of the factors before and behind one of them, ``(L, 4, 4)`` each."""

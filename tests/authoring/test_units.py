@@ -17,7 +17,7 @@ def of_units(remarks: list[Remark]) -> list[Remark]:
 # The twist and the angle of a row; the cell that is warned of, and what it is asked for.
 BARE: list[tuple[str, str, str, str]] = [
     ("90", '"q1"', "alpha", "90 has no unit and is read in radians; did you mean 90deg?"),
-    ('"-90"', '"q1"', "alpha", "-90 has no unit and is read in radians; did you mean -90deg?"),
+    ('"-90"', '"q1"', "alpha", "90 has no unit and is read in radians; did you mean 90deg?"),
     ('"180/2"', '"q1"', "alpha", "(180/2) has no unit *; did you mean (180/2)deg?"),
     ("0", '"q1 + 90"', "theta", "90 has no unit *; did you mean 90deg?"),
     ("0", '"q1 - 22.5"', "theta", "22.5 has no unit *; did you mean 22.5deg?"),
