@@ -12,9 +12,9 @@ from starlette.types import ASGIApp
 
 from service.api import exercises, grading, health, preview, problems
 from service.api import solutions as model_solutions
-from service.api.documented import any_other_failure, with_problem_schema
-from service.api.edge import Edge
+from service.api.boundary import Edge
 from service.api.lookup import Catalogue
+from service.api.openapi import any_other_failure, with_problem_schema
 from service.submissions import MAX_BODY_SIZE
 
 DESCRIPTION = """

@@ -6,8 +6,8 @@ from typing import Literal, assert_never
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from service.api.documented import refusals
 from service.api.lookup import Catalogue, exercise_or_404
+from service.api.openapi import refusals
 from service.catalogue import (
     DhRowSpec,
     DhTableSpec,

@@ -5,8 +5,8 @@ from http import HTTPStatus
 from fastapi import APIRouter, Request, Response
 
 from service.api.bodies import body_as
-from service.api.documented import answer, refusals, request_body
 from service.api.lookup import Catalogue, exercise_or_404, require_parts
+from service.api.openapi import answer, refusals, request_body
 from service.formats import json
 from service.grading import Report, grade
 from service.submissions import GradeRequest

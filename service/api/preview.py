@@ -7,8 +7,8 @@ from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.api.bodies import body_as
-from service.api.documented import answer, refusals, request_body
 from service.api.lookup import Catalogue, require_exercise, require_parts
+from service.api.openapi import answer, refusals, request_body
 from service.api.problems import invalid
 from service.catalogue import Exercise
 from service.expressions import (
@@ -20,7 +20,7 @@ from service.expressions import (
     joint_variable,
     read,
 )
-from service.grading.preview import CellPreview, Problem, preview_pasted
+from service.grading.reading.preview import CellPreview, Problem, preview_pasted
 
 JOINTS: Final = range(1, 10)
 

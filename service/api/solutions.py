@@ -8,8 +8,8 @@ from typing import Any, Final
 from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 
-from service.api.documented import answer, refusals
 from service.api.lookup import Catalogue, exercise_or_404
+from service.api.openapi import answer, refusals
 from service.api.problems import ProblemError
 from service.catalogue import Exercise
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from service.catalogue import Exercise
 from service.grading import Feedback, FeedbackLevel, PartReport, Submission, grade
-from service.grading.entries import AngleUnit
+from service.grading.reading.entry import AngleUnit
 
 
 def graded(

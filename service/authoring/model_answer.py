@@ -8,7 +8,7 @@ from service.authoring.grading import graded, in_words
 from service.authoring.remarks import Remark, failed
 from service.catalogue import Exercise
 from service.expressions import LIMITS
-from service.grading.entries import AngleUnit
+from service.grading.reading.entry import AngleUnit
 
 UNITS: Final[tuple[AngleUnit, ...]] = ("radians", "degrees")
 

@@ -15,7 +15,7 @@ from service.catalogue.schema import (
     VectorSpec,
 )
 from service.expressions import Expression
-from service.expressions.degrees import in_degrees
+from service.expressions.parsing.degrees import in_degrees
 from service.expressions.tree import Node, Number, Unit, children
 from service.kinematics.chain import COLUMNS
 

@@ -3,7 +3,7 @@
 from service.expressions.errors import ExpressionError, Note
 from service.expressions.limits import LIMITS, Limits
 from service.expressions.reader import AngleUnits, Expression, evaluate_all, read
-from service.expressions.vocabulary import Kind, Symbol, Vocabulary, joint_variable
+from service.expressions.vocabulary.symbols import Kind, Symbol, Vocabulary, joint_variable
 
 __all__ = [
     "LIMITS",

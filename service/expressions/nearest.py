@@ -2,9 +2,9 @@
 
 import difflib
 
-from service.expressions.functions import IN_DEGREES, OF_DEGREES, PI, SPELLINGS
-from service.expressions.vocabulary import Vocabulary, normal_form
-from service.expressions.words import split
+from service.expressions.parsing.words import split
+from service.expressions.vocabulary.functions import IN_DEGREES, OF_DEGREES, PI, SPELLINGS
+from service.expressions.vocabulary.symbols import Vocabulary, normal_form
 
 # A longer run is no slip of one name, and comparing it would cost time.
 _LONGEST_SLIP = 24

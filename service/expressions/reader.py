@@ -8,21 +8,21 @@ from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 
-from service.expressions.build import Builder
-from service.expressions.characters import normalise
-from service.expressions.degrees import in_degrees, without_degree_functions
+from service.expressions.characters.normalise import normalise
 from service.expressions.errors import ExpressionError, Note
-from service.expressions.evaluate import Samples, compile_tree
-from service.expressions.latex import to_latex
+from service.expressions.evaluation.samples import Samples, compile_tree
 from service.expressions.limits import LIMITS
-from service.expressions.mathml import to_mathml
+from service.expressions.parsing.degrees import in_degrees, without_degree_functions
+from service.expressions.parsing.lexer import tokenise
+from service.expressions.parsing.parser import Table, UnexpectedTokenError
+from service.expressions.parsing.tree_builder import Builder
+from service.expressions.printing.latex import to_latex
+from service.expressions.printing.mathml import to_mathml
+from service.expressions.printing.text import to_text
 from service.expressions.repairs import Failure, explain
-from service.expressions.table import Table, UnexpectedTokenError
-from service.expressions.text import to_text
-from service.expressions.tokens import tokenise
 from service.expressions.tree import Binary, Node, Number, Variable, children
 from service.expressions.unreadable import UnreadableError
-from service.expressions.vocabulary import Kind, Vocabulary
+from service.expressions.vocabulary.symbols import Kind, Vocabulary
 
 AngleUnits = Literal["radians", "degrees"]
 

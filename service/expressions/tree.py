@@ -16,7 +16,7 @@ as long to construct; nothing changes a tree after the reader has built it.
 from dataclasses import dataclass, field
 from typing import Literal
 
-from service.expressions.vocabulary import Symbol
+from service.expressions.vocabulary.symbols import Symbol
 
 AngleUnit = Literal["deg", "rad"]
 Operator = Literal["+", "-", "*", "/", "^"]

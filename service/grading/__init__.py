@@ -1,6 +1,6 @@
 """Answers and an exercise in, a report out. Pure: no clock, no disk, no network."""
 
-from service.grading.findings import FeedbackLevel
+from service.grading.feedback import FeedbackLevel
 from service.grading.grade import Submission, UnknownPartError, grade
 from service.grading.report import (
     CellReport,

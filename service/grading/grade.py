@@ -4,12 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from service.catalogue import Exercise, PartSpec
-from service.grading.dh_row import DhRowKind
-from service.grading.dh_table import DhTableKind
-from service.grading.entries import MAX_CHARACTERS, AngleUnit, Reader
-from service.grading.euler_angles import EulerAnglesKind
-from service.grading.findings import FeedbackLevel
-from service.grading.following import (
+from service.grading.feedback import FeedbackLevel
+from service.grading.follow_through import (
     STANDS_STILL,
     carries,
     followed_part,
@@ -17,16 +13,20 @@ from service.grading.following import (
     own_chain,
     stands_still,
 )
-from service.grading.link_transforms import LinkTransformsKind
-from service.grading.matrix import MatrixKind
-from service.grading.position import PositionKind
-from service.grading.protocol import AnswerKind, Grading, PartTerms
+from service.grading.kinds.dh_row import DhRowKind
+from service.grading.kinds.dh_table import DhTableKind
+from service.grading.kinds.euler_angles import EulerAnglesKind
+from service.grading.kinds.link_transforms import LinkTransformsKind
+from service.grading.kinds.matrix import MatrixKind
+from service.grading.kinds.position import PositionKind
+from service.grading.kinds.rotation import RotationKind
+from service.grading.kinds.screw_axes import ScrewAxesKind
+from service.grading.kinds.transform import TransformKind
+from service.grading.kinds.vector import VectorKind
+from service.grading.part import AnswerKind, Grading, PartTerms
+from service.grading.reading.entry import MAX_CHARACTERS, AngleUnit, Reader
 from service.grading.report import PartReport, Report, Verdict, rounded_points
-from service.grading.rotation import RotationKind
 from service.grading.samples import draw
-from service.grading.screw_axes import ScrewAxesKind
-from service.grading.transform import TransformKind
-from service.grading.vector import VectorKind
 
 KINDS: Mapping[str, AnswerKind] = {
     "dh_table": DhTableKind(),

@@ -20,10 +20,10 @@ from numpy.typing import NDArray
 
 from service.kinematics.base_freedom import BaseFreedom
 from service.kinematics.chain import ALPHA, THETA, A, D
+from service.kinematics.chain_match import SAME, Nearest, Stop, WrittenRow, senses_of
 from service.kinematics.dh import standard_link
 from service.kinematics.fit import Numbers, Place, candidates, misses, positions
 from service.kinematics.transforms import Matrices, identity, inverse, rot_x
-from service.kinematics.walk import SAME, Nearest, Stop, WrittenRow, senses_of
 
 BEAM = 8
 CONTINUATIONS = 20

@@ -21,7 +21,7 @@ from service.catalogue import (
 )
 from service.catalogue.answers import SCREW
 from service.expressions import Expression, Kind, read
-from service.expressions.text import to_text
+from service.expressions.printing.text import to_text
 from service.expressions.tree import Node
 from service.kinematics.dh import Convention
 from service.solutions import layout

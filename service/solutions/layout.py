@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from service.expressions.latex import to_latex
-from service.expressions.text import to_text
+from service.expressions.printing.latex import to_latex
+from service.expressions.printing.text import to_text
 from service.expressions.tree import Node
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention

@@ -13,7 +13,7 @@ import sympy
 
 from service.catalogue import Exercise
 from service.expressions import ExpressionError, Symbol, Vocabulary, read
-from service.expressions.text import to_text
+from service.expressions.printing.text import to_text
 from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, Unit, Variable
 
 _NAMES: Mapping[type, str] = {

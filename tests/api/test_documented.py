@@ -6,7 +6,7 @@ from typing import Any
 import httpx
 import pytest
 
-from service.api.documented import EXAMPLES
+from service.api.openapi import EXAMPLES
 
 EXAMPLE_URLS = {"grade": "/v1/exercises/stanford-arm/grade", "preview": "/v1/preview"}
 ROUTES = {"grade": "/v1/exercises/{exercise_id}/grade", "preview": "/v1/preview"}

@@ -11,11 +11,11 @@ import pytest
 
 from service.catalogue import Exercise
 from service.expressions import LIMITS, ExpressionError, read
-from service.expressions.grids import GRID_LIMITS
 from service.grading import FeedbackLevel
-from service.grading.entries import MAX_CHARACTERS
-from service.grading.preview import preview_pasted
-from service.grading.tables import MAX_ROWS
+from service.grading.reading.entry import MAX_CHARACTERS
+from service.grading.reading.preview import preview_pasted
+from service.grading.reading.table import MAX_ROWS
+from service.grids import GRID_LIMITS
 from tests.docs.codes import HiddenCodeError, codes_in, sources
 from tests.expressions.corpus_files import ROBOT
 from tests.grading.exercise_texts import told
@@ -33,49 +33,49 @@ PASTED_NOTED = "A pasted table or matrix that is read, with a note"
 IN_CELLS = "Slips in table cells"
 SINGLE = "Single entries"
 DIAGNOSIS = "grading/diagnosis/"
-VALUES = f"{DIAGNOSIS}values.py"
+VALUES = f"{DIAGNOSIS}wrong_value.py"
 # The sections, and the files that tell what they list; a folder stands for all that is in it.
 PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     ((UNREAD,), ("expressions/repairs/",)),
-    ((NOTED,), ("expressions/build.py", "expressions/degrees.py", "expressions/remarks.py")),
+    ((NOTED,), ("expressions/parsing/",)),
     (
         (PASTED_UNREAD, PASTED_NOTED),
         (
-            "expressions/grids/",
-            "grading/labels.py",
-            "grading/lengths.py",
-            "grading/pasted.py",
+            "grids/",
+            "grading/reading/row_labels.py",
+            "grading/reading/length_units.py",
+            "grading/reading/pasted.py",
         ),
     ),
     (
         ("The shape of an answer",),
         (
             "formats/text.py",
-            "grading/dh_row.py",
-            "grading/entries.py",
-            "grading/link_transforms.py",
-            "grading/lists.py",
-            "grading/matrices.py",
-            "grading/tables.py",
+            "grading/kinds/dh_row.py",
+            "grading/reading/entry.py",
+            "grading/kinds/link_transforms.py",
+            "grading/reading/value_list.py",
+            "grading/kinds/matrix_rows.py",
+            "grading/reading/table.py",
         ),
     ),
     (
         ("Accepted, with a remark",),
         (
-            "grading/frames/choices.py",
-            "grading/euler_angles.py",
-            "grading/findings.py",
-            "grading/screw_axes.py",
+            "grading/judging/own_frames/remarks.py",
+            "grading/kinds/euler_angles.py",
+            "grading/feedback.py",
+            "grading/kinds/screw_axes.py",
         ),
     ),
-    ((IN_CELLS,), (f"{DIAGNOSIS}cells.py", VALUES)),
+    ((IN_CELLS,), (f"{DIAGNOSIS}table_cell.py", VALUES)),
     (
         ("Slips through a whole table",),
         (
-            "grading/dh_table.py",
-            "grading/judgement.py",
-            f"{DIAGNOSIS}freedom.py",
-            f"{DIAGNOSIS}tables.py",
+            "grading/kinds/dh_table.py",
+            "grading/judging/table.py",
+            f"{DIAGNOSIS}table_freedom.py",
+            f"{DIAGNOSIS}whole_table.py",
         ),
     ),
     (("The row of a transform",), (f"{DIAGNOSIS}dh_row.py",)),
@@ -83,16 +83,16 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
         ("Matrices",),
         (
             f"{DIAGNOSIS}exponentials.py",
-            f"{DIAGNOSIS}matrices.py",
-            f"{DIAGNOSIS}products.py",
-            f"{DIAGNOSIS}steps.py",
+            f"{DIAGNOSIS}whole_matrix.py",
+            f"{DIAGNOSIS}link_products.py",
+            f"{DIAGNOSIS}rotation_steps.py",
         ),
     ),
-    ((SINGLE,), (f"{DIAGNOSIS}entries.py", VALUES)),
-    (("Positions",), (f"{DIAGNOSIS}positions.py",)),
-    (("Angles",), (f"{DIAGNOSIS}angles.py", VALUES)),
-    (("Screws",), (f"{DIAGNOSIS}screws.py",)),
-    (("Parts as a whole",), ("grading/following.py",)),
+    ((SINGLE,), (f"{DIAGNOSIS}matrix_entry.py", VALUES)),
+    (("Positions",), (f"{DIAGNOSIS}position.py",)),
+    (("Angles",), (f"{DIAGNOSIS}angle.py", VALUES)),
+    (("Screws",), (f"{DIAGNOSIS}screw_axis.py",)),
+    (("Parts as a whole",), ("grading/follow_through.py",)),
 )
 
 

@@ -9,7 +9,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from service.expressions import Expression, ExpressionError, read, reader, words
+from service.expressions import Expression, ExpressionError, read, reader
+from service.expressions.parsing import words
 from tests.expressions.corpus_files import FOLDER, ROBOT, cases, names
 
 Fingerprint = tuple[object, ...]

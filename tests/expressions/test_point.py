@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from service.expressions import Symbol, Vocabulary, joint_variable, read
-from service.expressions.point import known_values, value_at
+from service.expressions.evaluation.point import known_values, value_at
 from service.expressions.tree import Binary, Number
 
 VOCABULARY = Vocabulary([joint_variable(1), joint_variable(2), Symbol("l1", "length")])

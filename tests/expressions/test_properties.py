@@ -10,8 +10,8 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from service.expressions import ExpressionError, Symbol, Vocabulary, joint_variable, read
-from service.expressions.degrees import in_degrees
-from service.expressions.text import to_text
+from service.expressions.parsing.degrees import in_degrees
+from service.expressions.printing.text import to_text
 from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, Unit, Variable
 
 ARM = Vocabulary(

@@ -7,10 +7,10 @@ from inspect import isfunction
 import pytest
 from lark import Lark, logger
 
-from service.expressions.build import Builder
-from service.expressions.table import Table
+from service.expressions.parsing.parser import Table
+from service.expressions.parsing.tree_builder import Builder
 
-GRAMMAR = files("service.expressions").joinpath("grammar.lark").read_text("utf-8")
+GRAMMAR = files("service.expressions.parsing").joinpath("grammar.lark").read_text("utf-8")
 
 
 def _conflicts(grammar: str, caplog: pytest.LogCaptureFixture) -> bool:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.grading.compare import Match, difference, matches, same
+from service.grading.comparison import Match, difference, matches, same
 
 ANGLES = st.floats(-50, 50)
 TURNS = st.integers(-20, 20)

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from service.catalogue import Exercise
 from service.grading import FeedbackLevel, Verdict
-from service.grading.euler_angles import nearest_triple
+from service.grading.kinds.euler_angles import nearest_triple
 from service.kinematics.rotations import PROPER, SEQUENCES
 from tests.grading.exercise_texts import SPATIAL_RRR, graded, one_part, told
 from tests.grading.submitting import full_marks, handed_in, not_correct, part

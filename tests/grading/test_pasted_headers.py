@@ -2,8 +2,8 @@
 
 import pytest
 
-from service.grading.headers import Header, read_header
-from service.grading.labels import LAST, label_place
+from service.grading.reading.column_headers import Header, read_header
+from service.grading.reading.row_labels import LAST, label_place
 
 SPELLINGS = {
     "a": [

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from service.catalogue import Exercise
 from service.grading import FeedbackLevel, Submission, grade
-from service.grading.preview import preview_pasted
+from service.grading.reading.preview import preview_pasted
 from tests.expressions.grids.writers import FORMATS
 from tests.grading.robots import EXACT, RRRP
 from tests.grading.submitting import as_data

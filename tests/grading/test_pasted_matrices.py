@@ -10,8 +10,8 @@ import sympy as sp
 from sympy.printing.numpy import NumPyPrinter
 
 from service.catalogue import Exercise
-from service.expressions.grids import read_grid
 from service.grading import PartReport, Verdict
+from service.grids import read_grid
 from tests.expressions.grids.writers import FORMATS
 from tests.grading.robots import PLANAR_RRR, ROBOTS, Robot
 from tests.grading.submitting import cell, codes, full_marks, handed_in, not_correct, part

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import pytest
 
 from service.catalogue import Exercise
-from service.grading.preview import preview_pasted
+from service.grading.reading.preview import preview_pasted
 
 TABLE = "\n".join(
     [

@@ -6,10 +6,10 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import Verdict
-from service.grading.entries import AngleUnit, Reader
-from service.grading.pasted import length_unit
+from service.grading.reading.entry import AngleUnit, Reader
+from service.grading.reading.pasted import length_unit
+from service.grading.reading.table import HandedInTable, UnreadableTableError, read_table
 from service.grading.samples import draw
-from service.grading.tables import HandedInTable, UnreadableTableError, read_table
 from tests.grading.submitting import full_marks, handed_in, part
 
 ARM = """

@@ -6,7 +6,7 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import PartReport
-from service.grading.entries import REPAIRED
+from service.grading.reading.entry import REPAIRED
 from tests.grading.robots import EXACT, STANFORD
 from tests.grading.submitting import graded_table, handed_in, not_correct, part, table
 

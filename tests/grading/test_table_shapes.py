@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from service.grading import table_shapes
-from service.grading.table_shapes import canonical_table
+from service.grading.reading import table_json
+from service.grading.reading.table_json import canonical_table
 from tests.grading.submitting import table
 
 # Craig, Introduction to Robotics, the planar two-link arm in the standard convention.
@@ -120,7 +120,7 @@ def test_too_many_rows_are_still_counted() -> None:
 def test_of_a_body_full_of_names_few_are_understood(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each costs some ten microseconds, and a body has room for tens of thousands."""
     read: list[str] = []
-    monkeypatch.setattr(table_shapes, "read_header", read.append)
+    monkeypatch.setattr(table_json, "read_header", read.append)
     canonical_table([{f"α_{i}_{j}": 0 for j in range(200)} for i in range(50)])
     assert 4 < len(read) < 100
 

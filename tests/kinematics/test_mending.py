@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from service.kinematics.cell_repairs import mended, one_factor_mends, two_factor_mends
 from service.kinematics.chain import Table, pose
 from service.kinematics.dh import Convention
 from service.kinematics.factors import Cell, factors_of
-from service.kinematics.mending import mended, one_factor_mends, two_factor_mends
 
 LANES = 4
 CONVENTIONS = pytest.mark.parametrize("convention", list(Convention))

@@ -7,7 +7,7 @@ import sympy
 
 from service.catalogue import Exercise
 from service.expressions import read
-from service.expressions.text import to_text
+from service.expressions.printing.text import to_text
 from service.solutions.algebra import Algebra
 from service.solutions.trees import Writer
 

@@ -2,16 +2,16 @@ r"""A letter in braces with its index behind them: {\theta}_1, {c}_{12}."""
 
 import re
 
-from service.expressions import commands, greek
+from service.expressions.characters import greek, latex_commands
+from service.expressions.characters.unicode import SUBSCRIPTS
 from service.expressions.errors import ExpressionError
-from service.expressions.glyphs import SUBSCRIPTS
 from service.expressions.repairs.failure import Failure, shown
 
 _LETTER = rf"\\?[A-Za-z]+|[{greek.CLASS}{''.join(greek.VARIANTS)}]"
-_STEM = rf"{_LETTER}|\\(?:{'|'.join(sorted(commands.STYLES))})\s*\{{\s*(?:{_LETTER})\s*\}}"
+_STEM = rf"{_LETTER}|\\(?:{'|'.join(sorted(latex_commands.STYLES))})\s*\{{\s*(?:{_LETTER})\s*\}}"
 _INDEX = rf"(?:_(?:\{{[^{{}}]*\}}|[A-Za-z0-9]+)|[{''.join(SUBSCRIPTS)}]+|[0-9]+)"
 _BRACED = re.compile(rf"\{{\s*({_STEM})\s*\}}(\s*{_INDEX})")
-_WITHOUT_ARGUMENT = {*commands.FUNCTIONS, *commands.PLAIN, *commands.SPACES}
+_WITHOUT_ARGUMENT = {*latex_commands.FUNCTIONS, *latex_commands.PLAIN, *latex_commands.SPACES}
 # Behind these a brace is an index, a power, or what a command works on.
 _TAKEN = re.compile(r"(?:[_^]|\\([A-Za-z]+))\s*$")
 

@@ -3,8 +3,8 @@
 import re
 
 from service.expressions.errors import ExpressionError
-from service.expressions.functions import IN_DEGREES
 from service.expressions.repairs.failure import Failure, shown
+from service.expressions.vocabulary.functions import IN_DEGREES
 
 _MODULE = re.compile(r"[A-Za-z]+\.$")
 

@@ -2,10 +2,10 @@
 
 import re
 
-from service.expressions import greek
+from service.expressions.characters import greek
 from service.expressions.errors import ExpressionError
+from service.expressions.parsing.words import split
 from service.expressions.repairs.failure import Failure
-from service.expressions.words import split
 
 _DETACHED = re.compile(rf"([A-Za-z{greek.CLASS}]+)[ _]+([0-9]+)(?![0-9.])")
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from service.expressions.errors import ExpressionError, Span
-from service.expressions.table import Token
+from service.expressions.parsing.parser import Token
 from service.expressions.unreadable import UnreadableError
-from service.expressions.vocabulary import Vocabulary
+from service.expressions.vocabulary.symbols import Vocabulary
 
 
 @dataclass(frozen=True, slots=True)

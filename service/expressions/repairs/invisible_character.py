@@ -2,8 +2,8 @@
 
 import unicodedata
 
+from service.expressions.characters.unicode import is_invisible
 from service.expressions.errors import ExpressionError
-from service.expressions.glyphs import is_invisible
 from service.expressions.repairs.failure import Failure
 
 # Pasted from a formula on a web page, this one is a product.

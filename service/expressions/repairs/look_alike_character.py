@@ -2,8 +2,8 @@
 
 import unicodedata
 
+from service.expressions.characters.unicode import LOOK_ALIKES
 from service.expressions.errors import ExpressionError
-from service.expressions.glyphs import LOOK_ALIKES
 from service.expressions.repairs.failure import Failure
 
 

@@ -1,7 +1,7 @@
 """(q1 + q2]: a bracket closed by one of another kind."""
 
+from service.expressions.characters.unicode import CLOSE
 from service.expressions.errors import ExpressionError
-from service.expressions.glyphs import CLOSE
 from service.expressions.repairs.failure import Failure, place, shown
 
 

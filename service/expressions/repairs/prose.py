@@ -3,8 +3,8 @@
 import re
 
 from service.expressions.errors import ExpressionError
+from service.expressions.parsing.words import split
 from service.expressions.repairs.failure import Failure
-from service.expressions.words import split
 
 _WORD = re.compile(r"[A-Za-zÀ-ÿ]+")
 _PHRASES = {

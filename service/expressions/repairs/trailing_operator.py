@@ -1,8 +1,8 @@
 """A text that ends in an operator."""
 
 from service.expressions.errors import ExpressionError
+from service.expressions.parsing.parser import END
 from service.expressions.repairs.failure import Failure, halt, shown
-from service.expressions.table import END
 
 OPERATORS = frozenset({"PLUS", "MINUS", "STAR", "SLASH", "POWER", "ROOT"})
 

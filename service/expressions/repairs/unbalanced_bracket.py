@@ -1,9 +1,9 @@
 """A bracket without its partner."""
 
-from service.expressions.brackets import PARTNERS
 from service.expressions.errors import ExpressionError, Span
+from service.expressions.parsing.brackets import PARTNERS
+from service.expressions.parsing.parser import END
 from service.expressions.repairs.failure import Failure, Halt, halt, place, shown
-from service.expressions.table import END
 
 _VALUES = frozenset({"NUMBER", "NAME", "RIGHT", "CLOSE", "UNIT", "LEFT"})
 

@@ -1,6 +1,6 @@
 """LaTeX commands that are not read, or that lack what they work on."""
 
-from service.expressions.commands import known_prefix
+from service.expressions.characters.latex_commands import known_prefix
 from service.expressions.errors import ExpressionError
 from service.expressions.repairs.failure import Failure, shown
 

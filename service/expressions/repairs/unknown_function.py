@@ -1,8 +1,8 @@
 """Functions that are not read: sec, cot, ln, hypot."""
 
 from service.expressions.errors import ExpressionError
-from service.expressions.functions import ARITY
 from service.expressions.repairs.failure import Failure, shown
+from service.expressions.vocabulary.functions import ARITY
 
 _RECIPROCALS = {"sec": "cos", "csc": "sin", "cosec": "sin", "cot": "tan", "ctg": "tan"}
 _RENAMED = {

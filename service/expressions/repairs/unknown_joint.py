@@ -2,12 +2,12 @@
 
 import re
 
-from service.expressions import greek
+from service.expressions.characters import greek
 from service.expressions.errors import ExpressionError, Span
-from service.expressions.names import symbol_latex
+from service.expressions.parsing.words import split
+from service.expressions.printing.symbol_names import symbol_latex
 from service.expressions.repairs.failure import Failure, shown
-from service.expressions.vocabulary import Vocabulary, normal_form
-from service.expressions.words import split
+from service.expressions.vocabulary.symbols import Vocabulary, normal_form
 
 _JOINT = re.compile(rf"(?P<stem>[A-Za-z{greek.CLASS}]+?)(?P<index>[0-9]+)(?P<rest>.*)")
 _STEMS = frozenset({"q", "theta", "θ", "th"})

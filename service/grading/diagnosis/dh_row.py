@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from service.grading.compare import EXACT, Match, Numbers, matches
-from service.grading.findings import Finding
-from service.grading.tables import IS_ANGLE
+from service.grading.comparison import EXACT, Match, Numbers, matches
+from service.grading.feedback import Finding
+from service.grading.reading.table import IS_ANGLE
 from service.kinematics.dh import Convention
 from service.kinematics.dh_row import gap, row, slant
 from service.kinematics.transforms import Matrices, inverse

@@ -11,9 +11,9 @@ import numpy as np
 
 from service.catalogue import Exercise, ScrewRobot
 from service.catalogue.robot import at_home
-from service.grading.compare import Numbers
+from service.grading.comparison import Numbers
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
-from service.grading.findings import Finding
+from service.grading.feedback import Finding
 from service.grading.samples import LANES, Samples
 from service.kinematics.screws import moved, product_in_body, product_in_space
 from service.kinematics.transforms import Matrices, inverse

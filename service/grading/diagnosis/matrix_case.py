@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import Exercise
-from service.grading.compare import Match, Numbers, matches
-from service.grading.findings import Finding
+from service.grading.comparison import Match, Numbers, matches
+from service.grading.feedback import Finding
 from service.grading.samples import Samples
 from service.kinematics.chain import Table, links
 from service.kinematics.dh import Convention

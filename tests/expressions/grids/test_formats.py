@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.expressions.grids import read_grid
+from service.grids import read_grid
 from tests.expressions.grids.writers import FORMATS, MATRICES, Rows
 
 POSE = [

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from service.expressions.grids import GRID_LIMITS, Grid, GridError, read_grid
+from service.grids import GRID_LIMITS, Grid, GridError, read_grid
 from tests.expressions.grids.writers import FORMATS
 
 # Seconds of process time for one text. The budget of 50 ms is for the benchmarks and the long fuzz;

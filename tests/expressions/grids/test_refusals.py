@@ -2,7 +2,7 @@
 
 import pytest
 
-from service.expressions.grids import GRID_LIMITS, GridError, read_grid
+from service.grids import GRID_LIMITS, GridError, read_grid
 
 
 def refusal(text: str) -> GridError:

@@ -8,9 +8,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from service.expressions import Symbol, Vocabulary, read
-from service.grading.compare import Numbers
-from service.grading.diagnosis import angles
-from service.grading.diagnosis.angles import (
+from service.grading.comparison import Numbers
+from service.grading.diagnosis import angle
+from service.grading.diagnosis.angle import (
     MISCONCEPTIONS,
     TRIPLES,
     AnglesExplained,
@@ -18,9 +18,8 @@ from service.grading.diagnosis.angles import (
     diagnose_angle,
     explain_angles,
 )
-from service.grading.diagnosis.case import WrongValue
-from service.grading.diagnosis.values import undefined
-from service.grading.findings import Finding
+from service.grading.diagnosis.wrong_value import WrongValue, undefined
+from service.grading.feedback import Finding
 from service.grading.samples import LANES, Samples
 
 RNG = np.random.default_rng(8)
@@ -48,13 +47,13 @@ def wrong(text: str, expected: str) -> WrongValue:
 # The belief, what was written and what is right, and the same for a case that it leaves alone.
 PAIRS: list[tuple[Belief, tuple[str, str], tuple[str, str]]] = [
     (undefined, ("1/0", "q1"), ("q2", "q1")),
-    (angles.sign, ("-q1", "q1"), ("-q1 + 0.1", "q1")),
-    (angles.degrees_as_radians, ("90", "pi/2"), ("91", "pi/2")),
-    (angles.radians_as_degrees, ("pi*pi/360", "pi/2"), ("pi/180", "pi/2")),
-    (angles.lost_quadrant, ("atan(sin(q1)/cos(q1))", "q1"), ("q1 + pi", "q1")),
-    (angles.half_turn, ("q1 - pi", "q1"), ("q1 + pi/2", "q1")),
-    (angles.swapped_atan2, ("atan2(cos(q1), sin(q1))", "q1"), ("0", "pi/2")),
-    (angles.quarter_turn, ("0", "pi/2"), ("q1 + pi", "q1")),
+    (angle.sign, ("-q1", "q1"), ("-q1 + 0.1", "q1")),
+    (angle.degrees_as_radians, ("90", "pi/2"), ("91", "pi/2")),
+    (angle.radians_as_degrees, ("pi*pi/360", "pi/2"), ("pi/180", "pi/2")),
+    (angle.lost_quadrant, ("atan(sin(q1)/cos(q1))", "q1"), ("q1 + pi", "q1")),
+    (angle.half_turn, ("q1 - pi", "q1"), ("q1 + pi/2", "q1")),
+    (angle.swapped_atan2, ("atan2(cos(q1), sin(q1))", "q1"), ("0", "pi/2")),
+    (angle.quarter_turn, ("0", "pi/2"), ("q1 + pi", "q1")),
 ]
 
 
@@ -102,11 +101,11 @@ def other(name: Any) -> Numbers:
 
 TripleBelief = Callable[[WrongAngles], AnglesExplained | None]
 TRIPLE_PAIRS: list[tuple[TripleBelief, Numbers, Numbers, str]] = [
-    (angles.some_angles, triple(-Q1, 0.4, -Q2), triple(Q1 + 0.1, 0.4, Q2), "sign"),
-    (angles.other_order, triple(Q2, 0.4, Q1), triple(Q2, 0.5, Q1), "angle_order"),
-    (angles.other_sequence, other("XZX"), other("XZX") + 0.1, "other_euler_sequence"),
+    (angle.some_angles, triple(-Q1, 0.4, -Q2), triple(Q1 + 0.1, 0.4, Q2), "sign"),
+    (angle.other_order, triple(Q2, 0.4, Q1), triple(Q2, 0.5, Q1), "angle_order"),
+    (angle.other_sequence, other("XZX"), other("XZX") + 0.1, "other_euler_sequence"),
     (
-        angles.inverse_rotation,
+        angle.inverse_rotation,
         np.asarray(Rotation.from_euler("ZYX", RIGHT.T).inv().as_euler("ZYX").T),
         triple(Q1, -0.4, Q2),
         "inverse_rotation",

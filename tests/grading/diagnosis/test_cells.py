@@ -7,12 +7,11 @@ import pytest
 
 from service.catalogue import Joint
 from service.expressions import Symbol, Vocabulary, read
-from service.grading.diagnosis import cells
-from service.grading.diagnosis.case import WrongCell
-from service.grading.diagnosis.cells import MISCONCEPTIONS, diagnose
-from service.grading.diagnosis.values import undefined
-from service.grading.findings import Finding
-from service.grading.motion import coefficients
+from service.grading.diagnosis import table_cell
+from service.grading.diagnosis.table_cell import MISCONCEPTIONS, diagnose
+from service.grading.diagnosis.wrong_value import WrongCell, undefined
+from service.grading.feedback import Finding
+from service.grading.joint_motion import coefficients
 from service.grading.samples import LANES, SAMPLES, Samples
 
 RNG = np.random.default_rng(5)
@@ -58,22 +57,22 @@ def wrong(cell: Cell) -> WrongCell:
 PAIRS: list[tuple[Belief, Cell, Cell]] = [
     (undefined, ("d", 1, "a1/0", "a1"), ("d", 1, "a2", "a1")),
     (
-        cells.joint_variable_missing,
+        table_cell.joint_variable_missing,
         ("theta", 1, "pi/2", "q1 + pi/2"),
         ("theta", 1, "q2", "q1"),
     ),
-    (cells.joint_variable_sign, ("d", 3, "-d3", "d3"), ("d", 3, "d3 + a1", "d3")),
-    (cells.joint_variable_index, ("theta", 1, "q2", "q1"), ("theta", 1, "q1 + q2", "q1")),
-    (cells.joint_variable_doubled, ("theta", 2, "2*q2", "q2"), ("theta", 2, "-q2", "q2")),
-    (cells.joint_variable_column, ("alpha", 1, "q1", "0"), ("alpha", 1, "q2", "0")),
-    (cells.joint_variable_extra, ("theta", 1, "q1 + q2", "q1"), ("theta", 1, "-q1", "q1")),
-    (cells.sign, ("a", 1, "-a1", "a1"), ("a", 1, "-a2", "a1")),
-    (cells.distance_left_out, ("d", 1, "0", "a1"), ("d", 1, "a2", "a1")),
-    (cells.distance_extra, ("d", 3, "d3 + a1", "d3"), ("a", 3, "a1", "a2")),
-    (cells.degrees_as_radians, ("alpha", 1, "90", "pi/2"), ("alpha", 1, "91", "pi/2")),
-    (cells.radians_as_degrees, ("alpha", 1, "pi*pi/360", "pi/2"), ("alpha", 1, "0", "pi/2")),
-    (cells.quarter_turn, ("theta", 1, "q1", "q1 + pi/2"), ("theta", 1, "q1 + pi", "q1")),
-    (cells.half_turn, ("theta", 1, "q1 + pi", "q1"), ("theta", 1, "q1 + pi/2", "q1")),
+    (table_cell.joint_variable_sign, ("d", 3, "-d3", "d3"), ("d", 3, "d3 + a1", "d3")),
+    (table_cell.joint_variable_index, ("theta", 1, "q2", "q1"), ("theta", 1, "q1 + q2", "q1")),
+    (table_cell.joint_variable_doubled, ("theta", 2, "2*q2", "q2"), ("theta", 2, "-q2", "q2")),
+    (table_cell.joint_variable_column, ("alpha", 1, "q1", "0"), ("alpha", 1, "q2", "0")),
+    (table_cell.joint_variable_extra, ("theta", 1, "q1 + q2", "q1"), ("theta", 1, "-q1", "q1")),
+    (table_cell.sign, ("a", 1, "-a1", "a1"), ("a", 1, "-a2", "a1")),
+    (table_cell.distance_left_out, ("d", 1, "0", "a1"), ("d", 1, "a2", "a1")),
+    (table_cell.distance_extra, ("d", 3, "d3 + a1", "d3"), ("a", 3, "a1", "a2")),
+    (table_cell.degrees_as_radians, ("alpha", 1, "90", "pi/2"), ("alpha", 1, "91", "pi/2")),
+    (table_cell.radians_as_degrees, ("alpha", 1, "pi*pi/360", "pi/2"), ("alpha", 1, "0", "pi/2")),
+    (table_cell.quarter_turn, ("theta", 1, "q1", "q1 + pi/2"), ("theta", 1, "q1 + pi", "q1")),
+    (table_cell.half_turn, ("theta", 1, "q1 + pi", "q1"), ("theta", 1, "q1 + pi/2", "q1")),
 ]
 
 

@@ -5,10 +5,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from service.grading.compare import Numbers
+from service.grading.comparison import Numbers
 from service.grading.diagnosis import dh_row
 from service.grading.diagnosis.dh_row import MISCONCEPTIONS, RowCase, explain_row, violated
-from service.grading.findings import Finding
+from service.grading.feedback import Finding
 from service.grading.samples import LANES
 from service.kinematics.dh import Convention, link_transforms
 from service.kinematics.transforms import Matrices, rot_x, rot_y, trans

@@ -7,10 +7,10 @@ import pytest
 
 from service.catalogue import Exercise
 from service.expressions import read
-from service.grading.diagnosis import entries
-from service.grading.diagnosis.entry import WrongEntry
-from service.grading.entries import AngleUnit
-from service.grading.findings import Finding
+from service.grading.diagnosis import matrix_entry
+from service.grading.diagnosis.formula_repair import WrongEntry
+from service.grading.feedback import Finding
+from service.grading.reading.entry import AngleUnit
 from service.grading.samples import LANES, draw
 
 Belief = Callable[[WrongEntry], Finding | None]
@@ -75,49 +75,49 @@ def wrong(make_exercise: Callable[[str], Exercise]) -> Case:
 
 
 EXPLAINED: list[tuple[Belief, str, str, str]] = [
-    (entries.sign, "-c12", "c12", ""),
-    (entries.sine_for_cosine, "s12", "c12", "It should be cos(q1 + q2)."),
-    (entries.sine_for_cosine, "-l1*c1", "-l1*s1", "It should be -l1*sin(q1)."),
-    (entries.sine_for_cosine, "c1*s2", "s1*c2", "It should be sin(q1)*cos(q2)."),
+    (matrix_entry.sign, "-c12", "c12", ""),
+    (matrix_entry.sine_for_cosine, "s12", "c12", "It should be cos(q1 + q2)."),
+    (matrix_entry.sine_for_cosine, "-l1*c1", "-l1*s1", "It should be -l1*sin(q1)."),
+    (matrix_entry.sine_for_cosine, "c1*s2", "s1*c2", "It should be sin(q1)*cos(q2)."),
     (
-        entries.sine_for_cosine,
+        matrix_entry.sine_for_cosine,
         "l1*c1 + l2*s12",
         "l1*c1 + l2*c12",
         "should be cos(q1 + q2).",
     ),
-    (entries.sine_for_cosine, "s12", "-c12", "It should be -cos(q1 + q2)."),
-    (entries.sum_of_cosines, "c1 + c2", "c12", "It should be cos(q1 + q2)."),
-    (entries.sum_of_cosines, "s1 + s2 + s3", "s123", "sin(q1 + q2 + q3)."),
-    (entries.sum_of_cosines, "c1 - c2", "cos(q1 - q2)", "It should be cos(q1 - q2)."),
-    (entries.sum_of_cosines, "-s1 - s2", "-s12", "It should be -sin(q1 + q2)."),
-    (entries.sum_of_cosines, "-c1 + c2", "-cos(q1 - q2)", "It should be -cos(q1 - q2)."),
-    (entries.sum_of_cosines, "-(s1 + s2)", "-s12", "It should be -sin(q1 + q2)."),
+    (matrix_entry.sine_for_cosine, "s12", "-c12", "It should be -cos(q1 + q2)."),
+    (matrix_entry.sum_of_cosines, "c1 + c2", "c12", "It should be cos(q1 + q2)."),
+    (matrix_entry.sum_of_cosines, "s1 + s2 + s3", "s123", "sin(q1 + q2 + q3)."),
+    (matrix_entry.sum_of_cosines, "c1 - c2", "cos(q1 - q2)", "It should be cos(q1 - q2)."),
+    (matrix_entry.sum_of_cosines, "-s1 - s2", "-s12", "It should be -sin(q1 + q2)."),
+    (matrix_entry.sum_of_cosines, "-c1 + c2", "-cos(q1 - q2)", "It should be -cos(q1 - q2)."),
+    (matrix_entry.sum_of_cosines, "-(s1 + s2)", "-s12", "It should be -sin(q1 + q2)."),
     (
-        entries.sum_of_cosines,
+        matrix_entry.sum_of_cosines,
         "l1*c1 + l2*c1 + l2*c2",
         "l1*c1 + l2*c12",
         "It should be l1*cos(q1) + l2*cos(q1 + q2).",
     ),
-    (entries.sum_of_cosines, "l1*c1 + l2*(c1 + c2)", "l1*c1 + l2*c12", "cos(q1 + q2)."),
-    (entries.sum_of_cosines, "c1*(c2 + c3)", "c1*c23", "cos(q1)*cos(q2 + q3)."),
-    (entries.product_for_sum_angle, "c1*c2", "c12", "It should be cos(q1 + q2)."),
-    (entries.product_for_sum_angle, "-s1 s2", "-s12", "It should be -sin(q1 + q2)."),
-    (entries.product_for_sum_angle, "c1 c2 c3", "c1 c23", "cos(q1)*cos(q2 + q3)."),
-    (entries.product_for_sum_angle, "c1 c2 c3", "c123", "cos(q1 + q2 + q3)."),
+    (matrix_entry.sum_of_cosines, "l1*c1 + l2*(c1 + c2)", "l1*c1 + l2*c12", "cos(q1 + q2)."),
+    (matrix_entry.sum_of_cosines, "c1*(c2 + c3)", "c1*c23", "cos(q1)*cos(q2 + q3)."),
+    (matrix_entry.product_for_sum_angle, "c1*c2", "c12", "It should be cos(q1 + q2)."),
+    (matrix_entry.product_for_sum_angle, "-s1 s2", "-s12", "It should be -sin(q1 + q2)."),
+    (matrix_entry.product_for_sum_angle, "c1 c2 c3", "c1 c23", "cos(q1)*cos(q2 + q3)."),
+    (matrix_entry.product_for_sum_angle, "c1 c2 c3", "c123", "cos(q1 + q2 + q3)."),
     (
-        entries.product_for_sum_angle,
+        matrix_entry.product_for_sum_angle,
         "l1 c1 + l2 c1 c2 + l3 c1 c2 c3",
         "l1 c1 + l2 c12 + l3 c123",
         "l2*cos(q1 + q2)",
     ),
-    (entries.relative_angle, "c2", "c12", "It should be cos(q1 + q2)."),
-    (entries.relative_angle, "l1*c1 + l2*c2 + l3*c3", "l1*c1 + l2*c12 + l3*c123", "l2*cos(q1"),
-    (entries.relative_angle, "c1*(l3*c3 + l2*c2)", "c1*(l3*c23 + l2*c2)", "l3*cos(q2"),
-    (entries.degrees_as_radians, "cos(90)*s1 + c1", "c1", "cos(90deg)"),
-    (entries.degrees_as_radians, "sin(q1 + 45)", "sin(q1 + pi/4)", "sin(q1 + 45deg)"),
-    (entries.term_sign, "l1*c1 - l2*c12", "l1*c1 + l2*c12", "l1*cos(q1) + l2*cos"),
-    (entries.term_sign, "l1*c1 + l2*c12", "-l1*c1 + l2*c12", "-l1*cos(q1) + l2*cos"),
-    (entries.term_sign, "c1*(l2*c2 - l3*c3)", "c1*(l2*c2 + l3*c3)", "l2*cos(q2) + l3*cos"),
+    (matrix_entry.relative_angle, "c2", "c12", "It should be cos(q1 + q2)."),
+    (matrix_entry.relative_angle, "l1*c1 + l2*c2 + l3*c3", "l1*c1 + l2*c12 + l3*c123", "l2*cos(q1"),
+    (matrix_entry.relative_angle, "c1*(l3*c3 + l2*c2)", "c1*(l3*c23 + l2*c2)", "l3*cos(q2"),
+    (matrix_entry.degrees_as_radians, "cos(90)*s1 + c1", "c1", "cos(90deg)"),
+    (matrix_entry.degrees_as_radians, "sin(q1 + 45)", "sin(q1 + pi/4)", "sin(q1 + 45deg)"),
+    (matrix_entry.term_sign, "l1*c1 - l2*c12", "l1*c1 + l2*c12", "l1*cos(q1) + l2*cos"),
+    (matrix_entry.term_sign, "l1*c1 + l2*c12", "-l1*c1 + l2*c12", "-l1*cos(q1) + l2*cos"),
+    (matrix_entry.term_sign, "c1*(l2*c2 - l3*c3)", "c1*(l2*c2 + l3*c3)", "l2*cos(q2) + l3*cos"),
 ]
 
 
@@ -130,32 +130,32 @@ def test_a_belief_explains_its_entry(
     assert finding is not None
     assert finding.code == belief.__name__
     assert correction in finding.correction
-    assert entries.diagnose(case) == finding
+    assert matrix_entry.diagnose(case) == finding
 
 
 def test_degrees_where_radians_were_meant(wrong: Case) -> None:
-    finding = entries.diagnose(wrong("cos(q1 + 1.5708)", "-s1", degrees=True))
+    finding = matrix_entry.diagnose(wrong("cos(q1 + 1.5708)", "-s1", degrees=True))
     assert finding.code == "radians_as_degrees"
 
 
 LEFT_ALONE: list[tuple[Belief, str, str]] = [
-    (entries.sign, "-c12", "s12"),
-    (entries.sine_for_cosine, "tan(q1)", "c1"),
-    (entries.sine_for_cosine, "s1", "c2"),
-    (entries.sine_for_cosine, "0", "1"),
-    (entries.sum_of_cosines, "c1 + s2", "c12"),
-    (entries.sum_of_cosines, "l1*c1 + l2*c2", "c12"),
-    (entries.sum_of_cosines, "c1 + c2", "c1 c2"),
-    (entries.product_for_sum_angle, "c1*s2", "c12"),
-    (entries.product_for_sum_angle, "c1*c2", "c1*s2"),
-    (entries.relative_angle, "c1", "c12"),
-    (entries.relative_angle, "c12", "c2"),
-    (entries.degrees_as_radians, "cos(90)", "1"),
-    (entries.degrees_as_radians, "cos(90deg)", "1"),
-    (entries.degrees_as_radians, "90*c1", "c1"),
-    (entries.radians_as_degrees, "cos(q1 + 1.5708)", "-s1"),
-    (entries.term_sign, "l1*c1 - l2*c12", "l1*s1 + l2*c12"),
-    (entries.term_sign, "l1 - l2", "l3"),
+    (matrix_entry.sign, "-c12", "s12"),
+    (matrix_entry.sine_for_cosine, "tan(q1)", "c1"),
+    (matrix_entry.sine_for_cosine, "s1", "c2"),
+    (matrix_entry.sine_for_cosine, "0", "1"),
+    (matrix_entry.sum_of_cosines, "c1 + s2", "c12"),
+    (matrix_entry.sum_of_cosines, "l1*c1 + l2*c2", "c12"),
+    (matrix_entry.sum_of_cosines, "c1 + c2", "c1 c2"),
+    (matrix_entry.product_for_sum_angle, "c1*s2", "c12"),
+    (matrix_entry.product_for_sum_angle, "c1*c2", "c1*s2"),
+    (matrix_entry.relative_angle, "c1", "c12"),
+    (matrix_entry.relative_angle, "c12", "c2"),
+    (matrix_entry.degrees_as_radians, "cos(90)", "1"),
+    (matrix_entry.degrees_as_radians, "cos(90deg)", "1"),
+    (matrix_entry.degrees_as_radians, "90*c1", "c1"),
+    (matrix_entry.radians_as_degrees, "cos(q1 + 1.5708)", "-s1"),
+    (matrix_entry.term_sign, "l1*c1 - l2*c12", "l1*s1 + l2*c12"),
+    (matrix_entry.term_sign, "l1 - l2", "l3"),
 ]
 
 
@@ -166,7 +166,7 @@ def test_a_belief_leaves_other_entries_alone(
     assert belief(wrong(written, expected)) is None
 
 
-@pytest.mark.parametrize("belief", entries.MISCONCEPTIONS)
+@pytest.mark.parametrize("belief", matrix_entry.MISCONCEPTIONS)
 def test_what_changes_nothing_explains_nothing(belief: Belief, wrong: Case) -> None:
     """An answer within rounding of the right one, but not allowed to be."""
     case = wrong("l1*c1*c2 + cos(0) + s1*s2/1000000", "l1*c1*c2 + cos(0)")
@@ -179,23 +179,23 @@ def test_what_changes_nothing_explains_nothing(belief: Belief, wrong: Case) -> N
     ["1/(q1 - q1) + c1 + c2", "sqrt(-1)*s1", "sqrt(-abs(q1)) + c1*c2", "10^400*c1", "asin(2 + c1)"],
 )
 def test_an_entry_without_a_value_is_not_taken_apart(written: str, wrong: Case) -> None:
-    finding = entries.diagnose(wrong(written, "c12"))
+    finding = matrix_entry.diagnose(wrong(written, "c12"))
     assert finding.code == "undefined"
 
 
 def test_a_repair_that_has_no_value_is_none(wrong: Case) -> None:
-    assert entries.diagnose(wrong("c1/(s2 + l1) + c2/c1", "c12")).code == "value"
+    assert matrix_entry.diagnose(wrong("c1/(s2 + l1) + c2/c1", "c12")).code == "value"
 
 
 def test_long_formulas_are_only_compared(wrong: Case) -> None:
     padding = "".join(f" + 0*c{i % 4 + 1}" for i in range(30))
-    assert entries.diagnose(wrong(f"s1{padding}", "c1")).code == "value"
-    assert entries.diagnose(wrong(f"-c1{padding}", "c1")).code == "sign"
+    assert matrix_entry.diagnose(wrong(f"s1{padding}", "c1")).code == "value"
+    assert matrix_entry.diagnose(wrong(f"-c1{padding}", "c1")).code == "sign"
     short = padding[: len(padding) // 4]
-    assert entries.diagnose(wrong(f"s1{short[: short.rindex('+')]}", "c1")).code != "value"
+    assert matrix_entry.diagnose(wrong(f"s1{short[: short.rindex('+')]}", "c1")).code != "value"
 
 
 def test_without_patience_a_formula_is_only_compared(wrong: Case) -> None:
     case = wrong("s1", "c1")
-    assert entries.diagnose(case, patient=False).code == "value"
-    assert entries.diagnose(wrong("-c1", "c1"), patient=False).code == "sign"
+    assert matrix_entry.diagnose(case, patient=False).code == "value"
+    assert matrix_entry.diagnose(wrong("-c1", "c1"), patient=False).code == "sign"

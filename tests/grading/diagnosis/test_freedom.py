@@ -7,8 +7,8 @@ import pytest
 
 from service.catalogue import Exercise, Robot, load_catalogue, shipped_folder
 from service.grading import Severity
-from service.grading.diagnosis.freedom import lost_freedom
-from service.grading.findings import Finding
+from service.grading.diagnosis.table_freedom import lost_freedom
+from service.grading.feedback import Finding
 from service.grading.samples import LANES, Samples, draw
 from service.kinematics.chain import ALPHA, A, D, Table
 from service.kinematics.dh import Convention

@@ -12,9 +12,9 @@ from sympy import Matrix
 
 from service.catalogue import Exercise
 from service.grading import FeedbackLevel, PartReport, Severity, Verdict
-from service.grading.diagnosis.matrices import explain
+from service.grading.diagnosis.link_products import as_entries
 from service.grading.diagnosis.matrix_case import Chain, MatrixCase
-from service.grading.diagnosis.products import as_entries
+from service.grading.diagnosis.whole_matrix import explain
 from service.kinematics.dh import Convention
 from tests.grading.robots import PLANAR_RRR, SCARA, STANFORD, Robot
 from tests.grading.submitting import codes, full_marks, graded_pose, handed_in, part

@@ -5,11 +5,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from service.grading.compare import Numbers
-from service.grading.diagnosis import positions
+from service.grading.comparison import Numbers
+from service.grading.diagnosis import position
 from service.grading.diagnosis.matrix_case import Chain
-from service.grading.diagnosis.positions import MISCONCEPTIONS, WrongPosition, explain_position
-from service.grading.findings import Finding
+from service.grading.diagnosis.position import MISCONCEPTIONS, WrongPosition, explain_position
+from service.grading.feedback import Finding
 from service.grading.samples import LANES
 from service.kinematics.dh import Convention
 
@@ -33,9 +33,9 @@ def case(written: Numbers) -> WrongPosition:
 
 Belief = Callable[[WrongPosition], Finding | None]
 PAIRS: list[tuple[Belief, Numbers, Numbers, str]] = [
-    (positions.exchanged_coordinates, TIP[::-1], TIP[::-1] + 0.1, "exchanged_coordinates"),
-    (positions.reversed_position, -TIP, TIP * [[1], [-1]], "reversed_position"),
-    (positions.other_pose, ELBOW, 2 * ELBOW, "wrong_frame"),
+    (position.exchanged_coordinates, TIP[::-1], TIP[::-1] + 0.1, "exchanged_coordinates"),
+    (position.reversed_position, -TIP, TIP * [[1], [-1]], "reversed_position"),
+    (position.other_pose, ELBOW, 2 * ELBOW, "wrong_frame"),
 ]
 
 

@@ -5,10 +5,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from service.grading.compare import Numbers
-from service.grading.diagnosis import screws
-from service.grading.diagnosis.screws import MISCONCEPTIONS, WrongScrew, explain_screw
-from service.grading.findings import Finding
+from service.grading.comparison import Numbers
+from service.grading.diagnosis import screw_axis
+from service.grading.diagnosis.screw_axis import MISCONCEPTIONS, WrongScrew, explain_screw
+from service.grading.feedback import Finding
 from service.grading.samples import LANES
 
 RNG = np.random.default_rng(9)
@@ -36,45 +36,50 @@ Belief = Callable[[WrongScrew], Finding | None]
 ELSEWHERE = axis(0, 0, 1, 0.2, LENGTH, 0)
 PAIRS: list[tuple[Belief, WrongScrew, WrongScrew, str]] = [
     (
-        screws.other_frame,
+        screw_axis.other_frame,
         case(ELSEWHERE, TURN, ELSEWHERE),
         case(axis(0, 0, 1, 0.3, 0, 0), TURN, ELSEWHERE),
         "body_for_space",
     ),
     (
-        screws.moment_sign,
+        screw_axis.moment_sign,
         case(axis(0, 0, 1, 0, LENGTH, PITCH), SCREW),
         case(axis(0, 0, 1, 0, LENGTH, -PITCH), SCREW),
         "moment_sign",
     ),
-    (screws.axis_reversed, case(-SCREW, SCREW), case(-SLIDE + 0.1, SLIDE), "axis_reversed"),
-    (screws.not_normalised, case(3 * TURN), case(axis(0, 0, 3, 0, -LENGTH, 0)), "not_normalised"),
+    (screw_axis.axis_reversed, case(-SCREW, SCREW), case(-SLIDE + 0.1, SLIDE), "axis_reversed"),
     (
-        screws.sliding_as_turning,
+        screw_axis.not_normalised,
+        case(3 * TURN),
+        case(axis(0, 0, 3, 0, -LENGTH, 0)),
+        "not_normalised",
+    ),
+    (
+        screw_axis.sliding_as_turning,
         case(axis(1, 0, 0, 0, 0, 0), SLIDE),
         case(axis(0, 1, 0, 0, 0, 0), SLIDE),
         "infinite_pitch",
     ),
     (
-        screws.turning_as_sliding,
+        screw_axis.turning_as_sliding,
         case(axis(0, 0, 0, 0, 0, 1)),
         case(axis(0, 0, 0, 0, 1, 0)),
         "infinite_pitch",
     ),
     (
-        screws.exchanged_halves,
+        screw_axis.exchanged_halves,
         case(axis(0, -LENGTH, 0, 0, 0, 1)),
         case(axis(0, LENGTH, 0, 0, 0, 1)),
         "exchanged_halves",
     ),
     (
-        screws.point_for_velocity,
+        screw_axis.point_for_velocity,
         case(axis(0, 0, 1, LENGTH, 0, 0.4)),
         case(axis(0, 0, 1, 0, LENGTH, 0)),
         "point_for_velocity",
     ),
     (
-        screws.pitch,
+        screw_axis.pitch,
         case(axis(0, 0, 1, 0, -LENGTH, 0), SCREW),
         case(axis(0, 0, 1, 0, LENGTH, 0), SCREW),
         "pitch",

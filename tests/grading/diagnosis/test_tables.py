@@ -11,8 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 from service.catalogue import Joint
-from service.grading.diagnosis import tables
-from service.grading.diagnosis.tables import (
+from service.grading.diagnosis import whole_table
+from service.grading.diagnosis.whole_table import (
     MISCONCEPTIONS,
     Misconception,
     WrittenTable,
@@ -101,25 +101,29 @@ def with_cell(table: Table, row: int, column: int, value: float) -> Table:
 
 Change = Callable[[Table], Table]
 PAIRS: list[tuple[Misconception, Change, Change]] = [
-    (tables.other_convention, in_modified_rows, lambda t: with_rows(t, 0, 1)),
+    (whole_table.other_convention, in_modified_rows, lambda t: with_rows(t, 0, 1)),
     (
-        tables.degrees_as_radians,
+        whole_table.degrees_as_radians,
         lambda t: with_angles(t, 180 / np.pi),
         lambda t: with_angles(t, 2.0),
     ),
     (
-        tables.radians_as_degrees,
+        whole_table.radians_as_degrees,
         lambda t: with_angles(t, np.pi / 180),
         lambda t: with_angles(t, 0.5),
     ),
-    (tables.link_columns_shifted, twists_too_late, lambda t: with_cell(t, 0, ALPHA, QUARTER)),
-    (tables.column_sign, lambda t: with_sign(t, ALPHA), lambda t: with_cell(t, 0, ALPHA, 0.3)),
+    (whole_table.link_columns_shifted, twists_too_late, lambda t: with_cell(t, 0, ALPHA, QUARTER)),
+    (whole_table.column_sign, lambda t: with_sign(t, ALPHA), lambda t: with_cell(t, 0, ALPHA, 0.3)),
     (
-        tables.columns_swapped,
+        whole_table.columns_swapped,
         lambda t: with_columns(t, A, D, 1),
         lambda t: with_cell(t, 1, A, 0.0),
     ),
-    (tables.row_order, lambda t: with_rows(t, 3, 4), lambda t: with_cell(t, 3, ALPHA, QUARTER)),
+    (
+        whole_table.row_order,
+        lambda t: with_rows(t, 3, 4),
+        lambda t: with_cell(t, 3, ALPHA, QUARTER),
+    ),
 ]
 IDS = [belief.__name__ for belief, _, _ in PAIRS]
 

@@ -1,0 +1,1 @@
+"""What was typed -> plain characters that know where they were typed."""

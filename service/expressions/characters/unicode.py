@@ -1,0 +1,91 @@
+"""Single characters: which plain one each stands for, and which only looks like one."""
+
+import re
+import unicodedata
+from typing import Final
+
+from service.expressions.characters import greek
+from service.expressions.unreadable import Cause
+
+# A fraction that stands as one, for a bar groups what it covers; and a raised star.
+# They lie in a private area, where nothing that a student types is read.
+OPEN: Final = "\ue000"
+CLOSE: Final = "\ue001"
+MARKER: Final = "\ue002"
+
+_OPERATORS: Final = {
+    **dict.fromkeys("×·⋅∙∗•⁎✕✖⨯⨉", "*"),
+    **dict.fromkeys("÷∕⁄", "/"),
+    **dict.fromkeys("−–—‐‑‒―˗", "-"),
+    **dict.fromkeys("º˚∘◦°", "°"),
+    "√": "√",
+    "ˆ": "^",
+    "ℓ": "l",
+}
+_SPELLINGS: Final = _OPERATORS | greek.VARIANTS
+SUPERSCRIPTS: Final = dict(
+    zip(
+        "⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻⁽⁾ᵃᵇᶜᵈᵉᶠᵍʰⁱʲᵏˡᵐⁿᵖʳˢᵗᵘᵛʷˣʸᶻ",
+        "0123456789+-()abcdefghijklmnprstuvwxyz",
+        strict=True,
+    )
+)
+SUBSCRIPTS: Final = dict(
+    zip("₀₁₂₃₄₅₆₇₈₉ₐₑₕᵢⱼₖₗₘₙₒₚᵣₛₜᵤᵥₓᵦᵧᵨᵩᵪ", "0123456789aehijklmnoprstuvxβγρφχ", strict=True)
+)
+LOOK_ALIKES: Final = dict(
+    zip(
+        "аеорсухіјѕԁԛӏһԝАВЕКМНОРСТХІЅЈΑΒΕΖΗΙΚΜΝΟΡΤΥΧοßɑ∝ɵѳӨөп",
+        "aeopcyxijsdqlhwABEKMHOPCTXISJABEZHIKMNOPTYXoβααθθθθπ",
+        strict=True,
+    )
+)
+# These have no category of invisible characters, and yet nothing to see.
+_BLANKS: Final = frozenset("\u115f\u1160\u2800\u3164\uffa0")
+_TRANSPOSES: Final = frozenset("′″‴’‘ʹ´`ᵀ⊤")
+_FRACTION: Final = re.compile("[0-9]⁄[0-9]+")
+
+
+def is_invisible(letter: str) -> bool:
+    """Tell whether `letter` shows nothing of its own: a control, a format or a joining mark."""
+    return letter in _BLANKS or unicodedata.category(letter) in {"Cf", "Cc", "Mn", "Me"}
+
+
+def plain(letter: str) -> str | None:
+    """Return the plain spelling of one character, or None where it has none."""
+    if " " <= letter <= "~" or letter in greek.NAMES:
+        return letter
+    if letter in _SPELLINGS:
+        return _SPELLINGS[letter]
+    if letter.isspace():
+        return " "
+    if letter in LOOK_ALIKES or letter in _TRANSPOSES or is_invisible(letter):
+        return None
+    return _compatible(letter)
+
+
+def _compatible(letter: str) -> str | None:
+    """Return what Unicode says that a rarer character is a form of, where that is plain."""
+    form = unicodedata.normalize("NFKC", letter)
+    if _FRACTION.fullmatch(form):
+        return f"{OPEN}{form.replace('⁄', '/')}{CLOSE}"
+    form = greek.VARIANTS.get(form, form)
+    is_styled = 0xFF01 <= ord(letter) <= 0xFF5E or 0x1D400 <= ord(letter) <= 0x1D7FF
+    return form if is_styled and (" " <= form <= "~" or form in greek.NAMES) else None
+
+
+def cause(letter: str) -> Cause:
+    """Return why a character without a plain spelling cannot be read."""
+    if letter in LOOK_ALIKES:
+        return "look_alike"
+    if letter in "±∓":
+        return "plus_minus"
+    if letter in _TRANSPOSES:
+        return "transpose"
+    if letter in "∛∜":
+        return "cube_root"
+    if letter == "∞":
+        return "not_finite"
+    if letter in "ᵒ⁰":
+        return "raised_zero"
+    return "invisible" if is_invisible(letter) else "character"

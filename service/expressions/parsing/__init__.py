@@ -1,0 +1,1 @@
+"""Plain characters -> tokens -> a syntax tree."""

@@ -1,0 +1,43 @@
+"""The brackets that are open while a text is read."""
+
+from typing import Final
+
+from service.expressions.characters.unicode import CLOSE, OPEN
+from service.expressions.errors import Span
+from service.expressions.limits import LIMITS
+from service.expressions.unreadable import UnreadableError
+
+PARTNERS: Final = {"(": ")", "[": "]", "{": "}", "|": "|", OPEN: CLOSE}
+# In place of a token: brackets around brackets, which mean nothing and become none.
+WRAPPING: Final = -1
+
+
+class Brackets:
+    """A stack of opening brackets, each with its place in the text as typed."""
+
+    __slots__ = ("opened",)
+
+    def __init__(self) -> None:
+        self.opened: list[tuple[str, Span, int]] = []
+
+    def open(self, bracket: str, span: Span, token: int) -> None:
+        """Open a bracket, the `token`-th token. Raises UnreadableError for one too many."""
+        if len(self.opened) >= LIMITS.depth:
+            raise UnreadableError("beyond", span, limit="depth")
+        self.opened.append((bracket, span, token))
+
+    def close(self, bracket: str, span: Span) -> int | None:
+        """Close the innermost bracket; return its token, or None where none is open.
+
+        Raises UnreadableError where it is of another kind.
+        """
+        if not self.opened:
+            return None
+        opener, place, token = self.opened.pop()
+        if PARTNERS[opener] != bracket:
+            raise UnreadableError("mismatch", span, opener=place, wanted=PARTNERS[opener])
+        return token
+
+    def in_bars(self) -> bool:
+        """Tell whether the innermost bracket is a bar, as in |x|."""
+        return bool(self.opened) and self.opened[-1][0] == "|"

@@ -1,0 +1,141 @@
+"""Where a student works in degrees: which bare numbers of a tree are degrees.
+
+An angle context is the argument of sin, cos and tan, and the whole of an entry that asks for an
+angle. There a constant term without π, a unit or an inverse function is in degrees; joint
+variables and angle symbols hold radians. `cos(q1 + 90)` becomes `cos(q1 + 90deg)`. The argument of
+sind, cosd and tand is such a context wherever a student works; they become sin, cos and tan.
+"""
+
+from typing import NamedTuple
+
+from service.expressions.errors import Note
+from service.expressions.tree import (
+    Binary,
+    Call,
+    Negation,
+    Node,
+    Number,
+    Pi,
+    Unit,
+    Variable,
+    children,
+)
+from service.expressions.vocabulary.functions import INVERSE, OF_DEGREES, TRIGONOMETRIC
+
+
+class _Facts(NamedTuple):
+    """What is written in a node: no symbol at all, an angle in radians, π that makes it one."""
+
+    constant: bool
+    angle: bool
+    pi: bool
+
+
+def in_degrees(tree: Node, *, is_angle: bool, notes: list[Note]) -> Node:
+    """Return `tree` with its bare constants in angle contexts given the unit of degrees.
+
+    `is_angle` tells whether the whole entry is an angle. A constant written with π stays in
+    radians and is added to `notes`.
+    """
+    conversion = _Conversion(tree, notes, TRIGONOMETRIC)
+    return conversion.angle(tree) if is_angle else conversion.plain(tree)
+
+
+def without_degree_functions(tree: Node, *, notes: list[Note]) -> Node:
+    """Return `tree` with cosd(60) as cos(60deg), for a student who works in radians."""
+    return _Conversion(tree, notes, frozenset()).plain(tree)
+
+
+class _Conversion:
+    """One conversion; what is written in each node is worked out once."""
+
+    def __init__(self, tree: Node, notes: list[Note], functions: frozenset[str]) -> None:
+        self.notes = notes
+        self.functions = functions
+        self.facts: dict[int, _Facts] = {}
+        self._survey(tree)
+
+    def _survey(self, node: Node) -> _Facts:
+        below = [self._survey(child) for child in children(node)]
+        facts = self.facts[id(node)] = _facts(node, below)
+        return facts
+
+    def plain(self, node: Node) -> Node:
+        """Convert the angle contexts inside `node`, which is not one itself."""
+        match node:
+            case Binary(operator, left, right):
+                return Binary(operator, self.plain(left), self.plain(right), node.start, node.end)
+            case Negation(operand):
+                return Negation(self.plain(operand), node.start, node.end)
+            case Unit(operand, unit):
+                return Unit(self.plain(operand), unit, node.start, node.end)
+            case Call(function, arguments):
+                takes_degrees = function in self.functions or function in OF_DEGREES
+                inside = self.angle if takes_degrees else self.plain
+                name = OF_DEGREES.get(function, function)
+                return Call(name, tuple(map(inside, arguments)), node.start, node.end)
+            case _:
+                return node
+
+    def angle(self, node: Node) -> Node:
+        """Convert `node`, which is an angle."""
+        match node:
+            case Negation(operand):
+                return Negation(self.angle(operand), node.start, node.end)
+            case Binary("+" | "-" as operator, left, right):
+                return Binary(operator, self.angle(left), self.angle(right), node.start, node.end)
+            case Call("abs", (argument,)):
+                return Call("abs", (self.angle(argument),), node.start, node.end)
+        if self.facts[id(node)].constant:
+            return self._constant(node)
+        match node:
+            case Binary("*", left, right):
+                return self._product(node, left, right)
+            case Binary("/", left, right):
+                return Binary("/", self.angle(left), self.plain(right), node.start, node.end)
+            case _:
+                return self.plain(node)
+
+    def _constant(self, node: Node) -> Node:
+        """Give a constant term its unit, unless it carries one."""
+        facts = self.facts[id(node)]
+        if facts.pi:
+            message = (
+                "This is written with π, so it was taken as radians although angles are in "
+                "degrees here."
+            )
+            self.notes.append(Note("radians_in_degrees", message, (node.start, node.end)))
+        if facts.angle or (type(node) is Number and node.value == 0):
+            return self.plain(node)
+        return Unit(self.plain(node), "deg", node.start, node.end)
+
+    def _product(self, node: Node, left: Node, right: Node) -> Node:
+        """Find the one factor that is the angle: 2*(q1 + 45), k*90."""
+        one, other = self.facts[id(left)], self.facts[id(right)]
+        angles = one.angle, other.angle
+        if angles == (False, False):
+            angles = (False, True) if other.constant else (one.constant, False)
+        first = self.angle(left) if angles == (True, False) else self.plain(left)
+        second = self.angle(right) if angles == (False, True) else self.plain(right)
+        return Binary("*", first, second, node.start, node.end)
+
+
+def _facts(node: Node, below: list[_Facts]) -> _Facts:
+    """Return what is written in `node`, given the same of its children."""
+    constant = all(facts.constant for facts in below)
+    angle = any(facts.angle for facts in below)
+    pi = any(facts.pi for facts in below)
+    match node:
+        case Pi():
+            return _Facts(constant, True, True)
+        case Unit():
+            return _Facts(constant, True, False)
+        case Variable(symbol):
+            return _Facts(False, symbol.kind == "angle", False)
+        case Call("abs"):
+            return _Facts(constant, angle, pi)
+        case Call(function):
+            # A sine is no angle, whatever it is of.
+            return _Facts(constant, function in INVERSE, False)
+        case _:
+            return _Facts(constant, angle, pi)

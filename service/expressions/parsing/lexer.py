@@ -1,0 +1,390 @@
+"""Plain characters -> tokens: numbers, names, operators, and the products that are not written."""
+
+import math
+import re
+from typing import Any, Final
+
+from service.expressions.characters.normalise import Characters, is_break
+from service.expressions.characters.unicode import CLOSE, MARKER, OPEN
+from service.expressions.errors import Note, Span
+from service.expressions.parsing.brackets import WRAPPING, Brackets
+from service.expressions.parsing.indices import INDEX, Indexed, indexed, is_family
+from service.expressions.parsing.joint_markers import is_marker
+from service.expressions.parsing.notes import Remarks
+from service.expressions.parsing.parser import END, Token
+from service.expressions.parsing.words import RUN, Piece, split
+from service.expressions.tree import Binary, Call, Node, Number, Pi, Variable
+from service.expressions.unreadable import UnreadableError
+from service.expressions.vocabulary.functions import IN_DEGREES, MODULES, UNIT_FUNCTIONS
+from service.expressions.vocabulary.symbols import Symbol, Vocabulary
+
+NUMBER: Final = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_TOKEN: Final = re.compile(
+    rf"\s*(?:({RUN})|({NUMBER})|(\*\*|\.[*/^]|[-+*/^(),°√\[\]{{}}|{OPEN}{CLOSE}{MARKER}])|(.))",
+    re.DOTALL,
+)
+_TERMINALS: Final = {
+    "+": "PLUS", "-": "MINUS", "*": "STAR", "/": "SLASH", "^": "POWER", "**": "POWER",
+    ".*": "STAR", "./": "SLASH", ".^": "POWER", ",": "COMMA",
+}  # fmt: skip
+_FUNCTION_POWER: Final = re.compile(r"\s*(?:\^|\*\*)\s*")
+_EXPONENT: Final = re.compile(
+    r"([0-9]+)(?![0-9.eE])|\(\s*([0-9]+)\s*\)|\{\s*([0-9]+)\s*\}|\[\s*([0-9]+)\s*\]"
+)
+_E_NAME: Final = re.compile(r"([eE])([+-]?)([0-9]+)$")
+_NUMERIC_FRACTION: Final = re.compile(rf"{OPEN}\{{?\s*[0-9]+\s*\}}?/\{{?\s*[0-9]+\s*\}}?{CLOSE}")
+# An operand can end with one of these, and begin with NUMBER, NAME, FUNCTION, ROOT, LEFT or OPEN.
+_OPERAND_ENDS: Final = frozenset({"NUMBER", "NAME", "RIGHT", "CLOSE", "UNIT"})
+_TIGHT_STARTS: Final = frozenset({"NAME", "LEFT", "OPEN"})
+
+
+def tokenise(
+    source: str, characters: Characters, vocabulary: Vocabulary, *, degrees: bool, notes: list[Note]
+) -> list[Token]:
+    """Return the tokens of `characters`, with END last. Raises UnreadableError."""
+    return _Lexer(source, characters, vocabulary, degrees, notes).run()
+
+
+class _Lexer:
+    """One pass over the characters."""
+
+    __slots__ = ("brackets", "breaks", "degrees", "ends", "fraction", "indices", "last", "remarks",
+                 "source", "starts", "text", "tokens", "vocabulary")  # fmt: skip
+
+    def __init__(
+        self,
+        source: str,
+        characters: Characters,
+        vocabulary: Vocabulary,
+        degrees: bool,
+        notes: list[Note],
+    ) -> None:
+        self.source = source
+        self.text = characters.text.rstrip().removesuffix(";").rstrip()
+        self.starts = characters.starts
+        self.ends = characters.ends
+        self.vocabulary = vocabulary
+        self.degrees = degrees
+        self.remarks = Remarks(source, vocabulary, notes)
+        self.tokens: list[Token] = []
+        self.last = ""
+        self.brackets = Brackets()
+        self.breaks = not source.isprintable()
+        # The last token where it ends a fraction of numbers right behind a function: sin ½q1.
+        self.fraction = -1
+        self.indices: list[tuple[Indexed, str, Span]] = []
+
+    def run(self) -> list[Token]:
+        text, match, position = self.text, _TOKEN.match, 0
+        in_place, length = self.starts is None, len(text)
+        while position < length:
+            found = match(text, position)
+            # The last alternative takes any character, so something is always found.
+            assert found is not None
+            group = found.lastindex or 0
+            start, position = found.span(group)
+            if group == 1:
+                position = self._word(found[1], start, position)
+            elif group == 3:
+                operator = found[3]
+                terminal = _TERMINALS.get(operator)
+                if terminal is None or (operator == "*" and self._is_joint()):
+                    self._operator(operator, start, position)
+                    continue
+                # Most operators mean one thing only, and most places are their own.
+                a, b = (start, position) if in_place else self._span(start, position)
+                self.tokens.append((terminal, a, a, b))
+                self.last = terminal
+            elif group == 2:
+                self._number(found[2], start, position)
+            else:
+                raise self._stray(found[4], self._span(start, position))
+        end = len(self.source)
+        self.tokens.append((END, None, end, end))
+        if self.indices:
+            self._check_indices()
+        return self.tokens
+
+    def _span(self, start: int, end: int) -> Span:
+        """Return the place in the text as typed of plain characters [start, end)."""
+        if self.starts is None or self.ends is None:
+            return start, end
+        return self.starts[start], self.ends[end - 1]
+
+    def _emit(self, terminal: str, value: Any, start: int, end: int) -> None:
+        self.tokens.append((terminal, value, start, end))
+        self.last = terminal
+
+    def _operand(self, terminal: str, value: Any, start: int, end: int) -> None:
+        """Emit what begins an operand, after the product that is not written, if any."""
+        if self.last in _OPERAND_ENDS:
+            tokens = self.tokens
+            before = tokens[-1]
+            if terminal == "NUMBER" or (self.breaks and is_break(self.source[before[3] : start])):
+                glued = before[0] == "NUMBER" and before[3] == start
+                raise UnreadableError("values", (before[2], end), number=glued)
+            tight = terminal in _TIGHT_STARTS and (
+                (self.last == "NUMBER" and len(tokens) > 1 and tokens[-2][0] == "FUNCTION")
+                or self.fraction == len(tokens) - 1
+            )
+            tokens.append(("TIGHT" if tight else "JOIN", None, start, start))
+        self.tokens.append((terminal, value, start, end))
+        self.last = terminal
+
+    # --- numbers
+
+    def _number(self, literal: str, start: int, end: int) -> None:
+        span = self._span(start, end)
+        value = float(literal)
+        if not math.isfinite(value):
+            raise UnreadableError("not_finite", span)
+        if "e" in literal or "E" in literal:
+            self._check_power_of_ten(literal, span)
+        self._operand("NUMBER", Number(value, literal, *span), *span)
+
+    def _check_power_of_ten(self, literal: str, span: Span) -> None:
+        """Refuse 2e1 where e1 is declared, and 2e-1 where e is."""
+        match = _E_NAME.search(literal)
+        assert match is not None
+        letter, sign, digits = match.groups()
+        if (letter if sign else letter + digits) in self.vocabulary.by_name:
+            product = f"{literal[: match.start()]}*{match.group()}"
+            raise UnreadableError("ambiguous_number", span, product=product)
+
+    # --- operators and brackets
+
+    def _operator(self, text: str, start: int, end: int) -> None:
+        span = self._span(start, end)
+        if text == "(":
+            self._open(text, span)
+        elif text == ")":
+            self._close(text, span)
+        elif text == "*" and self._is_marker(start, end):
+            self.remarks.marker(span)
+        elif text in _TERMINALS:
+            self._emit(_TERMINALS[text], span[0], *span)
+        elif text == "°":
+            self._emit("UNIT", ("deg", span[1]), *span)
+        elif text == "√":
+            self._operand("ROOT", span[0], *span)
+        else:
+            self._other(text, start, span)
+
+    def _other(self, text: str, start: int, span: Span) -> None:
+        """Read what is rarer: other brackets, bars, fractions and raised stars."""
+        if text == "[" and self.last in _OPERAND_ENDS:
+            index = INDEX.match(self.text, start)
+            if index is not None:
+                place = self._span(start, index.end())
+                raise UnreadableError("index", place, reason="no_stem", digits=index[1])
+        if text == "{" and self.last == "FUNCTION" and self._is_wrapped(start):
+            self.brackets.open(text, span, WRAPPING)
+        elif text in "[{":
+            self._open(text, span)
+        elif text in "]}":
+            self._close(text, span)
+        elif text == "|":
+            self._bar(span)
+        elif text == MARKER:
+            self._marker(span)
+        elif text == OPEN:
+            self._open_fraction(start, span)
+        else:
+            self._close_fraction(span)
+
+    def _close(self, bracket: str, span: Span) -> None:
+        if self.brackets.close(bracket, span) != WRAPPING:
+            self._emit("RIGHT", span[1], *span)
+
+    def _is_wrapped(self, start: int) -> bool:
+        r"""Tell whether braces hold nothing but round brackets: \sin{(q_1)}, as SymPy prints it."""
+        inner = start + 1
+        while self.text[inner : inner + 1].isspace():
+            inner += 1
+        depth = 0
+        for at in range(inner, len(self.text)):
+            depth += (self.text[at] == "(") - (self.text[at] == ")")
+            if depth == 0:
+                return at > inner and self.text[at + 1 :].lstrip().startswith("}")
+        return False
+
+    def _open(self, bracket: str, span: Span) -> None:
+        self.brackets.open(bracket, span, len(self.tokens))
+        self._operand("LEFT", span[0], *span)
+
+    def _bar(self, span: Span) -> None:
+        """Read |x|: a bar behind an operand closes, any other opens."""
+        if self.last in _OPERAND_ENDS and self.brackets.in_bars():
+            self.brackets.close("|", span)
+            self._emit("RIGHT", span[1], *span)
+        else:
+            self._operand("FUNCTION", ("abs", None, *span), *span)
+            self.brackets.open("|", span, len(self.tokens))
+            self._emit("LEFT", span[0], *span)
+
+    def _open_fraction(self, start: int, span: Span) -> None:
+        if self.last == "NUMBER" and (match := _NUMERIC_FRACTION.match(self.text, start)):
+            whole = self._span(start, match.end())
+            fraction = re.sub(rf"[{OPEN}{CLOSE}{{}}\s]", "", match.group())
+            raise UnreadableError("mixed_number", whole, fraction=fraction)
+        self._operand("OPEN", span[0], *span)
+        self.brackets.open(OPEN, span, len(self.tokens) - 1)
+
+    def _close_fraction(self, span: Span) -> None:
+        opener = self.brackets.close(CLOSE, span)
+        self._emit("CLOSE", span[1], *span)
+        if opener and self.tokens[opener - 1][0] == "FUNCTION":
+            inside = {token[0] for token in self.tokens[opener:]}
+            if inside <= {"OPEN", "CLOSE", "LEFT", "RIGHT", "NUMBER", "SLASH"}:
+                self.fraction = len(self.tokens) - 1
+
+    def _is_joint(self) -> bool:
+        value = self.tokens[-1][1] if self.last == "NAME" else None
+        return type(value) is Variable and value.symbol.joint is not None
+
+    def _is_marker(self, start: int, end: int) -> bool:
+        """Tell whether the * at `start` marks a joint variable, as tables print it."""
+        typed = self.source[slice(*self._span(start, end))]
+        return self._is_joint() and is_marker(self.text, start, end, typed)
+
+    def _marker(self, span: Span) -> None:
+        """Read a raised star, which marks a joint variable and nothing else."""
+        if not self._is_joint():
+            raise UnreadableError("character", span)
+        self.remarks.marker(span)
+
+    # --- words
+
+    def _word(self, run: str, start: int, end: int) -> int:
+        """Read a run of letters and digits; return where to go on."""
+        if run in MODULES and self.text[end : end + 1] == "." and self._letter(end + 1):
+            return self._after_module(end + 1)
+        pieces = split(run, self.vocabulary)
+        if pieces is None:
+            pieces, end = self._index(run, start, end)
+        for piece in pieces:
+            kind = piece.kind
+            a, b = self._span(start + piece.start, start + piece.end)
+            if kind == "symbol":
+                self._operand("NAME", Variable(piece.symbols[0], a, b), a, b)
+            elif kind == "shorthand":
+                self._shorthand(piece, piece is pieces[-1], start + piece.end, a, b)
+            elif kind == "function":
+                end = self._function(piece.word, start + piece.end, end, a, b)
+            elif kind == "pi":
+                self.remarks.pi(a, b)
+                self._operand("NAME", Pi(a, b), a, b)
+            elif kind == "number":
+                self._operand("NUMBER", Number(float(piece.word), piece.word, a, b), a, b)
+            elif kind == "unit":
+                self._unit(piece.word, start + piece.start, start + piece.end, a, b)
+            else:
+                raise UnreadableError("misfit", (a, b), joint=piece.joint)
+        return end
+
+    def _letter(self, at: int) -> bool:
+        return self.text[at : at + 1].isalpha()
+
+    def _after_module(self, at: int) -> int:
+        """Go on behind `np.`; behind it, radians(90) can only mean 90 degrees."""
+        if self.text.startswith("radians(", at):
+            end = at + len("radians")
+            a, b = self._span(at, end)
+            self._operand("FUNCTION", ("deg", None, a, b), a, b)
+            return end
+        return at
+
+    def _index(self, run: str, start: int, end: int) -> tuple[tuple[Piece, ...], int]:
+        """Read q[0], q(1) or q{1}; return the pieces and where to go on."""
+        found = indexed(run, self.text, end, self.vocabulary)
+        if found is None or (found.pieces is None and not is_family(run, self.vocabulary)):
+            raise self._unknown(run, start, end)
+        span = self._span(start, found.end)
+        last = found.pieces[-1] if found.pieces else None
+        if found.pieces is None or last is None or last.kind != "symbol":
+            reason = "unknown" if last is None else "shorthand"
+            raise UnreadableError(
+                "index", span, reason=reason, run=run, style=found.style, digits=found.digits
+            )
+        symbol = last.symbols[0]
+        stem = run[last.start :]
+        place = self._span(start + last.start, found.end)
+        self.indices.append((found, stem, place))
+        self.remarks.index(found.style, symbol, place)
+        stretched = Piece(last.kind, last.start, found.end - start, symbols=last.symbols)
+        return (*found.pieces[:-1], stretched), found.end
+
+    def _check_indices(self) -> None:
+        """Refuse q[0] beside q(1), and beside q1: together they have no one reading."""
+        for found, stem, span in self.indices:
+            if found.style != self.indices[0][0].style:
+                raise UnreadableError("index", span, reason="mixed")
+            if found.style == "[" and re.search(rf"{re.escape(stem)}_?[0-9]", self.text):
+                raise UnreadableError("index", span, reason="mixed")
+
+    def _shorthand(self, piece: Piece, last: bool, end: int, a: int, b: int) -> None:
+        total = _sum_of(piece.symbols, a, b)
+        if piece.loose:
+            goes_on = not last or self.text[end : end + 1] in {"(", "[", "{", ".", "°", "√", "^"}
+            if self.degrees or goes_on:
+                names = "+".join(symbol.name for symbol in piece.symbols)
+                raise UnreadableError(
+                    "ambiguous_shorthand", (a, b), function=piece.word, names=names
+                )
+        if piece.loose or self.source[a] in "CS":
+            self.remarks.shorthand(piece, a, b)
+        self._operand("NAME", Call(piece.word, (total,), a, b), a, b)
+
+    def _function(self, name: str, at: int, end: int, a: int, b: int) -> int:
+        """Emit a function with the power written on it; return where to go on."""
+        if name == "rad2deg" or (name in IN_DEGREES and not self.degrees):
+            raise UnreadableError("degrees", (a, b), name=name)
+        self.remarks.function(name, a, b)
+        name = IN_DEGREES.get(name, name)
+        power: int | None = None
+        raised = _FUNCTION_POWER.match(self.text, at) if at == end else None
+        if raised is not None:
+            exponent = _EXPONENT.match(self.text, raised.end())
+            if exponent is None or len(exponent[exponent.lastindex or 0]) > 4:
+                raise UnreadableError(
+                    "function_power",
+                    (a, self._span(at, raised.end())[1]),
+                    name=name,
+                    function=(a, b),
+                    exponent=self.text[raised.end() :],
+                )
+            power = int(exponent[exponent.lastindex or 0])
+            end = exponent.end()
+        self._operand("FUNCTION", (name, power, a, b), a, b)
+        return end
+
+    def _unit(self, unit: str, start: int, end: int, a: int, b: int) -> None:
+        opens = self.text[end : end + 1] == "("
+        if self.last in _OPERAND_ENDS and not opens:
+            self._emit("UNIT", (unit, b), a, b)
+        elif self.last not in _OPERAND_ENDS and opens and self.text[start:end] in UNIT_FUNCTIONS:
+            self._emit("FUNCTION", (unit, None, a, b), a, b)
+        else:
+            raise UnreadableError("ambiguous_unit", (a, b), opens=opens)
+
+    # --- what cannot be read
+
+    def _unknown(self, run: str, start: int, end: int) -> UnreadableError:
+        span = self._span(start, end)
+        if run.lower() in {"nan", "inf", "infinity"}:
+            return UnreadableError("not_finite", span)
+        called = self.text[end : end + 1] == "("
+        return UnreadableError("name", span, run=run, called=called, before=self.last)
+
+    def _stray(self, letter: str, span: Span) -> UnreadableError:
+        if letter == "'":
+            return UnreadableError("transpose", span)
+        return UnreadableError("values" if letter == ";" else "character", span, number=False)
+
+
+def _sum_of(symbols: tuple[Symbol, ...], a: int, b: int) -> Node:
+    total: Node = Variable(symbols[0], a, b)
+    if len(symbols) > 1:
+        for symbol in symbols[1:]:
+            total = Binary("+", total, Variable(symbol, a, b), a, b)
+    return total

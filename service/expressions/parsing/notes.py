@@ -1,0 +1,87 @@
+"""Notes on how single words were read, where another reader might not have read them so."""
+
+from typing import Final
+
+from service.expressions.errors import Note, Span
+from service.expressions.parsing.words import Piece
+from service.expressions.vocabulary.functions import (
+    CAPITALS,
+    IN_DEGREES,
+    OF_DEGREES,
+    PI_CAPITALS,
+)
+from service.expressions.vocabulary.symbols import Symbol, Vocabulary
+
+_INDEXING: Final = {
+    "[": "This was read as {name}, counting from 0 as Python does. If you count from 1, write the "
+    "index without brackets.",
+    "(": "This was read as {name}, counting from 1.",
+}
+
+
+class Remarks:
+    """Writes the notes of one text."""
+
+    __slots__ = ("notes", "source", "vocabulary")
+
+    def __init__(self, source: str, vocabulary: Vocabulary, notes: list[Note]) -> None:
+        self.source = source
+        self.vocabulary = vocabulary
+        self.notes = notes
+
+    def _add(self, code: str, message: str, span: Span) -> None:
+        self.notes.append(Note(code, message, span))
+
+    def marker(self, span: Span) -> None:
+        """Note a star that marks a joint variable."""
+        self._add(
+            "joint_marker",
+            "The * behind the joint variable was read as its marker, not as a product.",
+            span,
+        )
+
+    def index(self, style: str, symbol: Symbol, span: Span) -> None:
+        """Note how q[0] or q(1) was counted."""
+        code = "zero_based_index" if style == "[" else "one_based_index"
+        self._add(code, _INDEXING[style].format(name=symbol.name), span)
+
+    def shorthand(self, piece: Piece, a: int, b: int) -> None:
+        """Note a shorthand that may have been meant otherwise: sin12, C1."""
+        names = "+".join(symbol.name for symbol in piece.symbols)
+        if piece.loose or self.source[a] in "CS":
+            self._add("shorthand", f"This was read as {piece.word}({names}).", (a, b))
+
+    def pi(self, a: int, b: int) -> None:
+        """Note Pi and PI."""
+        if self.source[a:b] in PI_CAPITALS:
+            self._add("letter_case", "This was read as the number pi.", (a, b))
+
+    def function(self, name: str, a: int, b: int) -> None:
+        """Note a name in capitals, a function of degrees, and acos where a is a symbol."""
+        written = self.source[a:b]
+        if written in CAPITALS:
+            self._add("letter_case", f"This was read as the function {name}.", (a, b))
+        if name in OF_DEGREES:
+            self._add(
+                "degrees_function",
+                f"{name} takes degrees: bare numbers inside it were read as degrees, and an "
+                "angle symbol as the angle itself.",
+                (a, b),
+            )
+        if name in IN_DEGREES:
+            self._add(
+                "degrees_function",
+                f"{name} gives degrees; this was read as that angle.",
+                (a, b),
+            )
+        if (
+            written[0] == "a"
+            and name[1:] in {"sin", "cos", "tan"}
+            and "a" in self.vocabulary.by_name
+        ):
+            self._add(
+                "function_name",
+                f"This was read as the inverse function {name}, not as a times {name[1:]}; "
+                f"for the product write a*{name[1:]}.",
+                (a, b),
+            )

@@ -1,0 +1,258 @@
+"""What each rule of the grammar builds, and the notes on readings that others may not share.
+
+The methods carry the names that grammar.lark gives to its rules.
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+from service.expressions.errors import Note
+from service.expressions.tree import Binary, Call, Negation, Node, Number, Unit, Variable, children
+from service.expressions.unreadable import UnreadableError
+from service.expressions.vocabulary.functions import ARITY, INVERSE, OF_DEGREES
+
+FunctionToken = tuple[str, int | None, int, int]
+
+
+class Builder:
+    """Builds the tree of one text from the bottom up."""
+
+    __slots__ = ("barred", "degree_functions", "degrees", "grouped", "notes", "source")
+
+    def __init__(self, source: str, notes: list[Note], *, degrees: bool = False) -> None:
+        self.source = source
+        self.notes = notes
+        self.degrees = degrees
+        # By id: nodes inside brackets, and fractions that stand as one.
+        self.grouped: set[int] = set()
+        self.barred: set[int] = set()
+        self.degree_functions = False
+
+    def add(self, left: Node, _: int, right: Node) -> Node:
+        """Build left + right."""
+        self._note_degrees(left, right)
+        return Binary("+", left, right, left.start, right.end)
+
+    def subtract(self, left: Node, _: int, right: Node) -> Node:
+        """Build left - right."""
+        self._note_degrees(left, right)
+        return Binary("-", left, right, left.start, right.end)
+
+    def multiply(self, left: Node, _: int, right: Node) -> Node:
+        """Build left * right."""
+        return Binary("*", left, right, left.start, right.end)
+
+    def divide(self, left: Node, _: int, right: Node) -> Node:
+        """Build left / right, with a note on `sin q1/2`; nobody reads √2/2 in two ways."""
+        if not (
+            type(left) is Call and left.function == "sqrt" and type(left.arguments[0]) is Number
+        ):
+            self._note_bare(left)
+        return Binary("/", left, right, left.start, right.end)
+
+    def join(self, left: Node, _: None, right: Node) -> Node:
+        """Build a product that is not written, with a note on `1/2q1`."""
+        if type(left) is Binary and left.operator == "/" and self._is_open(left):
+            self._note(
+                "division_then_product",
+                f"This was read from left to right, as ({self._text(left)})*{self._text(right)}. "
+                "Add brackets if all of it belongs below the line.",
+                left.start,
+                right.end,
+            )
+        if type(right) is not Call:
+            self._note_bare(left)
+        return Binary("*", left, right, left.start, right.end)
+
+    def tight(self, left: Node, _: None, right: Node) -> Node:
+        """Build the product inside `sin 2q1`."""
+        if self.source[right.start] == "(":
+            self._note_argument(left.start, right.end)
+        return Binary("*", left, right, left.start, right.end)
+
+    def negate(self, sign: int, operand: Node) -> Node:
+        """Build -operand."""
+        return Negation(operand, sign, operand.end)
+
+    def keep(self, sign: int, operand: Node) -> Node:
+        """Build +operand, which is the operand."""
+        operand.start = sign
+        return operand
+
+    def raise_to(self, base: Node, caret: int, exponent: Node) -> Node:
+        """Build base ^ exponent; the 0 of 90^0 was rather meant as the sign of degrees."""
+        if type(exponent) is Number and not exponent.value and self._may_be_degrees(base):
+            raise UnreadableError("raised_zero", (caret, exponent.end), power=True)
+        return Binary("^", base, exponent, base.start, exponent.end)
+
+    def unit(self, operand: Node, unit: tuple[Any, int]) -> Node:
+        """Build an operand with a unit, which must be a number."""
+        name, end = unit
+        span = (operand.start, end)
+        for node in _outside_calls(operand):
+            if type(node) is Unit or (type(node) is Call and node.function in INVERSE):
+                raise UnreadableError("two_units", span)
+            if type(node) is Variable and node.symbol.kind != "number":
+                place = (node.start, node.end)
+                raise UnreadableError(
+                    "unit_on_variable", span, name=node.symbol.name, variable=place
+                )
+        return Unit(operand, name, *span)
+
+    def group(self, left: int, inner: Node, right: int) -> Node:
+        """Build (inner); the brackets count to its place only."""
+        inner.start, inner.end = left, right
+        self.grouped.add(id(inner))
+        return inner
+
+    def fraction(self, left: int, inner: Node, right: int) -> Node:
+        r"""Build ½ or \frac{a}{b}."""
+        inner.start, inner.end = left, right
+        self.barred.add(id(inner))
+        return inner
+
+    def tight_fraction(self, left: int, inner: Node, right: int, _: None, operand: Node) -> Node:
+        """Build the product inside `sin ½q1`."""
+        return self.tight(self.fraction(left, inner, right), None, operand)
+
+    def root(self, start: int, operand: Node) -> Node:
+        """Build √operand."""
+        return Call("sqrt", (operand,), start, operand.end)
+
+    def call(self, function: FunctionToken, _: int, arguments: list[Node], end: int) -> Node:
+        """Build a function of arguments in brackets."""
+        name, power, start, stop = function
+        wanted = ARITY.get(name, 1)
+        if len(arguments) != wanted:
+            raise UnreadableError(
+                "arguments", (start, end), name=name, function=(start, stop), wanted=wanted,
+                places=[(argument.start, argument.end) for argument in arguments],
+            )  # fmt: skip
+        if name == "deg" or name == "rad":
+            node = self.unit(arguments[0], (name, end))
+            node.start = start
+            return node
+        if name == "atan2":
+            self._note_order(arguments[0], arguments[1], start, end)
+        self.degree_functions = self.degree_functions or name in OF_DEGREES
+        return _powered(Call(name, tuple(arguments), start, end), power)
+
+    def bare_call(self, function: FunctionToken, argument: Node) -> Node:
+        """Build a function of one argument without brackets."""
+        name, power, start, stop = function
+        if ARITY.get(name, 1) != 1 or name == "deg" or name == "rad":
+            raise UnreadableError(
+                "arguments", (start, argument.end), name=name, function=(start, stop),
+                wanted=ARITY.get(name, 1), places=[(argument.start, argument.end)],
+            )  # fmt: skip
+        if type(argument) is Binary and (
+            argument.operator == "^" or (name == "sqrt" and id(argument) not in self.grouped)
+        ):
+            self._note_argument(argument.start, argument.end)
+        self.degree_functions = self.degree_functions or name in OF_DEGREES
+        return _powered(Call(name, (argument,), start, argument.end), power)
+
+    def first_argument(self, argument: Node) -> list[Node]:
+        """Build a list of one argument."""
+        return [argument]
+
+    def next_argument(self, arguments: list[Node], _: int, argument: Node) -> list[Node]:
+        """Build the list with one more argument."""
+        arguments.append(argument)
+        return arguments
+
+    def _may_be_degrees(self, base: Node) -> bool:
+        """Tell whether `base` is made of numbers alone, and is not the ten of 3*10^0."""
+        if type(base) is Number and base.literal == "10":
+            times = ("*", "×", "·", "⋅", r"\cdot", r"\times")
+            return not self.source[: base.start].rstrip().endswith(times)
+        return all(type(part) in {Number, Negation, Binary} for part in _outside_calls(base))
+
+    def _is_open(self, node: Node) -> bool:
+        """Tell whether `node` was written without brackets around it; a bar counts as brackets."""
+        return id(node) not in self.grouped and id(node) not in self.barred
+
+    def _note_degrees(self, left: Node, right: Node) -> None:
+        """Note 90 + 45°, where only one of the two is in degrees."""
+        for one, other in ((left, right), (right, left)):
+            number = other.operand if type(other) is Negation else other
+            if type(one) is not Unit or one.unit != "deg" or type(number) is not Number:
+                continue
+            if number.value and not self.degrees:
+                self._note(
+                    "mixed_units",
+                    f"Only one of these is in degrees: {self._text(number)} was read as radians.",
+                    number.start,
+                    number.end,
+                )
+
+    def _note_order(self, y: Node, x: Node, start: int, end: int) -> None:
+        """Note atan2(c1, s1) and atan2(x, y), which look as if they were swapped."""
+        first, second = _names(y), _names(x)
+        for ours, theirs in (("sin", "cos"), ("y", "x")):
+            if theirs in first and ours in second and not {ours} & first and not {theirs} & second:
+                self._note(
+                    "atan2_order",
+                    "atan2 takes y first: atan2(y, x), so atan2(sin, cos). "
+                    "These two look as if they were the other way round.",
+                    start,
+                    end,
+                )
+                return
+
+    def _text(self, node: Node) -> str:
+        return self.source[node.start : node.end]
+
+    def _note(self, code: str, message: str, start: int, end: int) -> None:
+        self.notes.append(Note(code, message, (start, end)))
+
+    def _note_argument(self, start: int, end: int) -> None:
+        self._note(
+            "bare_argument",
+            f"Without brackets, {self.source[start:end]} was read as the function's argument.",
+            start,
+            end,
+        )
+
+    def _note_bare(self, left: Node) -> None:
+        """Note where `left` ends in a function without brackets: sin q1/2 is (sin q1)/2."""
+        last = left
+        while type(last) is Binary and self._is_open(last) and last.right.end == last.end:
+            last = last.right
+        if type(last) is Binary and type(last.left) is Call:
+            last = last.left  # sin^2 q1 is a power of a call that ends where the power does
+        if type(last) is Call and last.start < last.arguments[-1].start < last.end:
+            argument = last.arguments[-1]
+            if last.end == argument.end and id(argument) not in self.grouped:
+                self._note_argument(argument.start, argument.end)
+
+
+def _outside_calls(node: Node) -> Iterator[Node]:
+    """Yield what makes up the value of `node` itself: the argument of a sine is not of its kind."""
+    pending = [node]
+    while pending:
+        part = pending.pop()
+        yield part
+        if type(part) is not Call or part.function == "abs":
+            pending.extend(reversed(children(part)))
+
+
+def _names(node: Node) -> set[str]:
+    """Return the functions called, and the stems of the symbols used, anywhere in `node`."""
+    found = set()
+    pending = [node]
+    while pending:
+        part = pending.pop()
+        if type(part) is Call:
+            found.add(part.function)
+        elif type(part) is Variable:
+            found.add(part.symbol.name.rstrip("0123456789_")[-1:])
+        pending.extend(children(part))
+    return found
+
+
+def _powered(call: Call, power: int | None) -> Node:
+    if power is None:
+        return call
+    exponent = Number(float(power), str(power), call.start, call.start)
+    return Binary("^", call, exponent, call.start, call.end)

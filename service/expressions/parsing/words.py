@@ -1,0 +1,179 @@
+"""A run of letters and digits -> the names, functions and units that it is made of.
+
+`l1c1` is l1·c1 and `2sinq1` is 2·sin(q1): the longest known name first, trying shorter ones only
+where the rest of the run would otherwise make no sense. A name never ends between two digits, so
+q12 is not q1·2.
+"""
+
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Final, Literal
+
+from service.expressions.characters import greek
+from service.expressions.vocabulary.functions import (
+    CAPITALS,
+    IN_DEGREES,
+    OF_DEGREES,
+    PI,
+    PI_CAPITALS,
+    SPELLINGS,
+    UNITS,
+)
+from service.expressions.vocabulary.symbols import Symbol, Vocabulary
+
+PieceKind = Literal["symbol", "pi", "function", "number", "unit", "shorthand", "misfit"]
+RUN: Final = rf"[A-Za-z{greek.CLASS}](?:_?[A-Za-z0-9{greek.CLASS}])*"
+
+_SHORTHAND: Final = re.compile(
+    r"(?P<function>cos|sin|[cCsS])(?P<angle>theta|th|θ|q)?(?P<index>[0-9]+)"
+)
+_SHORT: Final = {"c": "cos", "s": "sin", "C": "cos", "S": "sin"}
+_DIGITS: Final = re.compile(r"[0-9]+")
+_WORDS: Final[dict[str, tuple[PieceKind, str]]] = {
+    **{spelling: ("function", name) for spelling, name in CAPITALS.items()},
+    **dict.fromkeys(PI_CAPITALS, ("pi", "pi")),
+    **{spelling: ("function", name) for spelling, name in SPELLINGS.items()},
+    **{spelling: ("unit", name) for spelling, name in UNITS.items()},
+    **dict.fromkeys(PI, ("pi", "pi")),
+}
+# sind30 may be sin(d30) to one reader: these need a bracket or a space before their number.
+_APART: Final = frozenset({*OF_DEGREES, *IN_DEGREES})
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """One part of a run, `run[start:end]`.
+
+    `word` is the canonical function or unit, or the digits of a number. `symbols` holds the
+    symbol, or the joint angles that a shorthand adds up. `loose` marks a shorthand that might
+    have been meant otherwise: sin12. `joint` is the index that a misfit shorthand names.
+    """
+
+    kind: PieceKind
+    start: int
+    end: int
+    word: str = ""
+    symbols: tuple[Symbol, ...] = ()
+    loose: bool = False
+    joint: int = 0
+
+
+@lru_cache(maxsize=8192)
+def split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
+    """Return the pieces of `run` (characters in normal form), or None where it has no reading."""
+    # The longest reading wins, and none is longer than the whole run.
+    if (symbol := vocabulary.by_name.get(run)) is not None:
+        return (Piece("symbol", 0, len(run), symbols=(symbol,)),)
+    if (word := _WORDS.get(run)) is not None:
+        return (Piece(word[0], 0, len(run), word[1]),)
+    if "_" not in run:
+        short = _shorthand(run, 0, vocabulary) if run[0] in _SHORT else None
+        if short is not None and short.kind == "shorthand" and short.end == len(run):
+            return (short,)
+        return _split(run, vocabulary)
+    kept = [index for index, letter in enumerate(run) if letter != "_"]
+    pieces = _split(run.replace("_", ""), vocabulary)
+    return pieces and tuple(_stretch(piece, kept, run) for piece in pieces)
+
+
+def _stretch(piece: Piece, kept: list[int], run: str) -> Piece:
+    start, end = kept[piece.start], kept[piece.end - 1] + 1
+    loose = piece.loose and "_" not in run[start:end]
+    return Piece(piece.kind, start, end, piece.word, piece.symbols, loose, piece.joint)
+
+
+def _split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
+    """Split from the right, so that each position is settled once."""
+    rest: list[tuple[Piece, ...] | None] = [None] * len(run) + [()]
+    for start in range(len(run) - 1, -1, -1):
+        if run[start].isdigit():
+            continue
+        fallback: tuple[Piece, ...] | None = None
+        for pieces in _candidates(run, start, vocabulary):
+            tail = rest[pieces[-1].end]
+            if tail is None:
+                continue
+            if not any(piece.kind == "misfit" for piece in (*pieces, *tail)):
+                rest[start] = pieces + tail
+                break
+            fallback = fallback or pieces + tail
+        else:
+            rest[start] = fallback
+    return rest[0]
+
+
+def _candidates(run: str, start: int, vocabulary: Vocabulary) -> list[tuple[Piece, ...]]:
+    """Return what may begin at `start`, longest first, a declared symbol before the rest."""
+    shorthand = _shorthand(run, start, vocabulary) or _of_angle(run, start, vocabulary)
+    found: list[tuple[Piece, ...]] = [] if shorthand is None else [(shorthand,)]
+    for end in range(min(len(run), start + vocabulary.longest), start, -1):
+        word = run[start:end]
+        if end < len(run) and run[end].isdigit():
+            known = _WORDS.get(word)
+            digits = _DIGITS.match(run, end)
+            is_function = known and known[0] == "function" and known[1] not in _APART
+            if known and is_function and not run[end - 1].isdigit() and digits:
+                number = Piece("number", end, digits.end(), digits.group())
+                found.append((Piece("function", start, end, known[1]), number))
+            continue
+        symbol = vocabulary.by_name.get(word)
+        if symbol is not None:
+            found.append((Piece("symbol", start, end, symbols=(symbol,)),))
+        elif word in _WORDS:
+            kind, name = _WORDS[word]
+            found.append((Piece(kind, start, end, name),))
+    return sorted(found, key=lambda pieces: (-pieces[-1].end, pieces[0].kind != "symbol"))
+
+
+def _shorthand(run: str, start: int, vocabulary: Vocabulary) -> Piece | None:
+    """Return c12, s3, cθ1, cosθ12 or sin12 as cos or sin of a sum of joint angles."""
+    match = _SHORTHAND.match(run, start)
+    if match is None or not (vocabulary.turning or vocabulary.sliding):
+        return None
+    function, angle, index = match.group("function", "angle", "index")
+    spelled = len(function) > 1
+    if angle and (function in vocabulary.by_name or (spelled and len(index) == 1)):
+        # Plain reading first: c·θ1 where c is declared, and cos θ1 is a cosine anyhow.
+        return None
+    joints = _joints(index, vocabulary)
+    wrong = [joint for joint in joints if joint not in vocabulary.turning]
+    if wrong or len(set(joints)) < len(joints):
+        if spelled and not angle:
+            # cos45 on a three-joint arm is a number's cosine, not a shorthand gone wrong.
+            return None
+        joint = int(index[:4]) if 0 in wrong else (wrong or joints)[0]
+        return Piece("misfit", start, match.end(), match.group(), joint=joint)
+    return Piece(
+        "shorthand",
+        start,
+        match.end(),
+        _SHORT.get(function, function),
+        tuple(vocabulary.turning[joint] for joint in joints),
+        loose=spelled and not angle,
+    )
+
+
+def _of_angle(run: str, start: int, vocabulary: Vocabulary) -> Piece | None:
+    """Return cα1 or sβ as cos or sin of a declared angle."""
+    function = _SHORT.get(run[start])
+    if function is None or run[start] in vocabulary.by_name:
+        return None
+    first = start + 1
+    for end in range(min(len(run), first + vocabulary.longest), first, -1):
+        symbol = vocabulary.by_name.get(run[first:end])
+        goes_on = end < len(run) and run[end].isdigit()
+        if symbol is not None and symbol.kind == "angle" and not goes_on:
+            return Piece("shorthand", start, end, function, (symbol,))
+    return None
+
+
+def _joints(index: str, vocabulary: Vocabulary) -> tuple[int, ...]:
+    """Return the joints that `index` names: one digit each, or else one joint from 10 on."""
+    digits = tuple(map(int, index))
+    known = vocabulary.turning.keys() | vocabulary.sliding.keys()
+    if len(set(digits)) == len(digits) and known.issuperset(digits):
+        return digits
+    # Twelve rows are the most that a table has; a longer index is no single joint.
+    whole = int(index) if len(index) == 2 else -1
+    return (whole,) if whole in known else digits

@@ -1,0 +1,154 @@
+"""A tree -> presentation MathML, as typed and not rearranged."""
+
+import re
+from typing import Final
+from xml.sax.saxutils import escape
+
+from service.expressions.characters import greek
+from service.expressions.printing.latex import first_is_digit, is_power_of_ten
+from service.expressions.printing.symbol_names import stem_and_index
+from service.expressions.printing.text import ATOM, POWER, PRODUCT, level
+from service.expressions.tree import (
+    Binary,
+    Call,
+    Negation,
+    Node,
+    Number,
+    Operator,
+    Pi,
+    Unit,
+    Variable,
+)
+from service.expressions.vocabulary.symbols import Symbol
+
+_NAMES: Final = {"asin": "arcsin", "acos": "arccos", "atan": "arctan"}
+_OPERATORS: Final = {"+": "<mo>+</mo>", "-": "<mo>−</mo>"}
+# What a symbol's own LaTeX may be: a letter or a word, an index, and something raised.
+_WORD: Final = r"\\(?:mathrm|text|mathit|operatorname)\{([^{}]*)\}"
+_DRESSED: Final = re.compile(_WORD)
+_PART: Final = rf"(?:\\[A-Za-z]+|\{{(?:[^{{}}]|{_WORD})*\}}|[A-Za-z0-9*'])"
+_LATEX: Final = re.compile(
+    rf"(?P<base>{_WORD}|\\?[A-Za-z]+)(?:_(?P<below>{_PART}))?"
+    rf"(?:\^(?P<above>{_PART}))?(?:_(?P<below2>{_PART}))?"
+)
+_STARS: Final = {"*": "*", "ast": "*", "star": "⋆", "prime": "′", "'": "′", "circ": "°"}
+_INVISIBLE_TIMES: Final = "<mo>&#x2062;</mo>"
+_APPLY: Final = "<mo>&#x2061;</mo>"
+
+
+def to_mathml(node: Node) -> str:
+    """Return `node` as one <math> element."""
+    return f'<math xmlns="http://www.w3.org/1998/Math/MathML">{_row(node)}</math>'
+
+
+def _row(node: Node) -> str:
+    """Return `node` as one element."""
+    match node:
+        case Number(literal=literal):
+            return _number(literal)
+        case Pi():
+            return "<mi>π</mi>"
+        case Variable(symbol):
+            return _variable(symbol)
+        case Call(function, arguments):
+            return _call(function, [_row(argument) for argument in arguments])
+        case Unit(operand, "deg"):
+            return _mrow(f"{_at(operand, ATOM)}<mo>°</mo>")
+        case Unit(operand):
+            return _mrow(f"{_at(operand, ATOM)}<mspace width='0.2em'/><mi>rad</mi>")
+        case Negation(operand):
+            return _mrow(f"<mo>−</mo>{_at(operand, PRODUCT)}")
+        case Binary(operator, left, right):
+            return _binary(operator, left, right)
+
+
+def _binary(operator: Operator, left: Node, right: Node) -> str:
+    if operator == "^":
+        return f"<msup>{_at(left, ATOM)}{_row(right)}</msup>"
+    if operator == "/":
+        if isinstance(left, Negation):
+            # The sign of -π/2 stands before the bar, as it was typed.
+            return _mrow(f"<mo>−</mo><mfrac>{_row(left.operand)}{_row(right)}</mfrac>")
+        return f"<mfrac>{_row(left)}{_row(right)}</mfrac>"
+    if operator == "*":
+        times = "<mo>⋅</mo>" if first_is_digit(right) else _INVISIBLE_TIMES
+        first = _bracketed(left) if level(left) < PRODUCT else _row(left)
+        return _mrow(f"{first}{times}{_at(right, POWER)}")
+    return _mrow(f"{_row(left)}{_OPERATORS[operator]}{_at(right, PRODUCT)}")
+
+
+def _mrow(inside: str) -> str:
+    return f"<mrow>{inside}</mrow>"
+
+
+def _number(literal: str) -> str:
+    mantissa, _, exponent = literal.lower().partition("e")
+    if not exponent:
+        return f"<mn>{mantissa}</mn>"
+    power = f"<msup><mn>10</mn><mn>{int(exponent)}</mn></msup>"
+    return _mrow(f"<mn>{mantissa}</mn><mo>⋅</mo>{power}")
+
+
+def _variable(symbol: Symbol) -> str:
+    """Return a symbol as its LaTeX shows it: a letter with what stands below and above it."""
+    match = None if symbol.latex is None else _LATEX.fullmatch(symbol.latex)
+    if match is None:
+        stem, index = stem_and_index(symbol.name)
+        return _scripted(_identifier(stem), index, "")
+    below = match["below"] or match["below2"] or ""
+    return _scripted(_identifier(match["base"]), below, match["above"] or "")
+
+
+def _scripted(base: str, below: str, above: str) -> str:
+    parts = [base, *(_identifier(_unbraced(part)) for part in (below, above) if part)]
+    if len(parts) == 1:
+        return base
+    tag = "msubsup" if below and above else "msub" if below else "msup"
+    return f"<{tag}>{''.join(parts)}</{tag}>"
+
+
+def _unbraced(part: str) -> str:
+    return part[1:-1] if part.startswith("{") else part
+
+
+def _identifier(text: str) -> str:
+    """Return a letter, a word or an index, which LaTeX may have dressed in a command."""
+    dressed = _DRESSED.fullmatch(text)
+    plain = dressed[1] if dressed else text.removeprefix("\\")
+    plain = _STARS.get(plain, plain)
+    tag = "mn" if plain.isdigit() else "mo" if plain in _STARS.values() else "mi"
+    upright = " mathvariant='normal'" if dressed and len(plain) == 1 and tag == "mi" else ""
+    return f"<{tag}{upright}>{escape(greek.LETTERS.get(plain, plain))}</{tag}>"
+
+
+def _call(function: str, arguments: list[str]) -> str:
+    if function == "sqrt":
+        return f"<msqrt>{arguments[0]}</msqrt>"
+    if function == "abs":
+        return _mrow(f"<mo>|</mo>{arguments[0]}<mo>|</mo>")
+    inside = "<mo>,</mo>".join(arguments)
+    name = f"<mi>{_NAMES.get(function, function)}</mi>"
+    return _mrow(f"{name}{_APPLY}{_mrow(f'<mo>(</mo>{inside}<mo>)</mo>')}")
+
+
+def _at(node: Node, needed: int) -> str:
+    is_fraction = type(node) is Binary and node.operator == "/"
+    too_loose = needed == ATOM if is_fraction else level(node) < needed
+    unit_below_power = needed == ATOM and (type(node) is Unit or is_power_of_ten(node))
+    if too_loose or unit_below_power or _starts_signed(node):
+        return _bracketed(node)
+    return _row(node)
+
+
+def _bracketed(node: Node) -> str:
+    return _mrow(f"<mo>(</mo>{_row(node)}<mo>)</mo>")
+
+
+def _starts_signed(node: Node) -> bool:
+    match node:
+        case Negation():
+            return True
+        case Binary("+" | "-" | "*" | "/", left):
+            return _starts_signed(left)
+        case _:
+            return False

@@ -1,0 +1,1 @@
+"""The names that may stand in an answer: symbols and functions."""

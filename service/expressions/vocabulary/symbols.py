@@ -1,0 +1,112 @@
+"""The names that an expression may use."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Final, Literal
+
+from service.expressions.characters import greek
+from service.expressions.vocabulary.functions import RESERVED
+
+Kind = Literal["angle", "length", "number"]
+
+_CANONICAL: Final = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*")
+_NORMAL: Final = re.compile(rf"[A-Za-z{greek.CLASS}][A-Za-z0-9{greek.CLASS}]*")
+_SUBSCRIPT: Final = re.compile(r"_\{\s*([^{}]*?)\s*\}")
+_SUBSCRIPT_DIGITS: Final = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """A declared symbol.
+
+    `name` is its canonical ASCII name ("theta1", "l1"); an angle's values are radians. `aliases`
+    are its other names; Greek spellings and subscripts need no alias of their own. `joint` is the
+    joint's index where the symbol is a joint variable: an angle turns, a length slides. `latex`
+    overrides the LaTeX that the name suggests.
+    """
+
+    name: str
+    kind: Kind
+    aliases: tuple[str, ...] = ()
+    joint: int | None = None
+    latex: str | None = None
+
+
+def normal_form(name: str) -> str:
+    """Return `name` with subscripts lowered to plain digits: θ_1, θ₁ and θ_{1} -> θ1.
+
+    Greek letters stay letters; `Vocabulary` knows each name in both spellings.
+    """
+    plain = name.strip().replace("\\", "").translate(_SUBSCRIPT_DIGITS)
+    plain = _SUBSCRIPT.sub(r"\1", plain).replace("_", "")
+    return "".join(greek.VARIANTS.get(letter, letter) for letter in plain)
+
+
+def joint_variable(index: int, *, sliding: bool = False) -> Symbol:
+    """Return joint `index`'s variable under its usual names: theta1 or q1; d3 or q3 if sliding."""
+    if sliding:
+        return Symbol(f"d{index}", "length", (f"q{index}",), joint=index)
+    return Symbol(f"theta{index}", "angle", (f"q{index}",), joint=index)
+
+
+@lru_cache(maxsize=1024)
+def _one_of_equals(symbols: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
+    return symbols
+
+
+class Vocabulary:
+    """The declared symbols, looked up by any of their names. Immutable, equal by content.
+
+    Raises ValueError where two symbols answer to one name, two joint variables share an index, or
+    a name cannot be written in an expression.
+    """
+
+    __slots__ = ("_hash", "_same", "by_name", "longest", "sliding", "symbols", "turning")
+
+    def __init__(self, symbols: Sequence[Symbol]) -> None:
+        self.symbols: Final = tuple(symbols)
+        self.by_name: Final[dict[str, Symbol]] = {}
+        self.turning: Final[dict[int, Symbol]] = {}
+        self.sliding: Final[dict[int, Symbol]] = {}
+        for symbol in self.symbols:
+            self._declare(symbol)
+        self.longest: Final = max(map(len, (*self.by_name, *RESERVED)))
+        self._hash: Final = hash(self.symbols)
+        # Equal vocabularies have the same one, so that they need not be compared symbol by symbol:
+        # many exercises declare the same symbols, and each word of a text is looked up by them.
+        self._same: Final = _one_of_equals(self.symbols)
+
+    def _declare(self, symbol: Symbol) -> None:
+        if not _CANONICAL.fullmatch(symbol.name):
+            raise ValueError(f"the symbol name {symbol.name!r} is not a plain ASCII name")
+        for alias in (symbol.name, *symbol.aliases):
+            plain = normal_form(alias)
+            if not _NORMAL.fullmatch(plain):
+                raise ValueError(f"{alias!r} cannot be the name of a symbol")
+            for spelling in greek.spellings(plain):
+                if spelling in RESERVED:
+                    raise ValueError(f"{alias!r} already names a function, a unit or a constant")
+                other = self.by_name.setdefault(spelling, symbol)
+                if other is not symbol:
+                    raise ValueError(f"{alias!r} names both {other.name!r} and {symbol.name!r}")
+        if symbol.joint is not None:
+            if symbol.joint in self.turning or symbol.joint in self.sliding:
+                raise ValueError(f"joint {symbol.joint} has two joint variables")
+            (self.turning if symbol.kind == "angle" else self.sliding)[symbol.joint] = symbol
+
+    def lookup(self, name: str) -> Symbol | None:
+        """Return the symbol that answers to `name`, in any of its spellings."""
+        return self.by_name.get(normal_form(name))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Vocabulary) and (
+            self._same is other._same or self.symbols == other.symbols
+        )
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    def __repr__(self) -> str:
+        return f"Vocabulary({list(self.symbols)!r})"

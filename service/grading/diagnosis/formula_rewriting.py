@@ -1,0 +1,314 @@
+"""What a student's formula would be without one belief: pure functions from tree to tree.
+
+A tree is never changed. The new one shares every part that stays as it was, so that a tree that is
+returned as the same object is one that the rule has nothing to say to.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import combinations
+from operator import is_
+from typing import NamedTuple
+
+from service.expressions import Symbol
+from service.expressions.printing.text import to_text
+from service.expressions.tree import (
+    Binary,
+    Call,
+    Negation,
+    Node,
+    Unit,
+    Variable,
+    children,
+)
+
+Rule = Callable[[Node], Node]
+# A factor or term with the sign that it counts with.
+Signed = tuple[int, Node]
+
+EXCHANGED = {"sin": "cos", "cos": "sin"}
+
+
+def nodes(tree: Node) -> Iterator[Node]:
+    """All nodes of the tree, each before what it contains."""
+    pending = [tree]
+    while pending:
+        node = pending.pop()
+        yield node
+        pending.extend(reversed(children(node)))
+
+
+def is_wave(node: Node) -> bool:
+    """Whether the node is a sine or cosine."""
+    return isinstance(node, Call) and node.function in EXCHANGED
+
+
+def mapped(node: Node, change: Rule) -> Node:
+    """The node with ``change`` applied to each of its operands or arguments."""
+    if isinstance(node, Binary):
+        left, right = change(node.left), change(node.right)
+        if left is node.left and right is node.right:
+            return node
+        return Binary(node.operator, left, right, node.start, node.end)
+    if isinstance(node, Call):
+        arguments = tuple(map(change, node.arguments))
+        if all(map(is_, arguments, node.arguments)):
+            return node
+        return Call(node.function, arguments, node.start, node.end)
+    if isinstance(node, Negation | Unit):
+        operand = change(node.operand)
+        if operand is node.operand:
+            return node
+        if isinstance(node, Unit):
+            return Unit(operand, node.unit, node.start, node.end)
+        return Negation(operand, node.start, node.end)
+    return node
+
+
+def everywhere(tree: Node, rule: Rule) -> Node:
+    """The tree with ``rule`` applied to every node, the innermost first."""
+
+    def visit(node: Node) -> Node:
+        return rule(mapped(node, visit))
+
+    return visit(tree)
+
+
+def at_waves(tree: Node, rule: Rule) -> Node:
+    """The tree with ``rule`` applied to its sines and cosines, which are not looked into."""
+
+    def visit(node: Node) -> Node:
+        return rule(node) if is_wave(node) else mapped(node, visit)
+
+    return visit(tree)
+
+
+def one_place(node: Node, rule: Rule) -> Iterator[tuple[Node, Node]]:
+    """The trees with ``rule`` applied in one place, each with the node that stood there."""
+    changed = rule(node)
+    if changed is not node:
+        yield changed, node
+    for child in children(node):
+        for repaired, place in one_place(child, rule):
+            yield _with_child(node, child, repaired), place
+
+
+def _with_child(node: Node, child: Node, replacement: Node) -> Node:
+    return mapped(node, lambda other: replacement if other is child else other)
+
+
+def exchanged(node: Node) -> Node:
+    """Sine for cosine, and cosine for sine."""
+    if isinstance(node, Call) and node.function in EXCHANGED:
+        return Call(EXCHANGED[node.function], node.arguments, node.start, node.end)
+    return node
+
+
+def other_operator(node: Node) -> Node:
+    """Plus for minus, and minus for plus."""
+    if isinstance(node, Binary) and node.operator in ("+", "-"):
+        return Binary(
+            "-" if node.operator == "+" else "+", node.left, node.right, node.start, node.end
+        )
+    return node
+
+
+def first_term_negated(node: Node) -> Node:
+    """The first term of a sum with the other sign."""
+    if isinstance(node, Binary) and node.operator in ("+", "-") and not _is_sum(node.left):
+        left = _with_sign(-1, node.left)
+        return Binary(node.operator, left, node.right, node.start, node.end)
+    return node
+
+
+def without_degrees(node: Node) -> Node:
+    """A number in degrees as the same number in radians."""
+    return node.operand if isinstance(node, Unit) and node.unit == "deg" else node
+
+
+def summed_from(first: int, turning: Mapping[int, Symbol]) -> Rule:
+    """The sine or cosine of one joint angle as that of all from joint ``first`` up to it."""
+
+    def rule(node: Node) -> Node:
+        if not (isinstance(node, Call) and node.function in EXCHANGED):
+            return node
+        last = _joint_of(node.arguments[0])
+        if last is None or last <= first:
+            return node
+        angles = [Variable(turning[k]) for k in sorted(turning) if first <= k <= last]
+        total = joined([(1, angle) for angle in angles])
+        return Call(node.function, (total,), node.start, node.end)
+
+    return rule
+
+
+def _joint_of(node: Node) -> int | None:
+    """The turning joint whose angle the node is, nothing added to it."""
+    if isinstance(node, Variable) and node.symbol.kind == "angle":
+        return node.symbol.joint
+    return None
+
+
+class _Term(NamedTuple):
+    """A term of a sum: its sign, its factors but one, and that one where it is a sine or cosine."""
+
+    sign: int
+    factors: list[Node]
+    wave: Call | None
+
+
+def sums_merged(node: Node) -> Node:
+    """f(a) + f(b) as f(a + b), f being sine or cosine, with the same factors before both."""
+    if not _is_sum(node):
+        return mapped(node, sums_merged)
+    terms = [_split(sign, sums_merged(term)) for sign, term in terms_of(node)]
+    groups: dict[tuple[object, ...], list[_Term]] = {}
+    for i, term in enumerate(terms):
+        like = term.wave.function if term.wave else i
+        groups.setdefault((like, *sorted(map(to_text, term.factors))), []).append(term)
+    if len(groups) == len(terms):
+        return mapped(node, sums_merged)
+    return joined([_merged_term(group) for group in groups.values()])
+
+
+def _split(sign: int, term: Node) -> _Term:
+    inner, factors = factors_of(term)
+    last = next((factor for factor in reversed(factors) if is_wave(factor)), None)
+    if not isinstance(last, Call):
+        return _Term(sign * inner, factors, None)
+    return _Term(sign * inner, [factor for factor in factors if factor is not last], last)
+
+
+def _merged_term(group: list[_Term]) -> Signed:
+    sign, factors, wave = group[0]
+    if wave is None:
+        return sign, _product(factors)
+    angles = [(sign * term.sign, term.wave.arguments[0]) for term in group if term.wave]
+    return sign, _product([*factors, Call(wave.function, (joined(angles),))])
+
+
+def products_merged(tree: Node, joints: frozenset[int] | None = None) -> Node:
+    """f(a) f(b) as f(a + b), f being sine or cosine.
+
+    With ``joints`` only where a product holds f of just these joints' angles, and only those.
+    """
+
+    def visit(node: Node) -> Node:
+        if is_wave(node):
+            return node
+        if not (isinstance(node, Binary) and node.operator == "*"):
+            return mapped(node, visit)
+        sign, factors = factors_of(node)
+        factors = [visit(factor) for factor in factors]
+        merged = factors
+        for function in EXCHANGED:
+            merged = _merged_factors(merged, function, joints)
+        if len(merged) == len(factors):
+            return mapped(node, visit)
+        return _with_sign(sign, _product(merged))
+
+    return visit(tree)
+
+
+def _merged_factors(
+    factors: list[Node], function: str, joints: frozenset[int] | None
+) -> list[Node]:
+    chosen = [
+        factor
+        for factor in factors
+        if isinstance(factor, Call)
+        and factor.function == function
+        and (joints is None or _joint_of(factor.arguments[0]) in joints)
+    ]
+    if len(chosen) < (2 if joints is None else len(joints)):
+        return factors
+    angles = [(1, call.arguments[0]) for call in chosen]
+    merged = Call(function, (joined(angles),))
+    place = next(i for i, factor in enumerate(factors) if factor is chosen[0])
+    rest = [factor for factor in factors if not any(factor is call for call in chosen)]
+    return [*rest[:place], merged, *rest[place:]]
+
+
+def joints_multiplied(tree: Node, turning: Sequence[int]) -> list[frozenset[int]]:
+    """Runs of the ``turning`` joints whose sines, or cosines, are multiplied somewhere."""
+    found: dict[frozenset[int], None] = {}
+    for factors in _products(tree):
+        for function in EXCHANGED:
+            joints = {
+                _joint_of(factor.arguments[0])
+                for factor in factors
+                if isinstance(factor, Call) and factor.function == function
+            }
+            present = [joint in joints for joint in turning]
+            for i, j in combinations(range(len(turning) + 1), 2):
+                if j - i > 1 and all(present[i:j]):
+                    found[frozenset(turning[i:j])] = None
+    return list(found)
+
+
+def _products(tree: Node) -> Iterator[list[Node]]:
+    """The factors of each product that is not itself a factor of a product."""
+    pending = [tree]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, Binary) and node.operator == "*":
+            _, factors = factors_of(node)
+            yield factors
+            pending.extend(factors)
+        elif not is_wave(node):
+            pending.extend(children(node))
+
+
+def _is_sum(node: Node) -> bool:
+    return isinstance(node, Binary) and node.operator in ("+", "-")
+
+
+def terms_of(node: Node) -> list[Signed]:
+    """The terms of a sum with their signs; the node itself where it is no sum."""
+    if isinstance(node, Binary) and node.operator in ("+", "-"):
+        sign = 1 if node.operator == "+" else -1
+        right = [(sign * inner, term) for inner, term in terms_of(node.right)]
+        return [*terms_of(node.left), *right]
+    if isinstance(node, Negation):
+        return [(-sign, term) for sign, term in terms_of(node.operand)]
+    return [(1, node)]
+
+
+def factors_of(node: Node) -> tuple[int, list[Node]]:
+    """The factors of a product, and the sign that all their minus signs make."""
+    if isinstance(node, Binary) and node.operator == "*":
+        first, left = factors_of(node.left)
+        second, right = factors_of(node.right)
+        return first * second, [*left, *right]
+    if isinstance(node, Negation):
+        sign, factors = factors_of(node.operand)
+        return -sign, factors
+    return 1, [node]
+
+
+def joined(terms: list[Signed]) -> Node:
+    """The sum of the terms, at least one."""
+    (sign, first), *others = terms
+    total = _with_sign(sign, first)
+    for sign, term in others:
+        total = Binary("+" if sign > 0 else "-", total, term)
+    return total
+
+
+def _product(factors: list[Node]) -> Node:
+    first, *others = factors
+    for factor in others:
+        first = Binary("*", first, factor)
+    return first
+
+
+def _with_sign(sign: int, node: Node) -> Node:
+    return node if sign > 0 else negated(node)
+
+
+def negated(node: Node) -> Node:
+    """The node with the other sign, which in a product stands before the first factor."""
+    if isinstance(node, Negation):
+        return node.operand
+    if isinstance(node, Binary) and node.operator in ("*", "/"):
+        return Binary(node.operator, negated(node.left), node.right)
+    return Negation(node)

@@ -1,0 +1,135 @@
+"""The reference's constants, and the regrouping of rows that both conventions share."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import accumulate
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.catalogue import Exercise, ReferenceTable
+from service.grading.comparison import Numbers
+from service.grading.joint_motion import halves
+from service.grading.judging.own_frames.row_roles import variable_column
+from service.grading.samples import Samples
+from service.kinematics.chain import THETA, D, Table, frames, joint_frames, pose
+from service.kinematics.dh import Convention, standard_link
+from service.kinematics.factors import factors_of
+from service.kinematics.transforms import Matrices
+
+
+@dataclass(frozen=True, slots=True)
+class Mechanism:
+    """The reference's constants: to each joint from the one before, and beyond the last joint.
+
+    ``joints`` is ``(n, L, 4, 4)``; ``fixed`` are the frames of the fixed rows and ``tool`` that of
+    the end effector, ``(L, 4, 4)``, seen from the last joint's frame; L is half the lanes.
+    ``offsets`` ``(n, L, 4, 4)`` is what each joint's own d and θ do beside its variable. ``axes``
+    ``(n, L, 4, 4)`` are the joints' frames in the base frame, ``pose`` ``(lanes, 4, 4)`` is the end
+    effector's.
+    """
+
+    joints: Matrices
+    offsets: Matrices
+    fixed: list[Matrices]
+    tool: Matrices
+    axes: Matrices
+    pose: Matrices
+    samples: Samples
+    length_scale: float
+
+
+def mechanism_at(exercise: Exercise, samples: Samples) -> Mechanism:
+    """The mechanism that the exercise's reference describes, in any convention."""
+    return samples.once("mechanism", lambda: _mechanism(exercise, samples))
+
+
+def _mechanism(exercise: Exercise, samples: Samples) -> Mechanism:
+    robot = exercise.robot
+    reference = robot.tables[robot.convention]
+    moving = reference_values(reference, samples)
+    axes = start_frames(halves(moving)[0], reference.convention)[: len(reference.joints)]
+    values = moving.copy()
+    for i, joint in enumerate(reference.joints):
+        values[i, variable_column(joint)] -= samples.values[joint.variable]
+    cells = regrouped(halves(values)[0], reference.convention, 0.0)
+    links = standard_link(*cells.swapaxes(0, 1))
+    n = len(reference.joints)
+    zero = np.zeros_like(cells[1 : n + 1, D])
+    fixed = list(accumulate(links[n:], np.matmul))
+    return Mechanism(
+        joints=links[:n],
+        offsets=standard_link(zero, zero, cells[1 : n + 1, D], cells[1 : n + 1, THETA]),
+        fixed=fixed[:-1],
+        tool=fixed[-1],
+        axes=axes,
+        pose=pose(moving, reference.convention),
+        samples=samples,
+        length_scale=exercise.length_scale,
+    )
+
+
+def reference_values(reference: ReferenceTable, samples: Samples) -> Table:
+    """The reference's table in numbers, ``(rows, 4, lanes)``; it must not be written to."""
+    return samples.once(
+        reference.convention, lambda: reference.values(samples.values, samples.lanes)
+    )
+
+
+def reference_frames(exercise: Exercise, convention: Convention, samples: Samples) -> Matrices:
+    """The reference's frames on the joint axes and its tool's: ``(joints + 1, lanes, 4, 4)``.
+
+    They are the frames that a table of this convention has, whether the robot has one or not.
+    """
+    return samples.once(
+        ("frames", convention), lambda: _frames_on_axes(exercise, convention, samples)
+    )
+
+
+def tool_pose(exercise: Exercise, samples: Samples) -> Matrices:
+    """The reference's end-effector frame in the base frame, ``(lanes, 4, 4)``."""
+    pose: Matrices = reference_frames(exercise, exercise.robot.convention, samples)[-1]
+    return pose
+
+
+def _frames_on_axes(exercise: Exercise, convention: Convention, samples: Samples) -> Matrices:
+    robot = exercise.robot
+    own = robot.tables.get(convention)
+    joints = range(len(robot.joints))
+    if own is not None:
+        reached = frames(reference_values(own, samples), convention)
+        on_axes = joint_frames(reached, convention)[: len(joints)]
+        return np.concatenate([on_axes, reached[-1:]])
+    table = reference_values(robot.tables[robot.convention], samples)
+    factors = factors_of(table, robot.convention)
+    return np.concatenate([factors.joint_frames(list(joints), convention), factors.pose[None]])
+
+
+def start_frames(table: Table, convention: Convention) -> Matrices:
+    """The frames ``(rows, L, 4, 4)`` that each row's Z starts from; its z axis is the joint's."""
+    cells = regrouped(table, convention, 0.0)
+    links = standard_link(*cells.swapaxes(0, 1))
+    return np.array(list(accumulate(links[:-1], np.matmul)))
+
+
+def regrouped(cells: NDArray[Any], convention: Convention, fill: object) -> NDArray[Any]:
+    """Rows of a table as the products Z X that lead from each place to the next.
+
+    ``(rows, 4, ...)`` becomes ``(rows + 1, 4, ...)``; where the table has no cell stands ``fill``.
+    """
+    none = np.full((1, 2, *cells.shape[2:]), fill)
+    x, z = cells[:, :2], cells[:, 2:]
+    if convention is Convention.STANDARD:
+        x, z = np.concatenate([none, x]), np.concatenate([none, z])
+    else:
+        x, z = np.concatenate([x, none]), np.concatenate([none, z])
+    return np.concatenate([x, z], axis=1)
+
+
+def as_table(rows: Sequence[Numbers], convention: Convention) -> Table:
+    """The inverse of ``regrouped``."""
+    links = np.array(rows)
+    if convention is Convention.STANDARD:
+        return links[1:]
+    return np.concatenate([links[:-1, :2], links[1:, 2:]], axis=1)

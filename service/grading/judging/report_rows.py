@@ -1,0 +1,70 @@
+"""Report rows from entries and how each of them compares with what was expected."""
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.grading.comparison import Match
+from service.grading.feedback import ROUNDED, Finding
+from service.grading.part import Grading
+from service.grading.reading.entry import Entry
+from service.grading.report import CellReport, RowReport, Verdict, row_report
+
+_EXACT = int(Match.EXACT)
+
+# What is to be said of single entries, by row and column.
+Slips = Mapping[tuple[int, int], Finding]
+
+
+def entry_rows(
+    entries: Sequence[Sequence[Entry]],
+    found: NDArray[np.int_],
+    slips: Slips,
+    points: float,
+    grading: Grading,
+    *,
+    labels: Sequence[str] | None = None,
+    remarks: Mapping[int, Finding] | None = None,
+) -> tuple[RowReport, ...]:
+    """Rows of entries that share ``points``; ``found`` is the Match of each, ``(rows, columns)``.
+
+    Rows are labelled from "1" on unless ``labels`` says otherwise, columns from "1" on.
+    ``remarks`` is what is to be said of whole rows.
+    """
+    names = labels or [str(i + 1) for i in range(len(entries))]
+    return tuple(
+        row_report(
+            label,
+            points / len(entries),
+            tuple(
+                _cell(entry, (label, str(j + 1)), match, slips.get((i, j)), grading)
+                for j, (entry, match) in enumerate(zip(row, found[i].tolist(), strict=True))
+            ),
+            grading.show((remarks[i],), label) if remarks and i in remarks else (),
+        )
+        for i, (label, row) in enumerate(zip(names, entries, strict=True))
+    )
+
+
+@lru_cache(maxsize=64)
+def _right(column: str) -> CellReport:
+    """The report on an entry that is right and of which nothing is to be said: on most of them."""
+    return CellReport(column, Verdict.CORRECT)
+
+
+def _cell(
+    entry: Entry, place: tuple[str, str], match: int, slip: Finding | None, grading: Grading
+) -> CellReport:
+    """The report on an entry; of a wrong one without a slip of its own the part tells why."""
+    row, column = place
+    verdict, findings = entry.verdict, entry.findings
+    if match == _EXACT and not findings and entry.expression is not None:
+        return _right(column)
+    if match == Match.ROUNDED:
+        findings = (*findings, ROUNDED)
+    elif entry.expression is not None and match < Match.ROUNDED:
+        verdict = Verdict.INCORRECT
+        findings = (*findings, slip) if slip else findings
+    return CellReport(column, verdict, grading.show(findings, row, column))

@@ -1,0 +1,89 @@
+"""A list of single values, each of its own quantity, held against what was expected."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.expressions import Kind
+from service.grading.comparison import Numbers, matches
+from service.grading.diagnosis.angle import diagnose_angle
+from service.grading.diagnosis.formula_repair import WrongEntry
+from service.grading.diagnosis.matrix_entry import diagnose
+from service.grading.diagnosis.wrong_value import WrongValue
+from service.grading.feedback import Finding
+from service.grading.part import Grading
+from service.grading.reading.entry import Entry
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenValues:
+    """What was written and what was expected, ``(n, LANES)``.
+
+    ``texts`` is what would be right as formulas, each empty where it is not known as one.
+    """
+
+    entries: Sequence[Entry]
+    expected: Numbers
+    quantities: Sequence[Kind]
+    texts: Sequence[str]
+
+    def actual(self, grading: Grading) -> Numbers:
+        """The numbers that were written, ``(n, LANES)``; NaN where there are none."""
+        return grading.reader.numbers(self.entries, self.quantities)
+
+    def scales(self, grading: Grading) -> Numbers:
+        """What each value is measured against, ``(n,)``."""
+        lengths = [quantity == "length" for quantity in self.quantities]
+        return np.where(lengths, grading.exercise.length_scale, 1.0)
+
+    def matches(self, grading: Grading) -> NDArray[np.int_]:
+        """The Match of each value, ``(n,)``; angles modulo 2π."""
+        angle = np.array([quantity == "angle" for quantity in self.quantities])
+        return matches(
+            self.actual(grading),
+            self.expected,
+            self.scales(grading),
+            angle=angle[:, None],
+            rounded=[entry.may_be_rounded for entry in self.entries],
+        )
+
+
+def slips_of(
+    written: WrittenValues, wrong: NDArray[np.bool_], grading: Grading
+) -> dict[tuple[int, int], Finding]:
+    """What is to be said of each wrong value that could be read, at (its place, 0)."""
+    if not wrong.any():
+        return {}
+    actual, scales = written.actual(grading), written.scales(grading)
+    slips: dict[tuple[int, int], Finding] = {}
+    for i in np.flatnonzero(wrong).tolist():
+        expression = written.entries[i].expression
+        if expression is None:
+            continue
+        angle = written.quantities[i] == "angle"
+        value = WrongValue(
+            expression=expression,
+            actual=actual[i],
+            expected=written.expected[i],
+            expected_text=written.texts[i],
+            samples=grading.samples,
+            scale=float(scales[i]),
+            angle=angle,
+        )
+        slips[i, 0] = diagnose_angle(value) if angle else diagnose(_as_entry(value, grading))
+    return slips
+
+
+def _as_entry(value: WrongValue, grading: Grading) -> WrongEntry:
+    return WrongEntry(
+        expression=value.expression,
+        actual=value.actual,
+        expected=value.expected,
+        expected_text=value.expected_text,
+        samples=value.samples,
+        scale=value.scale,
+        angle=False,
+        turning=grading.exercise.vocabulary.turning,
+    )

@@ -1,0 +1,1 @@
+"""JSON or pasted text -> entries."""

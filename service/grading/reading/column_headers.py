@@ -1,0 +1,161 @@
+"""The headers of a pasted DH table: which parameter a column holds, and in which unit."""
+
+import re
+import unicodedata
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from service.expressions import Kind
+from service.grading.reading.entry import AngleUnit
+
+LABEL: Final = "label"
+ASIDE: Final = "aside"
+QUANTITIES: Final[Mapping[str, Kind]] = {
+    "a": "length", "alpha": "angle", "d": "length", "theta": "angle",
+}  # fmt: skip
+
+_LONGEST: Final = 60
+# What NFKC leaves alone, or makes of a sign.
+_SIGNS: Final = str.maketrans(
+    {"⍺": "α", "−": "-", "–": "-", "‐": "-", "‑": "-", "º": "°", "˚": "°"}
+)
+_STYLE: Final = re.compile(
+    r"\\(?:mathrm|mathbf|mathit|mathsf|text|textbf|textit|textrm|operatorname|boldsymbol|bm|rm|bf)"
+    r"(?![a-z])|\\[,;:! ]"
+)
+_CIRCLE: Final = re.compile(r"\^\s?\(?\s?\{?\s?(?:\\circ|∘|°|o)\s?\}?\)?(?![a-z])|\\degree|∘")
+_MARKER: Final = re.compile(r"\^\s?\{?\s?\*\s?\}?")
+_SHIFTED: Final = re.compile(r"(?<![a-z])([ijkn])\s?-\s?1(?!\d)|([a-z])([ijkn])\s?-\s?1(?!\d)")
+_WORD: Final = re.compile(r"[a-z]+~?|#|[^\sa-z#]")
+_GLUED: Final = re.compile(r"(a|r|d|q|th|alpha|theta)([ijkn]~?)")
+_INDEX: Final = re.compile(r"[ijkn]~?")
+_IGNORED: Final = frozenset(".,:;()[]{}|'\"/?_")
+_DIGITS_OR_OPERATORS: Final = re.compile(r"[0-9+\-*/=^]")
+
+_ANGLE_UNITS: Final[Mapping[str, AngleUnit]] = {
+    **dict.fromkeys(("deg", "degs", "degree", "degrees", "°"), "degrees"),
+    **dict.fromkeys(("rad", "rads", "radian", "radians"), "radians"),
+}  # fmt: skip
+METRES: Final[Mapping[str, float]] = {
+    **dict.fromkeys(("m", "metre", "metres", "meter", "meters"), 1.0),
+    **dict.fromkeys(("dm",), 0.1),
+    **dict.fromkeys(("cm", "centimetre", "centimetres", "centimeter", "centimeters"), 0.01),
+    **dict.fromkeys(("mm", "millimetre", "millimetres", "millimeter", "millimeters"), 0.001),
+    **dict.fromkeys(("in", "inch", "inches"), 0.0254),
+    **dict.fromkeys(("ft", "foot", "feet"), 0.3048),
+}
+_UNIT_NAMES: Final = "|".join(sorted((*_ANGLE_UNITS, *METRES), key=len, reverse=True))
+_BRACKETED_UNIT: Final = re.compile(rf"[(\[]\s{{0,4}}(?:in\s)?({_UNIT_NAMES})\s{{0,4}}[)\]]")
+# "in" before the unit is a word; alone at the end it would be one unit too many.
+_TRAILING_UNIT: Final = re.compile(
+    rf"(?:[\s,;:/_]|(?<=[^a-z]))(?:in\s)?({_UNIT_NAMES})\s{{0,4}}$|(°)\s{{0,4}}$"
+)
+
+_LETTERS: Final[Mapping[str, str]] = {
+    "a": "a", "r": "a", "alpha": "alpha", "al": "alpha", "d": "d", "theta": "theta",
+    "th": "theta", "q": "theta",
+}  # fmt: skip
+_TERMS: Final[Mapping[str, str]] = {
+    "length": "a", "twist": "alpha", "offset": "d", "angle": "theta", "rotation": "theta",
+}  # fmt: skip
+_PLACES: Final = frozenset(
+    {"link", "joint", "row", "frame", "axis", "index", "no", "nr", "number", "name", "label", "#"}
+)
+_FILLERS: Final = frozenset({"of", "the", "about", "along", "parameter", "value", "in"})
+_ASIDE: Final = re.compile(
+    r"(?:joint )?(?:type|variables?|range|limits?)|comments?|notes?|remarks?|home(?: position)?"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Header:
+    """``column`` is a, alpha, d, theta, "label", or "aside" for what belongs to no DH table.
+
+    ``unit`` is as written, but in small letters. ``shifted`` tells that the index is one less than
+    the row's, as in a_{i-1}.
+    """
+
+    column: str
+    unit: str = ""
+    shifted: bool = False
+
+    @property
+    def angle_unit(self) -> AngleUnit | None:
+        """The unit of the angles below, where the header names one."""
+        return _ANGLE_UNITS.get(self.unit)
+
+    @property
+    def metres(self) -> float | None:
+        """How many metres the unit is, where the header names a unit of length."""
+        return METRES.get(self.unit)
+
+
+def read_header(text: str) -> Header | None:
+    r"""What a header cell says, in any of its spellings; None where that cannot be told.
+
+    ``a``, ``a_{i-1}``, ``α_i (deg)``, ``link length [mm]``, ``$\theta_i$``, ``joint``, ``#``.
+    """
+    if len(text) > _LONGEST:
+        return None
+    plain, unit = _plain(text)
+    if _ASIDE.fullmatch(plain):
+        return Header(ASIDE)
+    found: set[str] = set()
+    terms: set[str] = set()
+    indices: list[str] = []
+    places = False
+    for word in _WORD.findall(plain):
+        if glued := _GLUED.fullmatch(word):
+            found.add(_LETTERS[glued[1]])
+            indices.append(glued[2])
+        elif word in _LETTERS:
+            found.add(_LETTERS[word])
+        elif word in _TERMS:
+            terms.add(_TERMS[word])
+        elif _INDEX.fullmatch(word):
+            indices.append(word)
+        elif word in _PLACES:
+            places = True
+        elif word not in _FILLERS and word not in _IGNORED:
+            return None
+    return _decided(found, terms, unit, indices, places=places)
+
+
+def _decided(
+    found: set[str], terms: set[str], unit: str, indices: list[str], *, places: bool
+) -> Header | None:
+    if "alpha" in found | terms:
+        # "twist angle" is one thing.
+        terms = terms - {"theta"}
+    if len(found | terms) == 1:
+        [column] = found | terms
+        return Header(column, unit, any(index.endswith("~") for index in indices))
+    if not found and not terms and (places or indices) and not unit:
+        return Header(LABEL)
+    return None
+
+
+def is_wordy(text: str) -> bool:
+    """Whether a cell might be a header: a word or a name, and no number or formula."""
+    plain, _ = _plain(text[:_LONGEST])
+    return bool(plain.strip()) and _DIGITS_OR_OPERATORS.search(plain) is None
+
+
+def _plain(text: str) -> tuple[str, str]:
+    """The header in small plain letters without its unit, and the unit; ``~`` stands for -1."""
+    plain = unicodedata.normalize("NFKC", text.translate(_SIGNS)).translate(_SIGNS).lower()
+    plain = _CIRCLE.sub("°", _MARKER.sub(" ", _STYLE.sub(" ", plain)))
+    plain = plain.replace("α", " alpha ").replace("θ", " theta ")
+    for mark in "\\$`*":
+        plain = plain.replace(mark, " ")
+    plain = plain.replace("{", "").replace("}", "")
+    unit = ""
+    if found := _BRACKETED_UNIT.search(plain):
+        plain, unit = plain[: found.start()] + " " + plain[found.end() :], found[1]
+    else:
+        plain = plain.replace("_", " ")
+        if trailing := _TRAILING_UNIT.search(plain.rstrip()):
+            plain, unit = plain[: trailing.start()], trailing[1] or trailing[2]
+    plain = " ".join(plain.replace("_", " ").split())
+    return _SHIFTED.sub(lambda match: "".join(filter(None, match.groups())) + "~", plain), unit

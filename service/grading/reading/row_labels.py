@@ -1,0 +1,75 @@
+"""The rows of a pasted table by their labels: 1, 2, 3 … and e for the end effector."""
+
+import re
+import unicodedata
+from collections.abc import Sequence
+from typing import Final
+
+from service.grading.feedback import Finding
+from service.grading.report import Severity
+from service.grids import Cell, GridError
+
+LAST: Final = 10_000
+_LONGEST: Final = 30
+_NUMBER: Final = re.compile(r"(?:(?:link|joint|row|frame|axis|no|[ijklnta#])[\s.]?)?(\d{1,2})\.?")
+_STEP: Final = re.compile(r"(\d{1,2})\s?(?:-|→|->|to)\s?(\d{1,2})")
+_END: Final = frozenset(
+    {"e", "ee", "tool", "tcp", "tip", "end", "effector", "end effector", "end-effector", "n+1"}
+)
+
+
+def label_place(text: str) -> int | None:
+    """Where a label puts its row: its number, or behind all numbers; None where it says nothing.
+
+    ``1``, ``Link 1``, ``J1``, ``{1}``, ``0→1``; ``e``, ``tool``, ``end effector``.
+    """
+    if len(text) > _LONGEST:
+        return None
+    plain = unicodedata.normalize("NFKC", text).lower()
+    for mark in "${}_\\()*`":
+        plain = plain.replace(mark, "")
+    plain = " ".join(plain.split())
+    if plain in _END:
+        return LAST
+    if step := _STEP.fullmatch(plain):
+        return int(step[2]) if int(step[2]) == int(step[1]) + 1 else None
+    number = _NUMBER.fullmatch(plain)
+    return int(number[1]) if number else None
+
+
+def is_label(text: str) -> bool:
+    """Whether a cell of a table without headers is the number of its row."""
+    return label_place(text) is not None
+
+
+def in_order(labels: Sequence[Cell]) -> tuple[list[int], tuple[Finding, ...]]:
+    """The rows' places in the order of their labels, and what is to be said about it.
+
+    Raises GridError where two rows have one label. Labels that say nothing leave the order alone.
+    """
+    typed = list(range(len(labels)))
+    places = [label_place(label.text) for label in labels]
+    known = [place for place in places if place is not None]
+    if len(known) < len(places):
+        if not any(label.text for label in labels):
+            return typed, ()
+        unknown = next(i for i in typed if places[i] is None)
+        message = "Not all rows have a number in front, so they were read in the order as pasted."
+        return typed, (_info("row_labels", message, labels[unknown]),)
+    if len(set(known)) < len(known):
+        again = next(i for i in typed if known[i] in known[:i])
+        raise GridError(
+            "duplicate_row",
+            f"Two rows are labelled {labels[again].text[:_LONGEST]}.",
+            labels[again].whole,
+        )
+    order = sorted(typed, key=known.__getitem__)
+    if order == typed:
+        return typed, ()
+    moved = next(i for i in typed if order[i] != i)
+    message = "The rows were put into the order of their labels."
+    return order, (_info("rows_reordered", message, labels[moved]),)
+
+
+def _info(code: str, message: str, cell: Cell) -> Finding:
+    return Finding(code, message, severity=Severity.INFO, span=cell.whole, reading=True)

@@ -1,0 +1,214 @@
+"""Reading a handed-in DH table, and finding out which of its rows is which."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.grading.feedback import Finding
+from service.grading.reading.column_headers import QUANTITIES
+from service.grading.reading.entry import MISSING, Entry, Reader, unreadable
+from service.grading.reading.pasted import entries_of, from_grid_error, read_pasted_table
+from service.grading.reading.table_json import canonical_table
+from service.grading.report import Severity
+from service.grids import GridError
+from service.kinematics.chain import COLUMNS, Table
+from service.kinematics.dh import Convention
+
+IS_ANGLE = np.array([QUANTITIES[column] == "angle" for column in COLUMNS])
+MAX_ROWS = 12
+
+CONVENTION_NAMES: Mapping[str, Convention] = {
+    "standard": Convention.STANDARD,
+    "distal": Convention.STANDARD,
+    "classic": Convention.STANDARD,
+    "modified": Convention.MODIFIED,
+    "proximal": Convention.MODIFIED,
+    "craig": Convention.MODIFIED,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class HandedInRow:
+    """One row as read: an entry for each of a, α, d, θ, and their numbers ``(4, LANES)``.
+
+    A number is NaN where a cell could not be read. Where ``values`` are what rounded angles stand
+    for, ``as_written`` are those that were written.
+    """
+
+    entries: tuple[Entry, ...]
+    values: Table
+    as_written: Table | None = None
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether the values are those that were written."""
+        return self.as_written is None
+
+    @property
+    def handed_in(self) -> Table:
+        """The numbers as they were handed in."""
+        return self.values if self.as_written is None else self.as_written
+
+    @property
+    def rounded(self) -> list[bool]:
+        """Which cells may be off by what rounding does."""
+        return [entry.may_be_rounded for entry in self.entries]
+
+    @property
+    def is_zero(self) -> bool:
+        """Whether the row moves nothing: all four cells are read and are 0."""
+        return not self.values.any()
+
+
+@dataclass(frozen=True, slots=True)
+class HandedInTable:
+    """A table as read. ``convention`` is what the answer itself says, if it says so."""
+
+    rows: tuple[HandedInRow, ...]
+    convention: Convention | None
+    findings: tuple[Finding, ...] = ()
+
+
+class UnreadableTableError(Exception):
+    """The answer is no table at all; ``finding`` says what it would have to look like."""
+
+    def __init__(self, finding: Finding) -> None:
+        super().__init__(finding.look)
+        self.finding = finding
+
+
+def read_table(answer: object, reader: Reader, length_unit: str | None = None) -> HandedInTable:
+    """The table in a JSON answer ``{"rows": [{"a", "alpha", "d", "theta"} …], "convention"?}``.
+
+    It may have other shapes that mean the same (``table_shapes``), and it, or its rows, may be
+    pasted text. ``length_unit`` is that of the exercise's lengths, for a pasted column that names
+    another.
+
+    Raises UnreadableTableError where the answer has no rows at all; a row or cell that cannot be
+    read costs only itself.
+    """
+    if isinstance(answer, str):
+        answer = {"rows": answer}
+    answer = canonical_table(answer)
+    if isinstance(answer, Mapping) and isinstance(answer.get("rows"), str):
+        return _pasted(answer["rows"], answer.get("convention"), reader, length_unit)
+    if not isinstance(answer, Mapping) or not isinstance(answer.get("rows"), list):
+        raise UnreadableTableError(
+            Finding(
+                "wrong_shape",
+                'A DH table is written {"rows": [{"a": …, "alpha": …, "d": …, "theta": …}, …]}.',
+                reading=True,
+            )
+        )
+    rows = answer["rows"]
+    if len(rows) > MAX_ROWS:
+        raise UnreadableTableError(_too_many_rows(len(rows)))
+    convention, findings = _convention(answer.get("convention"))
+    return _table([_entries(row, reader) for row in rows], convention, findings, reader)
+
+
+def _pasted(text: str, stated: object, reader: Reader, length_unit: str | None) -> HandedInTable:
+    convention, findings = _convention(stated)
+    if not text.strip():
+        return HandedInTable((), convention, findings)
+    try:
+        pasted = read_pasted_table(text, reader)
+    except GridError as error:
+        raise UnreadableTableError(from_grid_error(error)) from error
+    if len(pasted.rows) > MAX_ROWS:
+        raise UnreadableTableError(_too_many_rows(len(pasted.rows)))
+    entries = entries_of(pasted, reader, length_unit)
+    return _table(entries, convention, (*findings, *pasted.findings), reader)
+
+
+def _table(
+    read: list[tuple[Entry, ...]],
+    convention: Convention | None,
+    findings: tuple[Finding, ...],
+    reader: Reader,
+) -> HandedInTable:
+    if not read:
+        return HandedInTable((), convention, findings)
+    cells = [entry for entries in read for entry in entries]
+    numbers = reader.numbers(cells, (*QUANTITIES.values(),) * len(read))
+    values = numbers.reshape(len(read), len(COLUMNS), -1)
+    return HandedInTable(tuple(map(HandedInRow, read, values)), convention, findings)
+
+
+def _too_many_rows(found: int) -> Finding:
+    return Finding(
+        "too_many_rows", f"A table has at most {MAX_ROWS} rows; this one has {found}.", reading=True
+    )
+
+
+def _convention(stated: object) -> tuple[Convention | None, tuple[Finding, ...]]:
+    if stated is None:
+        return None, ()
+    name = stated.strip().lower() if isinstance(stated, str) else ""
+    if name in CONVENTION_NAMES:
+        return CONVENTION_NAMES[name], ()
+    unknown = Finding(
+        "unknown_convention",
+        'The convention is "standard" (distal) or "modified" (proximal); what is written was not '
+        "understood and is left aside.",
+        severity=Severity.WARNING,
+        reading=True,
+    )
+    return None, (unknown,)
+
+
+def _entries(row: object, reader: Reader) -> tuple[Entry, ...]:
+    if row is None:
+        return (MISSING,) * len(COLUMNS)
+    if not isinstance(row, Mapping):
+        return (unreadable(_NO_ROW),) * len(COLUMNS)
+    # A value under a name that is not understood must not pass for one that is not there.
+    stray = not row.keys() <= QUANTITIES.keys()
+    return tuple(
+        unreadable(_NO_ROW)
+        if stray and column not in row
+        else reader.read(row.get(column), QUANTITIES[column])
+        for column in COLUMNS
+    )
+
+
+_NO_ROW = Finding(
+    "wrong_shape", 'A row is written {"a": …, "alpha": …, "d": …, "theta": …}.', reading=True
+)
+
+
+def values_of(rows: Sequence[HandedInRow]) -> Table:
+    """The numbers of the rows, ``(rows, 4, LANES)``; NaN where a cell could not be read."""
+    return np.array([row.values for row in rows])
+
+
+def aligned(scores: NDArray[np.float64]) -> list[tuple[int | None, int | None]]:
+    """Pair handed-in rows with expected rows, in order, so that the scores add up to the most.
+
+    ``scores`` is ``(handed in, expected)``. A row without partner is paired with None: on the left
+    it is missing, on the right it is extra. Where nothing tells, the last rows stay unpaired.
+
+    The longest-common-subsequence recurrence with weights.
+    """
+    m, n = scores.shape
+    best = np.zeros((m + 1, n + 1))
+    for i in reversed(range(m)):
+        for j in reversed(range(n)):
+            best[i, j] = max(scores[i, j] + best[i + 1, j + 1], best[i + 1, j], best[i, j + 1])
+    pairs: list[tuple[int | None, int | None]] = []
+    i = j = 0
+    while i < m and j < n:
+        if best[i, j] == scores[i, j] + best[i + 1, j + 1]:
+            pairs.append((i, j))
+            i, j = i + 1, j + 1
+        elif best[i, j] == best[i, j + 1]:
+            pairs.append((None, j))
+            j += 1
+        else:
+            pairs.append((i, None))
+            i += 1
+    pairs.extend((k, None) for k in range(i, m))
+    pairs.extend((None, k) for k in range(j, n))
+    return pairs

@@ -1,0 +1,88 @@
+"""Elements with blanks between them, told apart as MATLAB does inside square brackets.
+
+A blank separates two operands. A sign with a blank before it and none behind it begins a new
+element: ``[c1 -s1]`` has two, ``[c1 - s1]`` and ``[c1 -  s1]`` one.
+"""
+
+import re
+from dataclasses import dataclass
+from typing import Final
+
+from service.expressions.vocabulary.functions import SPELLINGS
+from service.grids.limits import GRID_LIMITS
+from service.grids.pairs import pairs
+from service.grids.source_text import Traced
+
+_SIGNS: Final = "+-−–"
+_BINARY: Final = "*/^×·⋅∙∗•÷="
+_UNIT: Final = re.compile(r"(?:deg|degrees?|rad|radians?)(?![A-Za-z0-9])|[°º˚]", re.IGNORECASE)
+# A function's name alone is no element, so the blank behind it separates nothing.
+_FUNCTION: Final = re.compile(rf"(?<![A-Za-z])(?:{'|'.join(SPELLINGS)})(?:(?:\^|\*\*)\d+)?$")
+_LONGEST: Final = 16
+# Beyond what any row may have; the rest of the row is left in one piece.
+_MOST: Final = 2 * GRID_LIMITS.columns
+
+
+@dataclass(frozen=True, slots=True)
+class Blanked:
+    """The elements of one row; ``signs`` are those that a sign with no blank behind it began."""
+
+    elements: tuple[Traced, ...]
+    signs: tuple[Traced, ...]
+
+
+def split_blanks(row: Traced) -> Blanked:
+    """The elements of a row, by MATLAB's rule for blanks. What is in brackets stays together."""
+    words = _words(row.text)
+    elements: list[Traced] = []
+    signs: list[Traced] = []
+    if not words:
+        return Blanked((), ())
+    start, end = words[0]
+    for next_start, next_end in words[1:]:
+        left, right = row.text[max(start, end - _LONGEST) : end], row.text[next_start:next_end]
+        if len(elements) < _MOST and not goes_on(left, right):
+            elements.append(row.cut(start, end))
+            if right[0] in _SIGNS:
+                signs.append(row.cut(next_start, next_end))
+            start = next_start
+        end = next_end
+    elements.append(row.cut(start, end))
+    return Blanked(tuple(elements), tuple(signs))
+
+
+def goes_on(left: str, right: str) -> bool:
+    """Whether ``right``, behind a blank, belongs to the same element as ``left``."""
+    if left[-1] == "*" and left[-2:-1].strip(" \t\r\n.*"):
+        # d3* 0 is a marked joint variable and a zero, not a product.
+        return False
+    if left[-1] in _SIGNS or left[-1] in _BINARY:
+        return True
+    if right[0] in _SIGNS:
+        return len(right) == 1
+    if right[0] in _BINARY or (right[0] == "." and right[1:2] in {"*", "/", "^"}):
+        return True
+    if _UNIT.match(right):
+        return True
+    return _FUNCTION.search(left) is not None
+
+
+def _words(text: str) -> list[tuple[int, int]]:
+    """The [start, end) of what stands between blanks, blanks in brackets left aside."""
+    ends = pairs(text)
+    found: list[tuple[int, int]] = []
+    start: int | None = None
+    i = 0
+    while i < len(text):
+        if text[i].isspace():
+            if start is not None:
+                found.append((start, i))
+                start = None
+            i += 1
+            continue
+        if start is None:
+            start = i
+        i = ends.get(i, i + 1)
+    if start is not None:
+        found.append((start, len(text)))
+    return found

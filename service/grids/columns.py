@@ -1,0 +1,75 @@
+"""Columns with blanks between them: read where each line falls into the same number of values."""
+
+import itertools
+import re
+from typing import Final
+
+from service.expressions.errors import Note
+from service.grids.blanks import goes_on, split_blanks
+from service.grids.grid import Format, Grid, GridError, grid
+from service.grids.source_text import Traced
+
+_GAP: Final = re.compile(r"[^\S\r\n]{2,}")
+_DASHES: Final = frozenset("-=_─━═")
+
+
+def _matches(text: str) -> bool:
+    lines = [line.strip() for line in text.strip().splitlines()]
+    lines = [line for line in lines if line and not _is_rule(line)]
+    return len(lines) > 1 and all(any(c.isspace() for c in line) for line in lines)
+
+
+def _parse(source: Traced) -> Grid:
+    lines = [line.strip() for line in source.lines()]
+    lines = [line for line in lines if line.text and not _is_rule(line.text)]
+    wide = [_at_gaps(line) for line in lines]
+    narrow = [list(split_blanks(line).elements) for line in lines]
+    readings = [rows for rows in (wide, narrow) if _is_table(rows)]
+    if not readings:
+        raise _uneven(lines, narrow)
+    if len(readings) == 2 and list(map(len, wide)) != list(map(len, narrow)):
+        raise GridError(
+            "ambiguous_columns",
+            f"Each line may have {len(wide[0])} or {len(narrow[0])} values, for a blank may "
+            "separate two values or stand inside one. Put commas between the values.",
+            lines[0].whole,
+        )
+    return grid("columns", readings[0], source.whole, _notes(readings[0]))
+
+
+def _is_rule(line: str) -> bool:
+    return len(line) > 2 and set(line) - {" "} <= _DASHES
+
+
+def _at_gaps(line: Traced) -> list[Traced]:
+    """The pieces between two or more blanks; nothing where one of them is half a value."""
+    pieces: list[Traced] = []
+    start = 0
+    for gap in _GAP.finditer(line.text):
+        pieces.append(line.cut(start, gap.start()))
+        start = gap.end()
+    pieces.append(line.cut(start, len(line.text)))
+    halves = any(goes_on(left.text, right.text) for left, right in itertools.pairwise(pieces))
+    return [] if halves else pieces
+
+
+def _is_table(rows: list[list[Traced]]) -> bool:
+    return len({len(row) for row in rows}) == 1 and len(rows[0]) > 1
+
+
+def _notes(rows: list[list[Traced]]) -> tuple[Note, ...]:
+    message = f"Blanks were read as the ends of columns: {len(rows[0])} values in each line."
+    return (Note("blank_columns", message, rows[0][0].whole),)
+
+
+def _uneven(lines: list[Traced], rows: list[list[Traced]]) -> GridError:
+    at = next((i for i, row in enumerate(rows) if len(row) != len(rows[0])), 0)
+    return GridError(
+        "ambiguous_columns",
+        f"Only blanks separate the values, and so line 1 seems to have {len(rows[0])} of them but "
+        f"line {at + 1} {len(rows[at])}. Put commas between the values.",
+        lines[at].whole,
+    )
+
+
+FORMAT: Final = Format("columns", _matches, _parse)

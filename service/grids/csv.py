@@ -1,0 +1,25 @@
+"""Commas between cells. The comma of atan2(y, x) stands in brackets and separates nothing."""
+
+from typing import Final
+
+from service.grids.delimited import split_cells
+from service.grids.grid import Format, Grid, grid
+from service.grids.pairs import pairs
+from service.grids.source_text import Traced
+
+
+def _matches(text: str) -> bool:
+    ends = pairs(text)
+    i = 0
+    while i < len(text):
+        if text[i] == ",":
+            return True
+        i = ends.get(i, i + 1)
+    return False
+
+
+def _parse(source: Traced) -> Grid:
+    return grid("CSV", split_cells(source, ",", brackets=True), source.whole)
+
+
+FORMAT: Final = Format("CSV", _matches, _parse)

@@ -1,0 +1,64 @@
+"""What CSV, TSV and semicolon files share: lines, separators, quoted cells."""
+
+from service.grids.grid import GridError
+from service.grids.pairs import pairs
+from service.grids.source_text import Traced, joined
+
+_LINE_ENDS = "\r\n\x85\u2028\u2029"
+
+
+def split_cells(source: Traced, separator: str, *, brackets: bool) -> list[list[Traced]]:
+    """The cells of each line. With ``brackets`` a separator inside brackets separates nothing.
+
+    A cell that begins with " ends with the next single ", as spreadsheets write it. Raises
+    GridError where that is missing, or more stands behind it.
+    """
+    text = source.text
+    ends = pairs(text) if brackets else {}
+    rows: list[list[Traced]] = [[]]
+    i = 0
+    while True:
+        cell, i = _cell(source, i, separator, ends)
+        rows[-1].append(cell)
+        if i >= len(text):
+            return rows
+        if text[i] != separator:
+            rows.append([])
+        i += 1
+
+
+def _cell(source: Traced, start: int, separator: str, ends: dict[int, int]) -> tuple[Traced, int]:
+    """The cell that begins at ``start``, and the place of the separator or line end behind it."""
+    text = source.text
+    stops = separator + _LINE_ENDS
+    i = start
+    while i < len(text) and text[i].isspace() and text[i] not in stops:
+        i += 1
+    if text[i : i + 1] == '"':
+        return _quoted(source, i, stops)
+    while i < len(text) and text[i] not in stops:
+        i = ends.get(i, i + 1)
+    return source.cut(start, i), i
+
+
+def _quoted(source: Traced, start: int, stops: str) -> tuple[Traced, int]:
+    text = source.text
+    pieces: list[Traced] = []
+    i = start + 1
+    while True:
+        close = text.find('"', i)
+        if close < 0:
+            message = "The cell that begins with this quotation mark does not end."
+            raise GridError("unclosed_quote", message, source.span(start, start + 1))
+        if text[close + 1 : close + 2] != '"':
+            break
+        pieces.append(source.cut(i, close + 1))
+        i = close + 2
+    pieces.append(source.cut(i, close))
+    end = close + 1
+    while end < len(text) and text[end].isspace() and text[end] not in stops:
+        end += 1
+    if end < len(text) and text[end] not in stops:
+        message = 'After this quotation mark the cell should end; write "" for a mark inside it.'
+        raise GridError("stray_quote", message, source.span(close, close + 1))
+    return joined(pieces, source.span(start + 1)[0]), end

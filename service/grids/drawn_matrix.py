@@ -1,0 +1,25 @@
+"""Matrices drawn with pieces of brackets over several lines: refused, and told what to do."""
+
+from typing import Final
+
+from service.grids.grid import Format, Grid, GridError
+from service.grids.source_text import Traced
+
+_PIECES: Final = frozenset("⎡⎢⎣⎤⎥⎦⎛⎜⎝⎞⎟⎠⎧⎨⎩⎫⎬⎭")
+
+
+def _matches(text: str) -> bool:
+    return not _PIECES.isdisjoint(text)
+
+
+def _parse(source: Traced) -> Grid:
+    at = next(i for i, letter in enumerate(source.text) if letter in _PIECES)
+    raise GridError(
+        "drawn_matrix",
+        "This matrix is drawn with pieces of brackets, so powers and fractions stand on other "
+        "lines and cannot be read safely. Paste print(T) or latex(T) instead of pprint(T).",
+        source.span(at, at + 1),
+    )
+
+
+FORMAT: Final = Format("drawing", _matches, _parse)

@@ -1,0 +1,105 @@
+"""The one protocol of all formats: text in, a grid or one GridError out."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+from service.expressions.errors import Note, Span
+from service.grids.limits import GRID_LIMITS
+from service.grids.source_text import Traced
+
+Cell = Traced
+Rows = Sequence[Sequence[Cell]]
+
+
+class GridError(Exception):
+    """A text that is no grid. ``span`` is [from, to) in the text as pasted; ``code`` is stable."""
+
+    def __init__(self, code: str, message: str, span: Span) -> None:
+        super().__init__(code, message, span)
+        self.code = code
+        self.message = message
+        self.span = span
+
+    def __str__(self) -> str:
+        return self.message
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """Rows of cells, not always equally long. ``format`` is what the text was taken for."""
+
+    format: str
+    rows: tuple[tuple[Cell, ...], ...]
+    notes: tuple[Note, ...] = ()
+
+    @property
+    def size(self) -> str:
+        """The size in words: ``4 × 4``, or ``3 × 2 to 4`` where the rows differ."""
+        shortest, longest = min(map(len, self.rows)), max(map(len, self.rows))
+        columns = str(longest) if shortest == longest else f"{shortest} to {longest}"
+        return f"{len(self.rows)} × {columns}"
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """One way to write a grid.
+
+    ``matches`` tells at a glance whether a text means to be written so, and raises nothing;
+    ``parse`` then reads it and may raise GridError. Both take time linear in the text.
+    """
+
+    name: str
+    matches: Callable[[str], bool]
+    parse: Callable[[Traced], Grid]
+
+
+def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid:
+    """A grid of tidied cells, without rows and outer columns that are empty.
+
+    Raises GridError where nothing is left, or more than the limits allow.
+    """
+    tidied = [[tidy(cell) for cell in row] for row in rows]
+    filled = [row for row in tidied if any(cell.text for cell in row)]
+    if not filled:
+        raise GridError("empty", "No cell of this table or matrix holds anything.", whole)
+    filled = _without_empty_columns(filled)
+    if len(filled) > GRID_LIMITS.rows:
+        raise GridError(
+            "too_many_rows",
+            f"This has {len(filled)} rows; at most {GRID_LIMITS.rows - 1} and a header are read.",
+            whole,
+        )
+    widest = max(map(len, filled))
+    if widest > GRID_LIMITS.columns:
+        raise GridError(
+            "too_many_columns",
+            f"This has {widest} columns; at most {GRID_LIMITS.columns} are read.",
+            whole,
+        )
+    return Grid(name, tuple(map(tuple, filled)), tuple(notes))
+
+
+def tidy(cell: Cell) -> Cell:
+    """The cell without blanks around it and without the marks that only style it: $…$, `…`."""
+    cell = cell.strip()
+    for mark in ("`", "**"):
+        if len(cell.text) > 2 * len(mark) and cell.text.startswith(mark):
+            inner = cell.cut(len(mark), len(cell.text) - len(mark))
+            if cell.text.endswith(mark) and mark not in inner.text:
+                cell = inner.strip()
+    if "$" in cell.text and cell.text.count("$") % 2 == 0 and "\\$" not in cell.text:
+        # A blank in its place keeps $a$$b$ from becoming one name.
+        cell = Traced(cell.text.replace("$", " "), cell.starts, cell.ends, cell.at).strip()
+    if cell.text.startswith("\\(") and cell.text.endswith("\\)"):
+        cell = cell.cut(2, len(cell.text) - 2).strip()
+    return cell
+
+
+def _without_empty_columns(rows: list[list[Cell]]) -> list[list[Cell]]:
+    """The rows without cells at the right, and a column at the left, that are empty throughout."""
+    while all(row and not row[-1].text for row in rows if len(row) == max(map(len, rows))):
+        widest = max(map(len, rows))
+        rows = [row[:-1] if len(row) == widest else row for row in rows]
+    while len({len(row) for row in rows}) == 1 and not any(row[0].text for row in rows):
+        rows = [row[1:] for row in rows]
+    return rows

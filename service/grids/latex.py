@@ -1,0 +1,206 @@
+r"""LaTeX: tabular, array, bmatrix and their kin, or their rows alone (``a & b \\ c & d``)."""
+
+import re
+from typing import Final
+
+from service.grids.grid import Format, Grid, GridError, grid
+from service.grids.program_text import text_around
+from service.grids.source_text import Traced, joined
+
+# How many {…} stand behind \begin{…}.
+_ARGUMENTS: Final = {
+    "tabular": 1, "longtable": 1, "array": 1, "tabular*": 2, "tabularx": 2,
+    "matrix": 0, "bmatrix": 0, "pmatrix": 0, "Bmatrix": 0, "smallmatrix": 0, "bsmallmatrix": 0,
+    "psmallmatrix": 0, "matrix*": 0, "bmatrix*": 0, "pmatrix*": 0,
+}  # fmt: skip
+_BEGIN: Final = re.compile(r"\\(begin|end)[ \t]*\{([A-Za-z]{1,20}\*?)\}")
+_TOKEN: Final = re.compile(r"\\(?:[A-Za-z]+|.)|[{}&]", re.DOTALL)
+_ROW_ENDS: Final = frozenset({"\\\\", "\\tabularnewline", "\\cr"})
+_GAP: Final = re.compile(
+    r"\*?(?:\s{0,8}\[\s*[-+]?[0-9.]{1,8}\s*(?:pt|em|ex|mm|cm|in|\\[a-z]{1,20})\s*\])?"
+)
+_RULES: Final = re.compile(
+    r"\\(?:hline|toprule|midrule|bottomrule|hdashline|endhead|endfirsthead|endfoot|endlastfoot"
+    r"|cline|cmidrule|addlinespace|specialrule|noalign|rowcolor|displaystyle)(?![A-Za-z])"
+    r"(?:\s{0,8}(?:\([a-z]{0,4}\)|\[[^][{}]{0,20}\]|\{[^{}]{0,40}\})){0,3}"
+)
+# Sizes of brackets mean nothing, and are half of what SymPy's LaTeX consists of.
+_SIZES: Final = re.compile(r"\\(?:left|right|[bB]igg?[lr]?)\s{0,4}(?=[()\[\]])")
+_SPANNING: Final = frozenset({"\\multicolumn", "\\multirow"})
+_WRAPPERS: Final = (
+    re.compile(r"\s|[$,.]|&|\\[\\\[\](),;:!> ]|\\q?quad(?![A-Za-z])"),
+    re.compile(
+        r"\\(?:begin|end)\s?\{(?:equation|displaymath|math|align|aligned|gather|table|center"
+        r"|figure|document)\*?\}(?:\[[a-zA-Z!]{0,6}\])?"
+    ),
+    re.compile(r"\\(?:left|right|[bB]igg?[lr]?)?\s?\\?[\[\](){}.]|[\[\](){}]"),
+    re.compile(
+        r"\\(?:centering|displaystyle|small|footnotesize|scriptsize|normalsize|large|noindent"
+        r"|boxed|nonumber|notag)(?![A-Za-z])"
+    ),
+    re.compile(r"\\(?:caption|label|tag|vspace|hspace|setlength)\*?(?:\{[^{}]{0,200}\}){1,2}"),
+)
+
+
+def _matches(text: str) -> bool:
+    if any(found[2] in _ARGUMENTS or "matrix" in found[2] for found in _BEGIN.finditer(text)):
+        return True
+    return "\\\\" in text and "&" in text
+
+
+def _parse(source: Traced) -> Grid:
+    source = _without_comments(source)
+    body = _body(source)
+    rows = _rows(body)
+    if not any(cell.text.strip() for cell in rows[-1]):
+        rows.pop()
+    return grid("LaTeX", rows, source.whole)
+
+
+def _without_comments(source: Traced) -> Traced:
+    text = source.text
+    pieces: list[Traced] = []
+    start = i = 0
+    while i < len(text):
+        if text[i] == "\\":
+            i += 2
+        elif text[i] == "%":
+            pieces.append(source.cut(start, i))
+            line_end = text.find("\n", i)
+            start = i = len(text) if line_end < 0 else line_end
+        else:
+            i += 1
+    return joined([*pieces, source.cut(start, len(text))], source.whole[0])
+
+
+def _body(source: Traced) -> Traced:
+    """What stands inside the environment; the whole text where only its rows were pasted."""
+    text = source.text
+    marks = [mark for mark in _BEGIN.finditer(text) if mark[2] in _ARGUMENTS]
+    if not marks:
+        if other := next((mark for mark in _BEGIN.finditer(text) if "matrix" in mark[2]), None):
+            raise _not_a_matrix(source, other)
+        return source
+    first = marks[0]
+    if first[1] == "end":
+        message = f"This ends a {first[2]} that was never begun."
+        raise GridError("unbalanced_environment", message, source.span(*first.span()))
+    if len(marks) == 1:
+        message = f"This {first[2]} is never ended; \\end{{{first[2]}}} is missing."
+        raise GridError("unbalanced_environment", message, source.span(*first.span()))
+    last = marks[1]
+    if last[1] == "begin":
+        message = "One matrix or table inside another cannot be read."
+        raise GridError("nested_table", message, source.span(*last.span()))
+    if last[2] != first[2]:
+        message = f"This does not fit \\begin{{{first[2]}}}."
+        raise GridError("unbalanced_environment", message, source.span(*last.span()))
+    _check_in_front(source.cut(0, first.start()))
+    _check_wrapper(source.cut(last.end(), len(text)))
+    return source.cut(_behind_arguments(source, first), last.start())
+
+
+def _not_a_matrix(source: Traced, mark: re.Match[str]) -> GridError:
+    message = "This is a determinant or another form that is no plain matrix; use bmatrix."
+    return GridError("not_a_matrix", message, source.span(*mark.span()))
+
+
+def _check_in_front(front: Traced) -> None:
+    """Raise GridError for a factor before the matrix. The left side of an equation is its name."""
+    if _behind_wrappers(front.text) == len(front.text):
+        return
+    _check_wrapper(front.cut(front.text.rfind("=") + 1, len(front.text)))
+
+
+def _check_wrapper(around: Traced) -> None:
+    """Raise GridError where there is more around the matrix than what sets it on the page."""
+    end = _behind_wrappers(around.text)
+    if end < len(around.text):
+        raise text_around(around.cut(end, len(around.text)))
+
+
+def _behind_wrappers(text: str) -> int:
+    at = 0
+    while at < len(text):
+        found = next((match for token in _WRAPPERS if (match := token.match(text, at))), None)
+        if found is None:
+            break
+        at = found.end()
+    return at
+
+
+def _behind_arguments(source: Traced, begin: re.Match[str]) -> int:
+    text, at = source.text, begin.end()
+    wanted = _ARGUMENTS[begin[2]]
+    optional = wanted > 0 or begin[2].endswith("*")
+    while True:
+        following = at + len(text[at : at + 40]) - len(text[at : at + 40].lstrip())
+        if optional and text[following : following + 1] == "[":
+            optional = False
+            at = text.find("]", following) + 1 or following + 1
+        elif wanted and text[following : following + 1] == "{":
+            wanted -= 1
+            at = _behind_brace(source, following)
+        else:
+            return at
+
+
+def _behind_brace(source: Traced, start: int) -> int:
+    depth = 0
+    for i in range(start, len(source.text)):
+        depth += {"{": 1, "}": -1}.get(source.text[i], 0)
+        if depth == 0:
+            return i + 1
+    raise GridError("unbalanced_bracket", "This { is never closed.", source.span(start, start + 1))
+
+
+def _rows(body: Traced) -> list[list[Traced]]:
+    r"""The cells between & of the rows between \\; those in braces are left alone."""
+    text = body.text
+    rows: list[list[Traced]] = [[]]
+    pieces: list[Traced] = []
+    start = i = depth = 0
+
+    def end_cell(end: int) -> None:
+        cell = joined([*pieces, body.cut(start, end)], body.span(start)[0])
+        rows[-1].append(_without_sizes(cell))
+        pieces.clear()
+
+    while token := _TOKEN.search(text, i):
+        word, at, i = token[0], token.start(), token.end()
+        if word in "{}":
+            depth = max(0, depth + (1 if word == "{" else -1))
+        elif rule := _RULES.match(text, at):
+            pieces.append(body.cut(start, at))
+            start = i = rule.end()
+        elif word in _SPANNING:
+            raise GridError(
+                "spanning_cell",
+                f"A cell over several columns or rows ({word}) cannot be read; "
+                "write each value in a cell of its own.",
+                body.span(at, i),
+            )
+        elif depth == 0 and word == "&":
+            end_cell(at)
+            start = i
+        elif depth == 0 and word in _ROW_ENDS:
+            end_cell(at)
+            rows.append([])
+            gap = _GAP.match(text, i)
+            start = i = gap.end() if gap else i
+    end_cell(len(text))
+    return rows
+
+
+def _without_sizes(cell: Traced) -> Traced:
+    if "\\" not in cell.text:
+        return cell
+    pieces: list[Traced] = []
+    start = 0
+    for size in _SIZES.finditer(cell.text):
+        pieces.append(cell.cut(start, size.start()))
+        start = size.end()
+    return joined([*pieces, cell.cut(start, len(cell.text))], cell.at) if pieces else cell
+
+
+FORMAT: Final = Format("LaTeX", _matches, _parse)

@@ -1,0 +1,108 @@
+"""Lists of lists: Python's and NumPy's, SymPy's Matrix([[…]]), NumPy's print, JSON."""
+
+import re
+from typing import Final
+
+from service.grids.blanks import split_blanks
+from service.grids.grid import GridError
+from service.grids.limits import GRID_LIMITS
+from service.grids.pairs import CLOSES, split, strict_pairs
+from service.grids.program_text import Snippet
+from service.grids.source_text import Traced, joined
+
+_BETWEEN: Final = " \t\r\n,;"
+_ESCAPE: Final = re.compile(r"\\(?:u([0-9A-Fa-f]{4})|([\\\"'/]))")
+_COLUMN_MAKERS: Final = frozenset({"Matrix", "ImmutableMatrix", "MutableDenseMatrix"})
+
+
+def lines_of(content: Traced) -> list[Traced] | None:
+    """The contents of the brackets in ``content``, or None where it is no list of lists.
+
+    Raises GridError for unbalanced brackets, and more of them than a grid has rows.
+    """
+    ends = strict_pairs(content)
+    text = content.text
+    lines: list[Traced] = []
+    i = 0
+    while i < len(text):
+        if text[i] in CLOSES:
+            line = content.cut(i + 1, ends[i] - 1)
+            # (a + b), (c + d) are values in round brackets; (a, b), (c, d) are rows.
+            if text[i] == "(" and len(split(line, ",", strict_pairs(line))) == 1:
+                return None
+            if len(lines) > GRID_LIMITS.rows:
+                message = f"There are too many rows here; at most {GRID_LIMITS.rows} are read."
+                raise GridError("too_many_rows", message, content.whole)
+            lines.append(line)
+            i = ends[i]
+        elif text[i] in _BETWEEN:
+            i += 1
+        else:
+            return None
+    return lines or None
+
+
+def rows(lines: list[Traced]) -> list[list[Traced]]:
+    """The values of each line: between commas, or between blanks where it has no comma.
+
+    Raises GridError for a list of matrices.
+    """
+    found = []
+    for line in lines:
+        if line.text.lstrip()[:1] in {"[", "{"} and lines_of(line):
+            raise GridError(
+                "nested_too_deep",
+                "This is a list of matrices or tables; paste one of them.",
+                line.whole,
+            )
+        found.append(_values(line))
+    return found
+
+
+def flat(content: Traced, snippet: Snippet) -> list[list[Traced]]:
+    """One list given to a function: cut into rows where a shape is named.
+
+    SymPy makes a column of a plain list, NumPy a row. Raises GridError where the shape does not
+    fit.
+    """
+    values = _values(content)
+    if snippet.shape is None:
+        return [[value] for value in values] if snippet.maker in _COLUMN_MAKERS else [values]
+    height, width = snippet.shape
+    if height * width != len(values):
+        raise GridError(
+            "wrong_count",
+            f"A {height} × {width} matrix has {height * width} values; here are {len(values)}.",
+            content.whole,
+        )
+    return [values[i * width : (i + 1) * width] for i in range(height)]
+
+
+def _values(line: Traced) -> list[Traced]:
+    pieces = split(line, ",", strict_pairs(line))
+    if len(pieces) == 1:
+        # NumPy prints its arrays with blanks.
+        return list(split_blanks(line).elements)
+    if not pieces[-1].text.strip():
+        pieces.pop()
+    return pieces
+
+
+def unquoted(cell: Traced) -> Traced:
+    r"""The cell without the quotation marks of a string and the escapes in it.
+
+    Only escapes that cannot be the beginning of a LaTeX command are: "\theta" stays \theta, though
+    a program would read a tab in it.
+    """
+    quote = cell.text[:1]
+    if quote not in {"'", '"'} or len(cell.text) < 2 or not cell.text.endswith(quote):
+        return cell
+    inner = cell.cut(1, len(cell.text) - 1)
+    pieces: list[Traced] = []
+    start = 0
+    for escape in _ESCAPE.finditer(inner.text):
+        pieces.append(inner.cut(start, escape.start()))
+        letter = chr(int(escape[1], 16)) if escape[1] else escape[2]
+        pieces.append(inner.cut(escape.start(), escape.end()).spelled(letter))
+        start = escape.end()
+    return joined([*pieces, inner.cut(start, len(inner.text))], inner.whole[0])

@@ -1,0 +1,58 @@
+"""Tables with | between cells: Markdown, with or without its rule, and tables drawn with lines."""
+
+import re
+from typing import Final
+
+from service.grids.grid import Format, Grid, GridError, grid
+from service.grids.source_text import Traced
+
+_BARS: Final = "|│┃║"
+_BAR: Final = re.compile(rf"[{_BARS}]")
+_RULE: Final = re.compile(r"[\s|:+\-=_│┃║─━═┼╪╬┬┴├┤┌┐└┘╭╮╰╯┏┓┗┛┣┫┳┻╋╔╗╚╝╠╣╦╩╒╕╘╛╞╡╤╧╟╢┠┨┯┷]+")
+
+
+def _matches(text: str) -> bool:
+    lines = [line.strip() for line in text.strip().splitlines() if line.strip()]
+    barred = [line for line in lines if _BAR.search(line)]
+    return len(barred) > 1 or sum(text.count(bar) for bar in _BARS) > 2
+
+
+def _parse(source: Traced) -> Grid:
+    rows = []
+    for line in map(Traced.strip, source.lines()):
+        if not line.text or _is_rule(line.text):
+            continue
+        cells = _cells(line)
+        if len(cells) == 1:
+            raise GridError(
+                "text_around",
+                "This line of the table has no |; paste the table alone.",
+                line.whole,
+            )
+        rows.append(cells)
+    return grid("Markdown", rows, source.whole)
+
+
+def _is_rule(line: str) -> bool:
+    return _RULE.fullmatch(line) is not None and any(c in "-=_─━═" for c in line)
+
+
+def _cells(line: Traced) -> list[Traced]:
+    r"""The cells of a line; \| is a bar inside one."""
+    text = line.text
+    pieces: list[Traced] = []
+    start = 0
+    for bar in _BAR.finditer(text):
+        if text[bar.start() - 1 : bar.start()] == "\\":
+            continue
+        pieces.append(line.cut(start, bar.start()))
+        start = bar.end()
+    pieces.append(line.cut(start, len(text)))
+    if len(pieces) > 1 and not pieces[0].text:
+        pieces = pieces[1:]
+    if len(pieces) > 1 and not pieces[-1].text:
+        pieces = pieces[:-1]
+    return pieces
+
+
+FORMAT: Final = Format("Markdown", _matches, _parse)

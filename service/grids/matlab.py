@@ -1,0 +1,76 @@
+"""The rows of a MATLAB matrix: between semicolons and line ends; values between commas, blanks."""
+
+from service.expressions.errors import Note
+from service.grids.blanks import split_blanks
+from service.grids.grid import GridError
+from service.grids.pairs import split, strict_pairs
+from service.grids.source_text import Traced
+
+
+def rows(content: Traced) -> tuple[list[list[Traced]], tuple[Note, ...]]:
+    """The values of each row, and what was understood where two readings are possible.
+
+    Raises GridError where commas and blanks separate values and either reading makes a matrix.
+    """
+    lines = [
+        line.strip()
+        for line in split(content, ";\r\n", strict_pairs(content))
+        if line.text.strip(" \t,")
+    ]
+    by_commas = [_without_last_empty(split(line, ",", strict_pairs(line))) for line in lines]
+    by_blanks, signs = _by_blanks(by_commas)
+    if [len(row) for row in by_commas] == [len(row) for row in by_blanks]:
+        return by_commas, ()
+    if all(len(row) == 1 for row in by_commas):
+        return by_blanks, _sign_notes(signs)
+    if not _is_rectangle(by_commas):
+        return by_blanks, _sign_notes(signs)
+    if _is_rectangle(by_blanks):
+        raise _ambiguous(by_commas, by_blanks)
+    message = (
+        "Commas separate the values here, so blanks inside a value were read as products and sums."
+    )
+    return by_commas, (Note("commas_separate", message, content.whole),)
+
+
+def _by_blanks(by_commas: list[list[Traced]]) -> tuple[list[list[Traced]], list[Traced]]:
+    found: list[list[Traced]] = []
+    signs: list[Traced] = []
+    for row in by_commas:
+        elements: list[Traced] = []
+        for piece in row:
+            blanked = split_blanks(piece)
+            elements += blanked.elements or (piece,)
+            signs += blanked.signs
+        found.append(elements)
+    return found, signs
+
+
+def _without_last_empty(row: list[Traced]) -> list[Traced]:
+    return row[:-1] if len(row) > 1 and not row[-1].text.strip() else row
+
+
+def _is_rectangle(found: list[list[Traced]]) -> bool:
+    return len({len(row) for row in found}) == 1
+
+
+def _sign_notes(signs: list[Traced]) -> tuple[Note, ...]:
+    if not signs:
+        return ()
+    sign = signs[0]
+    message = (
+        f"The blank in front of {sign.text[:20]} begins a new value, as in MATLAB; a difference "
+        "has blanks on both sides of the sign, or none."
+    )
+    return (Note("blank_before_sign", message, sign.whole),)
+
+
+def _ambiguous(by_commas: list[list[Traced]], by_blanks: list[list[Traced]]) -> GridError:
+    at = next(i for i, row in enumerate(by_commas) if len(row) != len(by_blanks[i]))
+    few, many = by_commas[at], by_blanks[at]
+    return GridError(
+        "mixed_separators",
+        f"This row has {len(few)} values if only commas separate them, and {len(many)} if blanks "
+        "do as well. Put a comma between all values.",
+        (few[0].whole[0], few[-1].whole[1]),
+    )

@@ -1,0 +1,21 @@
+"""MATLAB rows without their brackets: each line ends in a semicolon."""
+
+from typing import Final
+
+from service.grids import matlab
+from service.grids.grid import Format, Grid, grid
+from service.grids.source_text import Traced
+
+
+def _matches(text: str) -> bool:
+    lines = [line.strip() for line in text.strip().splitlines() if line.strip()]
+    inside = any(";" in line[:-1] for line in lines)
+    return len(lines) > 1 and not inside and all(line.endswith(";") for line in lines[:-1])
+
+
+def _parse(source: Traced) -> Grid:
+    rows, notes = matlab.rows(source)
+    return grid("rows with semicolons", rows, source.whole, notes)
+
+
+FORMAT: Final = Format("rows with semicolons", _matches, _parse)

@@ -1,0 +1,97 @@
+"""Brackets and strings that belong together, so that no separator inside them splits a cell."""
+
+import re
+from typing import Final
+
+from service.grids.grid import GridError
+from service.grids.source_text import Traced
+
+CLOSES: Final = {"[": "]", "(": ")", "{": "}"}
+_OPENS: Final = {closer: opener for opener, closer in CLOSES.items()}
+_STRINGS: Final = {
+    quote: re.compile(rf"{quote}(?:[^\\{quote}\n]|\\.)*{quote}") for quote in ("'", '"')
+}
+
+
+def pairs(text: str) -> dict[int, int]:
+    """Where each bracket that has a partner on its own line ends: start -> end, exclusive.
+
+    A bracket without partner is left to whoever reads the cell.
+    """
+    found: dict[int, int] = {}
+    stack: list[int] = []
+    for i, letter in enumerate(text):
+        if letter in CLOSES:
+            stack.append(i)
+        elif letter in _OPENS:
+            if stack and text[stack[-1]] == _OPENS[letter]:
+                found[stack.pop()] = i + 1
+        elif letter == "\n":
+            stack.clear()
+    return found
+
+
+def strict_pairs(source: Traced) -> dict[int, int]:
+    """Where each bracket and each quoted string of program text ends: start -> end, exclusive.
+
+    Raises GridError for a bracket without its partner and a string that does not end.
+    """
+    text = source.text
+    found: dict[int, int] = {}
+    stack: list[int] = []
+    i = 0
+    while i < len(text):
+        letter = text[i]
+        # Behind an operand ' is a transpose and no string.
+        if letter in _STRINGS and (i == 0 or text[i - 1].isspace() or text[i - 1] in "[({,;:="):
+            string = _STRINGS[letter].match(text, i)
+            if string is None:
+                message = "The text that begins with this quotation mark does not end."
+                raise GridError("unclosed_quote", message, source.span(i, i + 1))
+            found[i] = i = string.end()
+            continue
+        if letter in CLOSES:
+            stack.append(i)
+        elif letter in _OPENS:
+            if not stack or text[stack[-1]] != _OPENS[letter]:
+                raise _unbalanced(source, i, stack)
+            found[stack.pop()] = i + 1
+        i += 1
+    if stack:
+        raise _unbalanced(source, stack[-1], [])
+    return found
+
+
+def _unbalanced(source: Traced, at: int, stack: list[int]) -> GridError:
+    bracket = source.text[at]
+    if bracket in CLOSES:
+        message = f"This {bracket} is never closed; {CLOSES[bracket]} is missing."
+    elif stack:
+        open_one = source.text[stack[-1]]
+        message = (
+            f"This {bracket} does not fit the {open_one} at character "
+            f"{source.span(stack[-1])[0] + 1}; {CLOSES[open_one]} was expected."
+        )
+    else:
+        message = f"This {bracket} was never opened; {_OPENS[bracket]} is missing."
+    return GridError("unbalanced_bracket", message, source.span(at, at + 1))
+
+
+def split(source: Traced, separators: str, ends: dict[int, int], offset: int = 0) -> list[Traced]:
+    """The pieces between ``separators``, leaving alone what stands in brackets or quotes.
+
+    ``ends`` may be that of a longer text in which ``source`` begins at ``offset``.
+    """
+    text = source.text
+    pieces: list[Traced] = []
+    start = i = 0
+    while i < len(text):
+        if i + offset in ends:
+            i = ends[i + offset] - offset
+            continue
+        if text[i] in separators:
+            pieces.append(source.cut(start, i))
+            start = i + 1
+        i += 1
+    pieces.append(source.cut(start, len(text)))
+    return pieces

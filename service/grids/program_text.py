@@ -1,0 +1,196 @@
+"""Program text around a matrix: comments, line continuation, prompts, an assignment, a call."""
+
+import re
+from dataclasses import dataclass
+from typing import Final
+
+from service.grids.grid import GridError
+from service.grids.limits import GRID_LIMITS
+from service.grids.pairs import CLOSES, split, strict_pairs
+from service.grids.source_text import Traced, joined
+
+# What makes a matrix of its argument and changes nothing in it.
+MAKERS: Final = frozenset(
+    {"array", "asarray", "mat", "matrix", "Matrix", "ImmutableMatrix", "MutableDenseMatrix"}
+    | {"ImmutableDenseMatrix", "sym", "list", "tuple", "simplify", "trigsimp", "expand"}
+)
+_HARMLESS: Final = re.compile(
+    r"[ \t]*(?:(?:import|from|syms|clc|clear|close|format)\b.*)?(?:\n|\Z)"
+)
+_PROMPT: Final = re.compile(r"\s*(?:>>>|>>|In ?\[\d*\]:|Out\[\d*\]:)\s*")
+_NAME: Final = re.compile(r"\s*[^\W\d][\w.{}^\\']{0,40}(?:\([\w, ]{0,40}\))?[ \t]*:?=(?!=)\s*")
+_CALL: Final = re.compile(
+    r"\s*([A-Za-z_][\w.]{0,60})[ \t]*\(\s*(?=[\[({\d]|[A-Za-z_][\w.]{0,60}\()"
+)
+_NESTED: Final = re.compile(r"[({]\s*[\[({]|\[|\{\s*['\"]")
+_KEYWORD: Final = re.compile(r"\s*(?:dtype|order|copy|ndmin)\s*=")
+_REMARK: Final = re.compile(r"\.\.\.[^\n]*(?:\n|$)|[%#][^\n]*")
+_TAIL: Final = " \t\r\n;,."
+
+
+@dataclass(frozen=True, slots=True)
+class Snippet:
+    """What stands in the brackets of a matrix, and how it came there.
+
+    ``groups`` are the contents of the outermost brackets, one in most texts and several where each
+    row has its own. ``maker`` is the name of the function they are given to, ``shape`` the rows and
+    columns that it names.
+    """
+
+    groups: tuple[Traced, ...]
+    maker: str = ""
+    shape: tuple[int, int] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class _Head:
+    """Where the matrix begins: ``start`` of its first bracket, or of the call that makes it."""
+
+    start: int
+    call: str = ""
+    inside: int = 0
+
+
+def looks_like_a_snippet(text: str) -> bool:
+    """Whether the text begins as a matrix in brackets does, after what may stand in front."""
+    plain = _without_remarks(Traced.of(text)).text
+    return _head(plain) is not None
+
+
+def unwrap(source: Traced, calls: int = 3) -> Snippet:
+    """The brackets' contents, at most ``calls`` calls deep.
+
+    Raises GridError where the brackets are unbalanced, or are not all of the text.
+    """
+    source = _without_remarks(source)
+    head = _head(source.text)
+    if head is None:
+        raise GridError("no_grid", "No matrix begins here.", source.whole)
+    source = source.cut(head.start, len(source.text)).strip(_TAIL)
+    if head.call:
+        return _unwrap_call(source, head, calls)
+    ends = strict_pairs(source)
+    return Snippet(tuple(_groups(source, ends)))
+
+
+def _without_remarks(source: Traced) -> Traced:
+    """The text with comments and line continuations taken out, those in strings left alone."""
+    text = source.text
+    pieces: list[Traced] = []
+    start = i = 0
+    quote = ""
+    while i < len(text):
+        letter = text[i]
+        if quote:
+            if letter == "\\":
+                i += 1
+            elif letter in {quote, "\n"}:
+                quote = ""
+        elif letter in "'\"" and (i == 0 or not (text[i - 1].isalnum() or text[i - 1] in ")]}.'")):
+            quote = letter
+        elif letter in ".%#" and (remark := _REMARK.match(text, i)):
+            blank = Traced(" ", [source.starts[i]], [source.ends[i]])
+            pieces += [source.cut(start, i), blank]
+            start = i = remark.end()
+            continue
+        i += 1
+    return joined([*pieces, source.cut(start, len(text))], source.whole[0])
+
+
+def _head(text: str) -> _Head | None:
+    at = 0
+    while at < len(text) and (line := _HARMLESS.match(text, at)):
+        at = line.end()
+    for optional in (_PROMPT, _NAME):
+        if found := optional.match(text, at):
+            at = found.end()
+    if call := _CALL.match(text, at):
+        name = call[1].rpartition(".")[2]
+        if name in MAKERS or text[call.end()] == "[":
+            return _Head(call.start(1), call[1], call.end())
+    at += len(text[at:]) - len(text[at:].lstrip())
+    if _NESTED.match(text, at) is None:
+        return None
+    # Round brackets begin many an expression; they are a list only if they hold all there is.
+    if text[at] == "(" and not _ends_the_text(text, at):
+        return None
+    return _Head(at)
+
+
+def _ends_the_text(text: str, start: int) -> bool:
+    depth = 0
+    for i in range(start, len(text)):
+        if text[i] in CLOSES:
+            depth += 1
+        elif text[i] in ")]}":
+            depth -= 1
+            if depth == 0:
+                return not text[i + 1 :].strip(_TAIL)
+    return False
+
+
+def _groups(source: Traced, ends: dict[int, int]) -> list[Traced]:
+    """The contents of the brackets that follow each other. Raises GridError for anything else."""
+    groups: list[Traced] = []
+    i = 0
+    while i < len(source.text):
+        if source.text[i] in CLOSES:
+            if len(groups) > GRID_LIMITS.rows:
+                message = f"There are too many rows here; at most {GRID_LIMITS.rows} are read."
+                raise GridError("too_many_rows", message, source.whole)
+            groups.append(source.cut(i + 1, ends[i] - 1))
+            i = ends[i]
+        elif source.text[i] in _TAIL:
+            i += 1
+        else:
+            raise text_around(source.cut(i, len(source.text)))
+    return groups
+
+
+def _unwrap_call(source: Traced, head: _Head, calls: int) -> Snippet:
+    call, inside = head.call, head.inside - head.start
+    name = call.rpartition(".")[2]
+    if name not in MAKERS or not calls:
+        raise GridError(
+            "unknown_call",
+            f"What {call}(…) makes of this matrix is not worked out here; "
+            "paste the finished matrix itself.",
+            source.span(0, len(call)),
+        )
+    opened = source.text.index("(")
+    ends = strict_pairs(source)
+    if ends[opened] != len(source.text):
+        raise text_around(source.cut(ends[opened], len(source.text)))
+    arguments = [
+        argument.strip()
+        for argument in split(source.cut(inside, len(source.text) - 1), ",", ends, inside)
+        if not _KEYWORD.match(argument.text)
+    ]
+    arguments = [argument for argument in arguments if argument.text]
+    shape = None
+    if len(arguments) == 3 and all(_is_small(argument.text) for argument in arguments[:2]):
+        shape = int(arguments[0].text), int(arguments[1].text)
+        arguments = arguments[2:]
+    if len(arguments) == 1 and _CALL.match(arguments[0].text):
+        return unwrap(arguments[0], calls - 1)
+    groups: list[Traced] = []
+    for argument in arguments:
+        groups += _groups(argument, strict_pairs(argument))
+    return Snippet(tuple(groups), name, shape)
+
+
+def _is_small(text: str) -> bool:
+    return text.isascii() and text.isdigit() and len(text) < 3
+
+
+def text_around(piece: Traced) -> GridError:
+    """Something in front of or behind the matrix that may change what it is."""
+    piece = piece.strip()
+    first = piece.text.split("\n", 1)[0][:30]
+    shown = first if first.isprintable() else "what stands here"
+    return GridError(
+        "text_around",
+        f"Only one matrix or table is read; {shown!r} next to it was not understood. "
+        "Paste the matrix alone, worked out.",
+        piece.span(0, len(piece.text)),
+    )

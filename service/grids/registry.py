@@ -1,0 +1,66 @@
+"""All formats, in the order in which they are tried."""
+
+from typing import Final
+
+from service.grids.bracketed import FORMAT as BRACKETED
+from service.grids.columns import FORMAT as COLUMNS
+from service.grids.csv import FORMAT as CSV
+from service.grids.drawn_matrix import FORMAT as PRETTY
+from service.grids.grid import Format, Grid, GridError
+from service.grids.html import FORMAT as HTML
+from service.grids.latex import FORMAT as LATEX
+from service.grids.limits import GRID_LIMITS
+from service.grids.markdown import FORMAT as MARKDOWN
+from service.grids.matlab_rows import FORMAT as BARE
+from service.grids.semicolons import FORMAT as SEMICOLONS
+from service.grids.source_text import Traced
+from service.grids.tsv import FORMAT as TSV
+
+# The surest sign comes first: a tag, a command, a bracket; then separators, blanks last of all.
+FORMATS: Final[tuple[Format, ...]] = (
+    HTML,
+    LATEX,
+    PRETTY,
+    BRACKETED,
+    MARKDOWN,
+    BARE,
+    TSV,
+    SEMICOLONS,
+    CSV,
+    COLUMNS,
+)
+
+_SEPARATORS: Final = (*",;&|│┃║\t\n\r\x85\u2028\u2029", "<t", "<T", "\\\\")
+
+
+def read_grid(text: str) -> Grid:
+    """The grid that a pasted text is. Raises GridError, and nothing else, whatever the text.
+
+    Time is linear in the text, which is bounded by ``GRID_LIMITS``.
+    """
+    if len(text) > GRID_LIMITS.characters:
+        raise GridError(
+            "too_long",
+            f"This has {len(text)} characters; a pasted text may have {GRID_LIMITS.characters}.",
+            (GRID_LIMITS.characters, len(text)),
+        )
+    source = Traced.of(text).strip("\ufeff")
+    if not source.text.strip():
+        raise GridError("empty", "Nothing is written here.", (0, len(text)))
+    if sum(map(text.count, _SEPARATORS)) > GRID_LIMITS.separators:
+        raise GridError(
+            "too_many_cells",
+            f"This has more than {GRID_LIMITS.separators} commas, tabs, bars and line ends; "
+            "paste only the table or matrix.",
+            (0, len(text)),
+        )
+    for candidate in FORMATS:
+        if candidate.matches(source.text):
+            return candidate.parse(source)
+    raise GridError(
+        "no_grid",
+        "This was not recognised as a table or matrix. Put each row on a line of its own with "
+        "commas between the values, or paste a table from a spreadsheet, Markdown, LaTeX, MATLAB "
+        "or Python.",
+        (0, len(text)),
+    )

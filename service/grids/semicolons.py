@@ -1,0 +1,42 @@
+"""Semicolons between cells: CSV as spreadsheets write it where the comma is the decimal sign.
+
+A decimal comma in a cell is left standing: whoever reads the cell names it.
+"""
+
+from typing import Final
+
+from service.grids.delimited import split_cells
+from service.grids.grid import Format, Grid, GridError, grid
+from service.grids.pairs import pairs
+from service.grids.source_text import Traced
+
+
+def _matches(text: str) -> bool:
+    return ";" in text
+
+
+def _parse(source: Traced) -> Grid:
+    rows = split_cells(source, ";", brackets=False)
+    filled = [row for row in rows if any(cell.text.strip() for cell in row)]
+    if len(filled) == 1 and any(_holds_several(cell.text.strip()) for cell in filled[0]):
+        raise GridError(
+            "ambiguous_separators",
+            "The semicolons here may separate rows or values. Put [ ] around a MATLAB matrix, or "
+            "each row on a line of its own.",
+            source.whole,
+        )
+    return grid("CSV with semicolons", rows, source.whole)
+
+
+def _holds_several(cell: str) -> bool:
+    """Whether commas or blanks separate values inside the cell."""
+    ends = pairs(cell)
+    i = 0
+    while i < len(cell):
+        if cell[i] == "," or cell[i].isspace():
+            return True
+        i = ends.get(i, i + 1)
+    return False
+
+
+FORMAT: Final = Format("CSV with semicolons", _matches, _parse)

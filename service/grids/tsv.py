@@ -1,0 +1,22 @@
+"""Tabs between cells: what a spreadsheet or a table on a web page puts on the clipboard."""
+
+import re
+from typing import Final
+
+from service.grids.delimited import split_cells
+from service.grids.grid import Format, Grid, grid
+from service.grids.source_text import Traced
+
+# A tab behind a comma or at the beginning of every line only lays the text out.
+_TAB: Final = re.compile(r"[^\s,;][^\S\n\t]*\t")
+
+
+def _matches(text: str) -> bool:
+    return _TAB.search(text) is not None
+
+
+def _parse(source: Traced) -> Grid:
+    return grid("TSV", split_cells(source, "\t", brackets=False), source.whole)
+
+
+FORMAT: Final = Format("TSV", _matches, _parse)
