@@ -40,7 +40,7 @@ def lost_freedom(exercise: Exercise) -> Iterator[Remark]:
 
 
 def _jacobian(exercise: Exercise, axes: np.ndarray) -> np.ndarray:
-    """The space Jacobian ``(lanes, 6, joints)``, lengths in the exercise's typical length.
+    """The space Jacobian ``(samples, 6, joints)``, lengths in the exercise's typical length.
 
     Source: Lynch and Park, *Modern Robotics*, eq. 5.11.
     """

@@ -28,8 +28,7 @@ from service.catalogue.schema import (
 from service.catalogue.screw_robot import FormulaGrid, ScrewRobot, grid_values
 from service.expressions import Kind, Vocabulary
 from service.kinematics.dh_row import gap, slant
-from service.kinematics.screws import Numbers
-from service.kinematics.transforms import Matrices
+from service.kinematics.transforms import Matrices, Numbers
 
 Reference = Robot | ScrewRobot
 

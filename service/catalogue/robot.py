@@ -18,8 +18,8 @@ from service.kinematics.chain import (
     standard_rows,
 )
 from service.kinematics.dh import Convention
-from service.kinematics.screws import Numbers, moved
-from service.kinematics.transforms import Matrices, identity
+from service.kinematics.screws import moved
+from service.kinematics.transforms import Matrices, Numbers, identity
 
 Values = Mapping[str, NDArray[np.float64]]
 FormulaRow = Row[Expression]
@@ -59,10 +59,10 @@ class ReferenceTable:
         fixed = (TOOL_ROW, f"{TOOL_ROW}2")
         return joints + fixed[: len(self.rows) - len(joints)]
 
-    def values(self, values: Values, lanes: int) -> Table:
-        """The table in numbers, ``(rows, 4, lanes)``, at the given values of the symbols."""
+    def values(self, values: Values, samples: int) -> Table:
+        """The table in numbers, ``(rows, 4, samples)``, at the given values of the symbols."""
         constants, formulas = self._constants_and_formulas
-        table = np.repeat(constants[..., None], lanes, axis=-1)
+        table = np.repeat(constants[..., None], samples, axis=-1)
         for i, j, formula in formulas:
             table[i, j] = formula.evaluate(values)
         return table
@@ -83,9 +83,9 @@ class ReferenceTable:
         return constants, tuple(formulas)
 
 
-def at_home(joints: tuple[Joint, ...], values: Values, lanes: int) -> Values:
+def at_home(joints: tuple[Joint, ...], values: Values, samples: int) -> Values:
     """The same values with all joint variables 0."""
-    return {**values, **{joint.variable: np.zeros(lanes) for joint in joints}}
+    return {**values, **{joint.variable: np.zeros(samples) for joint in joints}}
 
 
 # The screw axis of a joint, turning or sliding, in a frame whose z axis it is.
@@ -102,10 +102,10 @@ class Robot:
     joints: tuple[Joint, ...]
     tables: Mapping[Convention, ReferenceTable]
 
-    def pose(self, values: Values, lanes: int) -> Matrices:
-        """The end-effector frame in the base frame, ``(lanes, 4, 4)``."""
+    def pose(self, values: Values, samples: int) -> Matrices:
+        """The end-effector frame in the base frame, ``(samples, 4, 4)``."""
         table = self.tables[self.convention]
-        return pose(table.values(values, lanes), table.convention)
+        return pose(table.values(values, samples), table.convention)
 
     @property
     def frames(self) -> tuple[int | str, ...]:
@@ -114,8 +114,8 @@ class Robot:
         last = first + len(self.tables[self.convention].rows) - 1
         return ("base", *range(first, last), "tool")
 
-    def frame(self, name: int | str, values: Values, lanes: int) -> Matrices:
-        """The pose of a frame in the base frame, ``(lanes, 4, 4)``.
+    def frame(self, name: int | str, values: Values, samples: int) -> Matrices:
+        """The pose of a frame in the base frame, ``(samples, 4, 4)``.
 
         The last joint's frame answers to its number, too, where no row leads on from it, and the
         base frame to the number before the first joint's.
@@ -123,24 +123,24 @@ class Robot:
         first = self.joints[0].index
         known = {"base": 0, "tool": len(self.tables[self.convention].rows)}
         steps = known[name] if isinstance(name, str) else name - first + 1
-        return list(self._poses(values, lanes))[steps]
+        return list(self._poses(values, samples))[steps]
 
     def has_frame(self, name: int | str) -> bool:
         """Whether ``frame`` knows it."""
         first = self.joints[0].index
         return isinstance(name, str) or first - 1 <= name < first + len(self.joints)
 
-    def _poses(self, values: Values, lanes: int) -> Iterator[Matrices]:
+    def _poses(self, values: Values, samples: int) -> Iterator[Matrices]:
         table = self.tables[self.convention]
-        reached = identity((lanes,))
+        reached = identity((samples,))
         yield reached
-        for link in links(table.values(values, lanes), table.convention):
+        for link in links(table.values(values, samples), table.convention):
             reached = reached @ link
             yield reached
 
-    def screws(self, values: Values, lanes: int) -> Numbers:
-        """The screw axis of each joint in the base frame at home, ``(joints, lanes, 6)``."""
-        poses = list(self._poses(at_home(self.joints, values, lanes), lanes))
+    def screws(self, values: Values, samples: int) -> Numbers:
+        """The screw axis of each joint in the base frame at home, ``(joints, samples, 6)``."""
+        poses = list(self._poses(at_home(self.joints, values, samples), samples))
         on_axis = poses if self.convention is Convention.STANDARD else poses[1:]
         return np.stack(
             [

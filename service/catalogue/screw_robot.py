@@ -6,15 +6,15 @@ import numpy as np
 
 from service.catalogue.robot import Joint, Values
 from service.expressions import Expression
-from service.kinematics.screws import Numbers, product_in_space
-from service.kinematics.transforms import Matrices
+from service.kinematics.screws import product_in_space
+from service.kinematics.transforms import Matrices, Numbers
 
 FormulaGrid = tuple[tuple[Expression, ...], ...]
 
 
-def grid_values(grid: FormulaGrid, values: Values, lanes: int) -> Numbers:
-    """The numbers that formulas give, ``(rows, columns, lanes)``."""
-    numbers = np.empty((len(grid), len(grid[0]), lanes))
+def grid_values(grid: FormulaGrid, values: Values, samples: int) -> Numbers:
+    """The numbers that formulas give, ``(rows, columns, samples)``."""
+    numbers = np.empty((len(grid), len(grid[0]), samples))
     for i, row in enumerate(grid):
         for j, formula in enumerate(row):
             numbers[i, j] = formula.evaluate(values)
@@ -39,14 +39,14 @@ class ScrewRobot:
         """Whether ``frame`` knows it."""
         return name in self.frames
 
-    def frame(self, name: int | str, values: Values, lanes: int) -> Matrices:
-        """The pose of a frame in the base frame, ``(lanes, 4, 4)``."""
+    def frame(self, name: int | str, values: Values, samples: int) -> Matrices:
+        """The pose of a frame in the base frame, ``(samples, 4, 4)``."""
         if name == "base":
-            return np.broadcast_to(np.eye(4), (lanes, 4, 4))
-        home = np.moveaxis(grid_values(self.home, values, lanes), -1, 0)
+            return np.broadcast_to(np.eye(4), (samples, 4, 4))
+        home = np.moveaxis(grid_values(self.home, values, samples), -1, 0)
         amounts = np.array([values[joint.variable] for joint in self.joints])
-        return product_in_space(self.screws(values, lanes), amounts, home)
+        return product_in_space(self.screws(values, samples), amounts, home)
 
-    def screws(self, values: Values, lanes: int) -> Numbers:
-        """The screw axis of each joint in the base frame at home, ``(joints, lanes, 6)``."""
-        return np.swapaxes(grid_values(self.axes, values, lanes), 1, 2)
+    def screws(self, values: Values, samples: int) -> Numbers:
+        """The screw axis of each joint in the base frame at home, ``(joints, samples, 6)``."""
+        return np.swapaxes(grid_values(self.axes, values, samples), 1, 2)

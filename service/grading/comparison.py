@@ -1,6 +1,6 @@
 """When two columns of numbers are the same answer.
 
-Arrays are ``(..., lanes)``, one lane for each sample; a thing holds over all lanes or not at all.
+Arrays are ``(..., samples)``, one for each sample; a thing holds over all samples or not at all.
 """
 
 import math
@@ -9,7 +9,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Numbers = NDArray[np.float64]
+from service.kinematics.transforms import Numbers
 
 # Far above what rounding does to a formula of 200 operations, far below any slip.
 EXACT = 1e-9
@@ -44,7 +44,7 @@ def matches(
     angle: ArrayLike = False,
     rounded: ArrayLike = True,
 ) -> NDArray[np.int_]:
-    """The Match of each entry ``(...)``, from ``(..., lanes)``.
+    """The Match of each entry ``(...)``, from ``(..., samples)``.
 
     ``rounded`` says which entries may be off by what rounding a number to three figures does. That
     is measured against the entry's size, but no more than what the robot's own numbers reach: a
@@ -64,7 +64,7 @@ def matches(
 
 
 def same(actual: Numbers, expected: Numbers, scale: float = 1.0, angle: bool = False) -> bool:
-    """Whether two single entries ``(lanes,)`` are equal, or equal but for rounding.
+    """Whether two single entries ``(samples,)`` are equal, or equal but for rounding.
 
     The same question as ``matches``, at a fifth of its price.
     """

@@ -23,7 +23,7 @@ class Finding:
     """
 
     code: str
-    look: str
+    hint: str
     correction: str = ""
     severity: Severity = Severity.ERROR
     span: tuple[int, int] | None = None
@@ -37,7 +37,7 @@ class Finding:
         if level is FeedbackLevel.SCORE and not self.reading:
             return None
         tells_all = level is FeedbackLevel.FULL or self.reading
-        message = f"{self.look} {self.correction}" if tells_all and self.correction else self.look
+        message = f"{self.hint} {self.correction}" if tells_all and self.correction else self.hint
         return Feedback(
             code=self.code,
             severity=self.severity,

@@ -26,7 +26,7 @@ from service.grading.kinds.transform import HOMOGENEOUS
 from service.grading.part import Grading, OwnChain
 from service.grading.reading.entry import MAX_CHARACTERS
 from service.grading.report import PartReport, Severity
-from service.grading.samples import LANES, SAMPLES, Samples
+from service.grading.samples import HALF, SAMPLES, Samples
 from service.kinematics.chain import products
 from service.kinematics.transforms import Matrices, inverse
 
@@ -94,7 +94,7 @@ def carries(
 
     def robot_s_pose(grading: Grading) -> Matrices | None:
         robot = grading.exercise.reference
-        return None if robot is None else robot.frame("tool", grading.samples.values, LANES)
+        return None if robot is None else robot.frame("tool", grading.samples.values, SAMPLES)
 
     return _freedom(own_pose, grading) >= _freedom(robot_s_pose, grading)
 
@@ -106,8 +106,8 @@ def _freedom(pose: Callable[[Grading], Matrices | None], grading: Grading) -> in
         moved = pose(_nudged(grading, joint.variable))
         if moved is None:
             return 0
-        twist = inverse(moved[:SAMPLES]) @ moved[SAMPLES:] - np.eye(4)
-        twists.append(twist[:, :3].reshape(SAMPLES, -1) / NUDGE)
+        twist = inverse(moved[:HALF]) @ moved[HALF:] - np.eye(4)
+        twists.append(twist[:, :3].reshape(HALF, -1) / NUDGE)
     sizes = np.linalg.svd(np.array(twists).swapaxes(0, 1), compute_uv=False)
     ranks = np.sort((sizes > SMALL * sizes.max(initial=1.0)).sum(axis=-1))
     return int(ranks[len(ranks) // 2])
@@ -115,8 +115,8 @@ def _freedom(pose: Callable[[Grading], Matrices | None], grading: Grading) -> in
 
 def _nudged(grading: Grading, variable: str) -> Grading:
     """The same grading at samples whose second half differs from the first in one joint only."""
-    values = {name: np.tile(lanes[:SAMPLES], 2) for name, lanes in grading.samples.values.items()}
-    values[variable][SAMPLES:] += NUDGE
+    values = {name: np.tile(numbers[:HALF], 2) for name, numbers in grading.samples.values.items()}
+    values[variable][HALF:] += NUDGE
     samples = Samples(values)
     reader = replace(grading.reader, samples=samples, left=MAX_CHARACTERS, unread=0)
     return replace(grading, samples=samples, reader=reader)

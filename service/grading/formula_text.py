@@ -6,16 +6,17 @@ from fractions import Fraction
 import numpy as np
 
 from service.catalogue import Exercise
-from service.grading.comparison import Numbers, difference
+from service.grading.comparison import difference
 from service.grading.joint_motion import coefficients
-from service.grading.samples import SAMPLES, Lanes, Samples
+from service.grading.samples import HALF, Samples
+from service.kinematics.transforms import Numbers
 
 EXACT = 1e-9
 WHOLE = 1e-6
 
 
-def formula_text(values: Lanes, angle: bool, exercise: Exercise, samples: Samples) -> str:
-    """``values`` ``(LANES,)`` as a sum of multiples of the exercise's letters and a constant.
+def formula_text(values: Numbers, angle: bool, exercise: Exercise, samples: Samples) -> str:
+    """``values`` ``(SAMPLES,)`` as a sum of multiples of the exercise's letters and a constant.
 
     That is the form that table cells have: ``theta2 + pi/2``, ``-d2``, ``l1 + l2``. Empty where the
     values are of another form.
@@ -25,7 +26,7 @@ def formula_text(values: Lanes, angle: bool, exercise: Exercise, samples: Sample
 
 
 def sum_text(
-    values: Lanes,
+    values: Numbers,
     counts: tuple[int, ...] | None,
     angle: bool,
     exercise: Exercise,
@@ -36,7 +37,7 @@ def sum_text(
         return ""
     moving = [joint.variable for joint in exercise.joints]
     motion = sum(n * samples.values[name] for n, name in zip(counts, moving, strict=True) if n)
-    found = multiples((values - motion)[:SAMPLES], angle, exercise, samples)
+    found = multiples((values - motion)[:HALF], angle, exercise, samples)
     if found is None:
         return ""
     shares, remainder = found
@@ -45,9 +46,9 @@ def sum_text(
 
 
 def multiples(
-    constant: Lanes, angle: bool, exercise: Exercise, samples: Samples
+    constant: Numbers, angle: bool, exercise: Exercise, samples: Samples
 ) -> tuple[list[tuple[int, str]], float] | None:
-    """Whole multiples of letters and a remainder that add up to ``constant`` ``(SAMPLES,)``.
+    """Whole multiples of letters and a remainder that add up to ``constant`` ``(HALF,)``.
 
     None where there are no such. Letters with a share of 0 are left out.
     """
@@ -58,7 +59,7 @@ def multiples(
     letters = [v.name for v in exercise.variables if v.joint is None and v.kind == kind]
     if not letters:
         return None
-    basis, solver = samples.once(("letters", kind), lambda: _basis(letters, samples))
+    basis, solver = samples.cached(("letters", kind), lambda: _basis(letters, samples))
     shares = np.round(constant @ solver)[:-1]
     rest = constant - shares @ basis[:-1]
     if np.ptp(rest) > WHOLE:
@@ -68,8 +69,8 @@ def multiples(
 
 
 def _basis(letters: list[str], samples: Samples) -> tuple[Numbers, Numbers]:
-    """The letters' values and a constant, ``(letters + 1, SAMPLES)``, and the pseudo-inverse."""
-    basis = np.array([*(samples.values[name][:SAMPLES] for name in letters), np.ones(SAMPLES)])
+    """The letters' values and a constant, ``(letters + 1, HALF)``, and the pseudo-inverse."""
+    basis = np.array([*(samples.values[name][:HALF] for name in letters), np.ones(HALF)])
     return basis, np.asarray(np.linalg.pinv(basis), dtype=np.float64)
 
 

@@ -119,7 +119,7 @@ def _followed(
     by_own = KINDS[part.kind].grade(part, answer, replace(_afresh(grading), following=True))
     if by_own.points <= report.points:
         return report
-    told = grading.show((follows_from(source),))
+    told = grading.visible((follows_from(source),))
     return replace(by_own, follow_through=True, feedback=(*told, *by_own.feedback))
 
 
@@ -127,7 +127,7 @@ def _without_points(report: PartReport, grading: Grading) -> PartReport:
     """The report on an answer that no joint moves: what is right in it is right by chance."""
     rows = tuple(replace(row, points=0.0) for row in report.rows)
     verdict = Verdict.INCORRECT if report.verdict is Verdict.PARTIAL else report.verdict
-    told = grading.show((STANDS_STILL,))
+    told = grading.visible((STANDS_STILL,))
     return replace(
         report, rows=rows, points=0.0, verdict=verdict, feedback=(*told, *report.feedback)
     )

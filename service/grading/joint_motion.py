@@ -4,28 +4,29 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from service.catalogue import Joint
-from service.grading.comparison import Numbers, difference
+from service.grading.comparison import difference
 from service.grading.samples import Samples
+from service.kinematics.transforms import Numbers
 
 TOLERANCE = 1e-6
 
 
 def halves(values: Numbers) -> tuple[Numbers, Numbers]:
-    """Values ``(..., lanes)`` at the same links but other joint values: twice half the lanes."""
+    """The two halves of values ``(..., samples)``: the same links at other joint values."""
     half = values.shape[-1] // 2
     return values[..., :half], values[..., half:]
 
 
 def changes(values: Numbers) -> Numbers:
-    """By how much values ``(..., LANES)`` change when only the joints move: ``(..., SAMPLES)``."""
+    """By how much values ``(..., SAMPLES)`` change when only the joints move: ``(..., HALF)``."""
     before, after = halves(values)
     return after - before
 
 
 def moves_with(values: Numbers, motion: Numbers, angle: ArrayLike) -> NDArray[np.bool_]:
-    """Which values ``(..., lanes)`` change with the joints as ``motion`` does, or its opposite.
+    """Which values ``(..., samples)`` change with the joints as ``motion`` does, or its opposite.
 
-    ``motion`` is ``(..., lanes / 2)``. Where a value is not a number it does not.
+    ``motion`` is ``(..., samples / 2)``. Where a value is not a number it does not.
     """
     either_sense = np.array([motion, -motion])
     shape = (2, *[1] * (values.ndim - motion.ndim), *motion.shape)
@@ -38,10 +39,12 @@ def joint_counts(
 ) -> tuple[NDArray[np.int_], NDArray[np.bool_]]:
     """Whole numbers k with ``values = Σ k_j q_j + constant``, for each cell.
 
-    ``values`` is ``(cells, LANES)``, ``angle`` ``(cells,)``. Returns the counts ``(cells, joints)``
-    and which cells are of that form ``(cells,)``; an angle need be so only up to whole turns.
+    ``values`` is ``(cells, SAMPLES)``, ``angle`` ``(cells,)``. Returns the counts ``(cells,
+    joints)`` and which cells are of that form ``(cells,)``; an angle need be so only up to whole
+    turns.
 
-    One least-squares problem for all cells: the two halves of the lanes differ in the joints only.
+    One least-squares problem for all cells: the two halves of the samples differ in the joints
+    only.
     """
     if not joints:
         return np.zeros((len(values), 0), np.int_), np.asarray(np.isfinite(values).all(axis=-1))
@@ -79,4 +82,4 @@ def _solver(names: tuple[str, ...], samples: Samples) -> tuple[Numbers, Numbers]
         moves = changes(np.array([samples.values[name] for name in names]))
         return moves, np.asarray(np.linalg.pinv(moves), dtype=np.float64)
 
-    return samples.once(names, taken_apart)
+    return samples.cached(names, taken_apart)

@@ -23,9 +23,9 @@ from service.kinematics.transforms import Matrices, inverse
 class OwnChain:
     """An earlier answer of the student's, as a chain that a later part may follow from.
 
-    ``frames`` ``(k + 1, LANES, 4, 4)`` are its frames in the base frame, from the base on; the last
-    is the tool's. ``nearest_links`` ``(k, LANES, 4, 4)`` are the link transforms of the valid table
-    nearest to it, None where it is no table.
+    ``frames`` ``(k + 1, SAMPLES, 4, 4)`` are its frames in the base frame, from the base on; the
+    last is the tool's. ``nearest_links`` ``(k, SAMPLES, 4, 4)`` are the link transforms of the
+    valid table nearest to it, None where it is no table.
     """
 
     frames: Matrices
@@ -33,7 +33,7 @@ class OwnChain:
 
     @property
     def links(self) -> Matrices:
-        """The link transforms as the student has them, ``(k, LANES, 4, 4)``."""
+        """The link transforms as the student has them, ``(k, SAMPLES, 4, 4)``."""
         return inverse(self.frames[:-1]) @ self.frames[1:]
 
 
@@ -52,7 +52,7 @@ class Grading:
     source: OwnChain | None = None
     following: bool = False
 
-    def show(
+    def visible(
         self, findings: tuple[Finding, ...], row: str | None = None, cell: str | None = None
     ) -> tuple[Feedback, ...]:
         """The findings as messages, as far as the feedback level lets them through."""

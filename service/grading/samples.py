@@ -13,31 +13,30 @@ from functools import cached_property
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from service.catalogue import Exercise, Variable
+from service.kinematics.transforms import Numbers
 
-SAMPLES = 16
-LANES = 2 * SAMPLES
+HALF = 16
+SAMPLES = 2 * HALF
 
-Lanes = NDArray[np.float64]
 T = TypeVar("T")
 
 
 @dataclass(frozen=True)
 class Samples:
-    """Values of every symbol, each of shape ``(LANES,)``.
+    """Values of every symbol, each of shape ``(SAMPLES,)``.
 
-    Lanes 0..15 are drawn freely. Lanes 16..31 repeat their link parameters with other joint values,
-    so that what a cell owes to the joints can be told from what it owes to the links.
+    Samples 0..15 are drawn freely. Samples 16..31 repeat their link parameters with other joint
+    values, so that what a cell owes to the joints can be told from what it owes to the links.
     ``in_degrees`` are the angles that the student reckons in degrees.
     """
 
-    values: Mapping[str, Lanes]
+    values: Mapping[str, Numbers]
     in_degrees: Set[str] = frozenset()
 
     @cached_property
-    def memo(self) -> dict[str, Lanes]:
+    def memo(self) -> dict[str, Numbers]:
         """Where expressions keep the sines and cosines that they share at these samples."""
         return {}
 
@@ -45,7 +44,7 @@ class Samples:
     def _known(self) -> dict[Hashable, Any]:
         return {}
 
-    def once(self, what: Hashable, compute: Callable[[], T]) -> T:
+    def cached(self, what: Hashable, compute: Callable[[], T]) -> T:
         """What the exercise alone makes of these samples, computed when it is first asked for.
 
         Whoever asks must not write to it.
@@ -56,30 +55,28 @@ class Samples:
         return found
 
     @property
-    def lanes(self) -> int:
+    def count(self) -> int:
         """How many values each symbol has."""
         return len(next(iter(self.values.values())))
 
-    def few(self, count: int) -> "Samples":
-        """The first ``count`` lanes of each half: enough to tell generic tables apart."""
-        return self.once(
+    def subset(self, count: int) -> "Samples":
+        """The first ``count`` samples of each half: enough to tell generic tables apart."""
+        return self.cached(
             count,
             lambda: Samples(
-                {name: self.few_of(values, count) for name, values in self.values.items()}
+                {name: self.subset_of(values, count) for name, values in self.values.items()}
             ),
         )
 
     @staticmethod
-    def few_of(values: Lanes, count: int) -> Lanes:
-        """Those lanes of values ``(..., LANES)``."""
-        return np.concatenate(
-            [values[..., :count], values[..., SAMPLES : SAMPLES + count]], axis=-1
-        )
+    def subset_of(values: Numbers, count: int) -> Numbers:
+        """Those samples of values ``(..., SAMPLES)``."""
+        return np.concatenate([values[..., :count], values[..., HALF : HALF + count]], axis=-1)
 
-    def at(self, lane: int, names: Set[str]) -> dict[str, float]:
-        """The values of the named symbols in one lane, short enough to be read."""
+    def at(self, sample: int, names: Set[str]) -> dict[str, float]:
+        """The values of the named symbols in one sample, short enough to be read."""
         return {
-            name: float(f"{self._shown(name, values[lane]):.4g}")
+            name: float(f"{self._shown(name, values[sample]):.4g}")
             for name, values in self.values.items()
             if name in names
         }
@@ -93,10 +90,10 @@ def draw(exercise: Exercise, answers: object, *, degrees: bool = False) -> Sampl
     seed = exercise.version + _canonical([answers, degrees])
     joints = [variable for variable in exercise.variables if variable.joint is not None]
     others = [variable for variable in exercise.variables if variable.joint is None]
-    uniform = _uniform(seed, len(joints) * LANES + len(others) * SAMPLES)
-    split = len(joints) * LANES
-    of_joints = uniform[:split].reshape(len(joints), LANES)
-    of_others = np.tile(uniform[split:].reshape(len(others), SAMPLES), 2)
+    uniform = _uniform(seed, len(joints) * SAMPLES + len(others) * HALF)
+    split = len(joints) * SAMPLES
+    of_joints = uniform[:split].reshape(len(joints), SAMPLES)
+    of_others = np.tile(uniform[split:].reshape(len(others), HALF), 2)
     return Samples(
         {
             variable.name: _scaled(variable, row)
@@ -118,11 +115,11 @@ def _canonical(answers: object) -> str:
         return ""
 
 
-def _uniform(seed: str, count: int) -> Lanes:
+def _uniform(seed: str, count: int) -> Numbers:
     """``count`` numbers in [0, 1) from an extendable hash of the seed."""
     stream = hashlib.shake_128(seed.encode("utf-8", "surrogatepass")).digest(4 * count)
     return np.frombuffer(stream, dtype="<u4") * 2.0**-32
 
 
-def _scaled(variable: Variable, uniform: Lanes) -> Lanes:
+def _scaled(variable: Variable, uniform: Numbers) -> Numbers:
     return variable.low + (variable.high - variable.low) * uniform

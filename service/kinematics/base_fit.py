@@ -10,9 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.kinematics.fit import PARALLEL
-from service.kinematics.transforms import Matrices, identity
-
-Numbers = NDArray[np.float64]
+from service.kinematics.transforms import Matrices, Numbers, identity
 
 
 def carry(source: Matrices, target: Matrices, sliding: NDArray[np.bool_]) -> Matrices:

@@ -4,7 +4,7 @@ Frame 0 may then be turned and slid along the axis of joint 1 (and moved anywher
 slides). The choice shows only where the chain first leaves that axis, so it is carried along the
 rows as a freedom and spent at the first row that depends on it.
 
-Shapes: N continuations, L lanes; rows are ``(N, 4, L)`` in the column order a, α, d, θ.
+Shapes: N continuations, L samples; rows are ``(N, 4, L)`` in the column order a, α, d, θ.
 """
 
 from dataclasses import dataclass
@@ -13,8 +13,8 @@ from typing import Self
 import numpy as np
 
 from service.kinematics.chain import THETA, A, D
-from service.kinematics.fit import PARALLEL, Numbers, Place, Position, positions
-from service.kinematics.transforms import Matrices
+from service.kinematics.fit import PARALLEL, Place, Position, positions
+from service.kinematics.transforms import Matrices, Numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,9 +30,9 @@ class BaseFreedom:
     anywhere: bool = False
 
     @classmethod
-    def on_first_axis(cls, prismatic: bool, lanes: int) -> Self:
+    def on_first_axis(cls, prismatic: bool, samples: int) -> Self:
         """The freedom that a free base leaves on the axis of joint 1."""
-        along_z = np.broadcast_to(np.array([0.0, 0.0, 1.0]), (lanes, 3))
+        along_z = np.broadcast_to(np.array([0.0, 0.0, 1.0]), (samples, 3))
         return cls(turn=True, slide=None if prismatic else along_z, anywhere=prismatic)
 
     @property

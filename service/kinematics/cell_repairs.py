@@ -10,7 +10,7 @@ what stands between, the cells that are right included; A and B are a turn or a 
 a point and a direction of its axis as they are, a shift all directions. So what A must do to what B
 leaves alone gives x; what then remains is B, if it is of its kind at all.
 
-Shapes: L lanes (samples), C candidates; a pose is ``(L, 4, 4)``; angles in radians. Lengths should
+Shapes: L samples, C candidates; a pose is ``(L, 4, 4)``; angles in radians. Lengths should
 be measured in one that suits the robot, so that one tolerance serves them and angles.
 """
 
@@ -26,11 +26,10 @@ from service.kinematics.factors import (
     Cell,
     Factors,
     Integers,
-    Numbers,
     read_screws,
     screws,
 )
-from service.kinematics.transforms import Matrices, inverse
+from service.kinematics.transforms import Matrices, Numbers, inverse
 
 SAME = 1e-7
 
@@ -62,7 +61,7 @@ def one_factor_mends(factors: Factors, pose: Matrices) -> list[Mend]:
 def two_factor_mends(factors: Factors, pose: Matrices) -> Iterator[Mend]:
     """The ways to mend one cell in each of two factors.
 
-    Most pairs of cells fail in the first lane; the others are looked at in all of them.
+    Most pairs of cells fail in the first sample; the others are looked at in all of them.
     """
     pairs = _all_pairs(len(factors.axes))
     first = slice(0, 1)
@@ -79,7 +78,7 @@ def two_factor_mends(factors: Factors, pose: Matrices) -> Iterator[Mend]:
 def mended(factors: Factors, pose: Matrices, cells: Sequence[Cell]) -> Numbers | None:
     """What these cells, one or two, must be for the pose to be right: ``(k, L)``, or None.
 
-    The same as the values of the Mend with these cells, at other lanes.
+    The same as the values of the Mend with these cells, at other samples.
     """
     places = [factors.place(cell) for cell in cells]
     (one, kind), (other, other_kind) = min(places), max(places)
@@ -113,7 +112,7 @@ def _all_pairs(count: int) -> _Pairs:
 
 
 def _solved(factors: Factors, pose: Matrices, pairs: _Pairs) -> tuple[Numbers, NDArray[np.bool_]]:
-    """X and y of each pair, ``(2, C, L)``, and whether they solve it in all lanes, ``(C,)``."""
+    """X and y of each pair, ``(2, C, L)``, and whether they solve it in all samples, ``(C,)``."""
     one, other, kind, other_kind = pairs
     x_turns, y_turns = (kind == TURN)[:, None], (other_kind == TURN)[:, None]
     near, far = factors.axes[one], factors.axes[other]

@@ -4,7 +4,7 @@ A chain is T(q) = C_0 M_1(q_1) C_1 … M_n(q_n) C_n with constant links C_i. Two
 mechanism if and only if constant transforms g_i exist with C_i(written) = g_i⁻¹ C_i(reference)
 g_{i+1}, where g_i keeps joint axis i. ``g`` is the pose of the writer's frame in the reference's.
 
-Shapes: L lanes (samples); a row is ``(4, L)`` in the column order a, α, d, θ; angles in radians.
+Shapes: L samples; a row is ``(4, L)`` in the column order a, α, d, θ; angles in radians.
 """
 
 from collections.abc import Sequence
@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.kinematics.dh import standard_link
-from service.kinematics.fit import Numbers, Place
-from service.kinematics.transforms import Matrices, identity, inverse
+from service.kinematics.fit import Place
+from service.kinematics.transforms import Matrices, Numbers, identity, inverse
 
 SAME = 1e-7
 
@@ -115,16 +115,16 @@ def followed(
     reference's, None for the same place. Returns ``(tables,)``, and where the writer's frame at
     each stop lies in the reference's, ``(rows, tables, L, 4, 4)``. NaN makes a table invalid.
     """
-    lanes = own.shape[-1]
+    count = own.shape[-1]
     links = standard_link(*np.moveaxis(own, 2, 0))
-    pose = identity((len(own), lanes))
+    pose = identity((len(own), count))
     if start is not None:
         pose[:] = start
     poses = np.empty((len(stops), *pose.shape))
     for i, stop in enumerate(stops):
         pose = pose @ links[:, i]
         if stop.reference is not None and stop.rebases:
-            pose = inverse(stop.reference[:lanes]) @ pose
+            pose = inverse(stop.reference[:count]) @ pose
         poses[i] = pose
     valid = np.ones(len(own), dtype=np.bool_)
     for i, stop in enumerate(stops):

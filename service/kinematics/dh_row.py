@@ -7,13 +7,10 @@ modified link transform is a standard one with all four numbers negated, so one 
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from service.kinematics.dh import Convention
 from service.kinematics.fit import to_frame
-from service.kinematics.transforms import Matrices, inverse
-
-Numbers = NDArray[np.float64]
+from service.kinematics.transforms import Matrices, Numbers, inverse
 
 
 def _as_standard(transform: Matrices, convention: Convention) -> Matrices:
@@ -40,7 +37,7 @@ def gap(transform: Matrices, convention: Convention) -> Numbers:
 
 
 def row(transform: Matrices, convention: Convention) -> Numbers:
-    """The row (a, α, d, θ) ``(4, lanes)`` of a transform ``(lanes, 4, 4)`` for which both hold.
+    """The row (a, α, d, θ) ``(4, samples)`` of a transform ``(samples, 4, 4)`` for which both hold.
 
     >>> from service.kinematics.dh import modified_link
     >>> row(modified_link(0.5, 0.2, 0.3, 0.7)[None], Convention.MODIFIED)[:, 0]

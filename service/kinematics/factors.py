@@ -3,7 +3,7 @@
 X = Trans_x(a) Rot_x(α) and Z = Rot_z(θ) Trans_z(d) are screws: a shift along an axis and a turn
 about it, which commute. A standard table is Z_1 X_1 Z_2 X_2 …, a modified one X_0 Z_1 X_1 Z_2 ….
 
-Shapes: L lanes (samples), K factors; a table is ``(rows, 4, L)`` in the column order a, α, d, θ,
+Shapes: L samples, K factors; a table is ``(rows, 4, L)`` in the column order a, α, d, θ,
 joint variables and all; angles in radians. Axes are numbered: 0 is x, 2 is z.
 """
 
@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 
 from service.kinematics.chain import A, D, Table, products
 from service.kinematics.dh import Convention
-from service.kinematics.transforms import Matrices
+from service.kinematics.transforms import Matrices, Numbers
 
-Numbers = NDArray[np.float64]
 Integers = NDArray[np.int_]
 
 X, Z = 0, 2
@@ -89,9 +88,9 @@ class Factors:
         z_first = self.convention is Convention.STANDARD
         return 2 * row + (in_z != z_first), column - (D if in_z else A)
 
-    def at(self, lanes: slice) -> "Factors":
-        """The same factors at some of the lanes."""
-        return Factors(self.convention, self.sizes[..., lanes], self.axes)
+    def at(self, samples: slice) -> "Factors":
+        """The same factors at some of the samples."""
+        return Factors(self.convention, self.sizes[..., samples], self.axes)
 
 
 def factors_of(table: Table, convention: Convention, unit: float = 1.0) -> Factors:

@@ -5,7 +5,7 @@ next place is a transform ``target``; what of it must be met depends on the plac
 is a line, a prismatic axis a direction, the tool a whole frame. Where the row is not determined by
 that, the value that was written (``own``) is as good as the reference's, and both are offered.
 
-Shapes: H hypotheses, K candidates for each, L lanes (samples). Rows are ``(..., 4, L)`` in the
+Shapes: H hypotheses, K candidates for each, L samples. Rows are ``(..., 4, L)`` in the
 column order a, α, d, θ; angles in radians. Parallelism is judged by the norm of the cross product,
 which near 0 is the angle itself; a cosine near 1 would call axes parallel that are 4 mrad apart.
 """
@@ -15,9 +15,7 @@ from enum import Enum, IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from service.kinematics.transforms import Matrices
-
-Numbers = NDArray[np.float64]
+from service.kinematics.transforms import Matrices, Numbers
 
 PARALLEL = 1e-7
 Z_SIGNS = np.array([1.0, 1.0, -1.0, -1.0])

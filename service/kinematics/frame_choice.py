@@ -8,7 +8,7 @@ value that it could have had under the choices made so far is held against what 
 cell costs 1, a departure from the reference's own choice a little, so that an uncompensated shift
 is blamed where it was made and not where it surfaces. The cheapest few hypotheses are kept.
 
-Shapes: H hypotheses, N their continuations, L lanes (samples); a row is ``(4, L)`` in the column
+Shapes: H hypotheses, N their continuations, L samples; a row is ``(4, L)`` in the column
 order a, α, d, θ; angles in radians.
 """
 
@@ -22,8 +22,8 @@ from service.kinematics.base_freedom import BaseFreedom
 from service.kinematics.chain import ALPHA, THETA, A, D
 from service.kinematics.chain_match import SAME, Nearest, Stop, WrittenRow, senses_of
 from service.kinematics.dh import standard_link
-from service.kinematics.fit import Numbers, Place, candidates, misses, positions
-from service.kinematics.transforms import Matrices, identity, inverse, rot_x
+from service.kinematics.fit import Place, candidates, misses, positions
+from service.kinematics.transforms import Matrices, Numbers, identity, inverse, rot_x
 
 BEAM = 8
 CONTINUATIONS = 20
@@ -68,9 +68,9 @@ def nearest_table(
     ``base_given`` says that frame 0 is the reference's. ``directions_given`` says that each joint's
     positive sense is, so that a z axis turned over asks for a variable with the opposite sign.
     """
-    lanes = written[0].own.shape[-1]
+    samples = written[0].own.shape[-1]
     if base_given:
-        beam, freedom = _Beam(identity((1, lanes)), np.zeros(1), [()]), BaseFreedom()
+        beam, freedom = _Beam(identity((1, samples)), np.zeros(1), [()]), BaseFreedom()
         remaining = list(zip(written, stops, strict=True))
     else:
         beam, freedom = _from_free_base(written[0], stops[0])
@@ -86,12 +86,12 @@ def nearest_table(
 
 def _from_free_base(first: WrittenRow, stop: Stop) -> tuple[_Beam, BaseFreedom]:
     """On the first axis, z either way: what leads there from a free base is right as it stands."""
-    lanes = first.own.shape[-1]
-    poses = np.stack([identity((lanes,)), rot_x(np.full(lanes, np.pi))])
+    samples = first.own.shape[-1]
+    poses = np.stack([identity((samples,)), rot_x(np.full(samples, np.pi))])
     own = np.nan_to_num(first.own)
     ways: list[_Way] = [((own, pose, sense),) for pose, sense in zip(poses, (1, -1), strict=True)]
     beam = _Beam(poses, np.array([0.0, TURNED_OVER]), ways)
-    return beam, BaseFreedom.on_first_axis(stop.place is Place.PRISMATIC, lanes)
+    return beam, BaseFreedom.on_first_axis(stop.place is Place.PRISMATIC, samples)
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ A screw (ω; v) is a column of six numbers: ω = z and v = −ω × o for a join
 axis z through o, ω = 0 and v = z for one that slides along z; both in the base frame.
 Source: Lynch and Park, *Modern Robotics*, §5.1.1, eq. 5.11.
 
-Shapes: L lanes (samples) and n joints; a table is ``(rows, 4, L)``, angles in radians.
+Shapes: L samples and n joints; a table is ``(rows, 4, L)``, angles in radians.
 """
 
 from collections.abc import Sequence
@@ -39,7 +39,7 @@ def space_jacobian(
 
 
 def coincident(jacobian: Screws) -> NDArray[np.bool_]:
-    """Which pairs of joints of ``(L, 6, n)`` are one joint twice, in every lane: ``(n, n)``.
+    """Which pairs of joints of ``(L, 6, n)`` are one joint twice, at every sample: ``(n, n)``.
 
     They turn about one line, or slide along one direction, in the same sense or the opposite.
     """
@@ -49,7 +49,7 @@ def coincident(jacobian: Screws) -> NDArray[np.bool_]:
 
 
 def rank(jacobian: Screws) -> int:
-    """The rank of ``(L, 6, n)`` at a generic configuration: the highest of all lanes.
+    """The rank of ``(L, 6, n)`` at a generic configuration: the highest of all samples.
 
     Lengths should be measured in a unit that suits the arm, or they outweigh the angular parts.
     """
@@ -58,7 +58,7 @@ def rank(jacobian: Screws) -> int:
 
 
 def dependent(jacobian: Screws) -> NDArray[np.bool_]:
-    """Which columns of ``(L, 6, n)`` can be made up from the others in every lane, ``(n,)``.
+    """Which columns of ``(L, 6, n)`` can be made up from the others at every sample, ``(n,)``.
 
     A column is independent of the others if and only if every null vector is zero there.
     """

@@ -12,9 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from service.kinematics.transforms import Matrices, rot_x, rot_y, rot_z
-
-Numbers = NDArray[np.float64]
+from service.kinematics.transforms import Matrices, Numbers, rot_x, rot_y, rot_z
 
 TAIT_BRYAN: Final = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
 PROPER: Final = ("XYX", "XZX", "YXY", "YZY", "ZXZ", "ZYZ")

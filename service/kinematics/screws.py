@@ -9,11 +9,9 @@ source is Lynch and Park, *Modern Robotics*, chapters 3 and 4, with its own orde
 from functools import reduce
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from service.kinematics.transforms import Matrices, identity
-
-Numbers = NDArray[np.float64]
+from service.kinematics.transforms import Matrices, Numbers, identity
 
 # An ω this short is no axis to turn about, only what rounding has left.
 NO_TURN = 1e-12

@@ -7,6 +7,8 @@ float64 matrices of shape ``(..., 4, 4)``. Angles are in radians, lengths in any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+# Numbers of any shape; the last axis is most often that of the samples.
+Numbers = NDArray[np.float64]
 Matrices = NDArray[np.float64]
 
 

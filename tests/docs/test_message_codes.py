@@ -303,7 +303,7 @@ ERROR = "class E(Exception):\n    def __init__(self, code: str, span: int) -> No
     ("text", "codes"),
     [
         ('Finding("one", "x")', {"one"}),
-        ('Finding(look="x", code="one")', {"one"}),
+        ('Finding(hint="x", code="one")', {"one"}),
         ('module.Finding("one", "x")', {"one"}),
         ('raise E("one", 0)', {"one"}),
         ('f = lambda: Finding("one", "x")', {"one"}),
@@ -316,7 +316,7 @@ ERROR = "class E(Exception):\n    def __init__(self, code: str, span: int) -> No
         ('class A:\n    def f(self, code): Finding(code, "")\nA().f("one")', {"one"}),
         ('replace(finding, code="one")', {"one"}),
         ('other("one", "x")', set()),
-        ("Finding(finding.code, finding.look)", set()),
+        ("Finding(finding.code, finding.hint)", set()),
     ],
 )
 def test_codes_are_found(text: str, codes: set[str]) -> None:

@@ -20,7 +20,7 @@ from service.kinematics.chain import pose as table_pose
 Vector = NDArray[np.float64]
 Numbers = Mapping[str, float]
 
-LANES = 8
+SAMPLES = 8
 X, Y, Z = np.eye(3)
 ORIGIN = np.zeros(3)
 
@@ -144,13 +144,13 @@ STATEMENTS: dict[str, Callable[[Numbers], Chain]] = {
 
 def drawn(exercise: Exercise) -> dict[str, Vector]:
     rng = np.random.default_rng(520)
-    return {v.name: rng.uniform(v.low, v.high, LANES) for v in exercise.variables}
+    return {v.name: rng.uniform(v.low, v.high, SAMPLES) for v in exercise.variables}
 
 
 def exponentials(exercise: Exercise, values: Mapping[str, Vector]) -> Vector:
-    """T at each draw, ``(LANES, 4, 4)``."""
-    poses = np.empty((LANES, 4, 4))
-    for lane in range(LANES):
+    """T at each draw, ``(SAMPLES, 4, 4)``."""
+    poses = np.empty((SAMPLES, 4, 4))
+    for lane in range(SAMPLES):
         numbers = {name: float(drawn_values[lane]) for name, drawn_values in values.items()}
         axes, poses[lane] = STATEMENTS[exercise.id](numbers)
         for axis, joint in reversed(list(zip(axes, exercise.joints, strict=True))):
@@ -170,11 +170,11 @@ def test_the_forward_kinematics_are_those_of_the_statement(
     assert exercise.reference is not None
     values = drawn(exercise)
     expected = exponentials(exercise, values)
-    reached = exercise.reference.frame("tool", values, LANES)
+    reached = exercise.reference.frame("tool", values, SAMPLES)
     np.testing.assert_allclose(reached, expected, rtol=0, atol=1e-12)
     if isinstance(exercise.reference, Robot):
         for table in exercise.reference.tables.values():
-            reached = table_pose(table.values(values, LANES), table.convention)
+            reached = table_pose(table.values(values, SAMPLES), table.convention)
             np.testing.assert_allclose(reached, expected, rtol=0, atol=1e-12)
 
 
@@ -185,8 +185,8 @@ def test_the_screw_axes_are_those_of_the_statement(
     exercise = catalogue[exercise_id]
     assert exercise.reference is not None
     values = drawn(exercise)
-    screws = exercise.reference.screws(values, LANES)
-    for lane in range(LANES):
+    screws = exercise.reference.screws(values, SAMPLES)
+    for lane in range(SAMPLES):
         axes, _ = STATEMENTS[exercise_id]({name: float(v[lane]) for name, v in values.items()})
         expected = [np.concatenate([axis.turning, axis.velocity]) for axis in axes]
         np.testing.assert_allclose(screws[:, lane], expected, rtol=0, atol=1e-12)

@@ -100,7 +100,7 @@ def test_a_number_among_letters_is_refused(cell: str, arm: Exercise) -> None:
 def test_a_conversion_is_told(arm: Exercise) -> None:
     [first, second] = read(arm, table("a [mm]", "250")).rows
     [finding] = first.entries[0].findings
-    assert (finding.code, finding.look) == (
+    assert (finding.code, finding.hint) == (
         "converted_length", "Read as 250 mm, as the header says.",
     )  # fmt: skip
     assert second.entries[0].findings == ()

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from service.catalogue import Exercise
-from service.grading.samples import LANES, SAMPLES, draw
+from service.grading.samples import HALF, SAMPLES, draw
 
 ANSWERS = st.recursive(
     st.none() | st.booleans() | st.integers() | st.text(),
@@ -25,7 +25,7 @@ def test_a_draw_stays_in_the_ranges_and_is_repeated(
         assert set(samples.values) == {variable.name for variable in exercise.variables}
         for variable in exercise.variables:
             values = samples.values[variable.name]
-            assert values.shape == (LANES,)
+            assert values.shape == (SAMPLES,)
             assert (values >= variable.low).all()
             assert (values <= variable.high).all()
             assert (values == again.values[variable.name]).all()
@@ -37,7 +37,7 @@ def test_the_second_half_repeats_the_links_and_moves_the_joints(
     exercise = catalogue["stanford-arm"]
     samples = draw(exercise, "x")
     for variable in exercise.variables:
-        first, second = np.split(samples.values[variable.name], [SAMPLES])
+        first, second = np.split(samples.values[variable.name], [HALF])
         repeated = first == second
         assert repeated.all() if variable.joint is None else not repeated.any()
 

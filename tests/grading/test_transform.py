@@ -107,7 +107,7 @@ def test_the_inverse_of_a_robots_pose(make_exercise: Make) -> None:
     assert full_marks(graded(exercise, answer))
 
 
-def test_a_product_that_no_belief_explains_is_told_entry_by_entry(rpr: Exercise) -> None:
+def test_a_product_that_no_misconception_explains_is_told_entry_by_entry(rpr: Exercise) -> None:
     report = part(handed_in(rpr, {"pose": entries(E1 * E2 * about(three, l2) * M)}), "pose")
     assert set(not_correct(report)) == {("1", "4"), ("2", "4")}
     assert told(report).isdisjoint(

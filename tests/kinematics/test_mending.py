@@ -8,14 +8,14 @@ from service.kinematics.chain import Table, pose
 from service.kinematics.dh import Convention
 from service.kinematics.factors import Cell, factors_of
 
-LANES = 4
+SAMPLES = 4
 CONVENTIONS = pytest.mark.parametrize("convention", list(Convention))
 SEEDS = pytest.mark.parametrize("seed", range(40))
 
 
 def arm(rng: np.random.Generator) -> Table:
     """Five rows in general position, but with the right angles and zeros that real arms have."""
-    table = rng.uniform(0.3, 1.2, (5, 4, LANES))
+    table = rng.uniform(0.3, 1.2, (5, 4, SAMPLES))
     table[:, 1] = rng.choice([0.0, np.pi / 2, -np.pi / 2, np.pi], 5)[:, None]
     table[:, 0][rng.random(5) < 0.4] = 0.0
     table[:, 2][rng.random(5) < 0.3] = 0.0
@@ -25,7 +25,7 @@ def arm(rng: np.random.Generator) -> Table:
 def with_wrong(table: Table, cells: list[Cell], rng: np.random.Generator) -> Table:
     wrong = table.copy()
     for cell in cells:
-        wrong[cell] += rng.uniform(0.2, 1.0, LANES)
+        wrong[cell] += rng.uniform(0.2, 1.0, SAMPLES)
     return wrong
 
 

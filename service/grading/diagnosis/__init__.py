@@ -1,1 +1,1 @@
-"""Misconceptions: small pure functions, each asking whether one belief explains a wrong answer."""
+"""Which slip explains a wrong answer: small pure functions, one for each misconception."""

@@ -1,7 +1,7 @@
 """Slips in angles: in a single one, and in three that describe a rotation.
 
-Each function is one belief that the student may have held. It returns what to say where the answer
-without that belief is right, else None.
+Each function is one misconception that the student may have held. It returns what to say where the
+answer without that misconception is right, else None.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.expressions.tree import Call
-from service.grading.comparison import ROUNDED, Numbers, difference
+from service.grading.comparison import ROUNDED, difference
 from service.grading.diagnosis.formula_rewriting import nodes
 from service.grading.diagnosis.wrong_value import WrongValue, differs, undefined
 from service.grading.feedback import Finding
 from service.kinematics.rotations import SEQUENCES, from_angles
-from service.kinematics.transforms import Matrices
+from service.kinematics.transforms import Matrices, Numbers
 
 ARCTANGENTS = ("atan2", "atan")
 
@@ -146,8 +146,8 @@ def diagnose_angle(case: WrongValue) -> Finding:
 class WrongAngles:
     """Three angles that do not describe the rotation they should.
 
-    ``angles`` is ``(3, LANES)``, all of them with a value everywhere; ``rotation`` is what they
-    should describe, ``(LANES, 3, 3)``, in ``sequence`` about moving or ``fixed`` axes.
+    ``angles`` is ``(3, SAMPLES)``, all of them with a value everywhere; ``rotation`` is what they
+    should describe, ``(SAMPLES, 3, 3)``, in ``sequence`` about moving or ``fixed`` axes.
     ``arctangent`` says which angles were written with an arctangent.
     """
 
@@ -159,7 +159,7 @@ class WrongAngles:
 
     @property
     def described(self) -> Matrices:
-        """The rotation that they do describe, ``(LANES, 3, 3)``."""
+        """The rotation that they do describe, ``(SAMPLES, 3, 3)``."""
         return from_angles(self.sequence, self.angles.T, fixed=self.fixed)
 
     @property

@@ -1,7 +1,7 @@
 """Slips in the DH row of a transform: a condition overlooked, or the numbers of something else.
 
-Each function is one belief that the student may have held. It returns what to say where that belief
-explains the answer, else None.
+Each function is one misconception that the student may have held. It returns what to say where that
+misconception explains the answer, else None.
 """
 
 from collections.abc import Callable
@@ -9,17 +9,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from service.grading.comparison import EXACT, Match, Numbers, matches
+from service.grading.comparison import EXACT, Match, matches
 from service.grading.feedback import Finding
 from service.grading.reading.table import IS_ANGLE
 from service.kinematics.dh import Convention
 from service.kinematics.dh_row import gap, row, slant
-from service.kinematics.transforms import Matrices, inverse
+from service.kinematics.transforms import Matrices, Numbers, inverse
 
 
 @dataclass(frozen=True, slots=True)
 class RowCase:
-    """A row ``(4, LANES)`` that was given for a transform ``(LANES, 4, 4)``."""
+    """A row ``(4, SAMPLES)`` that was given for a transform ``(SAMPLES, 4, 4)``."""
 
     actual: Numbers
     transform: Matrices
@@ -34,7 +34,7 @@ class RowCase:
 
     @property
     def expected(self) -> Numbers:
-        """The row that the transform has, ``(4, LANES)``."""
+        """The row that the transform has, ``(4, SAMPLES)``."""
         return row(self.transform, self.convention)
 
 

@@ -1,7 +1,7 @@
 """Slips in a product of exponentials.
 
-Each function is one belief. It returns what to say and the pose that the belief leads to; where
-that is the student's matrix, and not the right one, the belief explains it.
+Each function is one misconception. It returns what to say and the pose that the misconception leads
+to; where that is the student's matrix, and not the right one, the misconception explains it.
 """
 
 from collections.abc import Callable
@@ -11,17 +11,16 @@ import numpy as np
 
 from service.catalogue import Exercise, ScrewRobot
 from service.catalogue.robot import at_home
-from service.grading.comparison import Numbers
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
 from service.grading.feedback import Finding
-from service.grading.samples import LANES, Samples
+from service.grading.samples import SAMPLES, Samples
 from service.kinematics.screws import moved, product_in_body, product_in_space
-from service.kinematics.transforms import Matrices, inverse
+from service.kinematics.transforms import Matrices, Numbers, inverse
 
 
 @dataclass(frozen=True, slots=True)
 class Exponentials:
-    """Screw axes ``(n, LANES, 6)`` seen from the base and from the tool, amounts, home pose."""
+    """Screw axes ``(n, SAMPLES, 6)`` seen from the base and from the tool, amounts, home pose."""
 
     space: Numbers
     body: Numbers
@@ -31,16 +30,16 @@ class Exponentials:
     @classmethod
     def of(cls, robot: ScrewRobot, samples: Samples) -> "Exponentials":
         """Those of the reference robot."""
-        home = robot.frame("tool", at_home(robot.joints, samples.values, LANES), LANES)
-        space = robot.screws(samples.values, LANES)
+        home = robot.frame("tool", at_home(robot.joints, samples.values, SAMPLES), SAMPLES)
+        space = robot.screws(samples.values, SAMPLES)
         amounts = np.array([samples.values[joint.variable] for joint in robot.joints])
         return cls(space, moved(inverse(home), space), amounts, home)
 
 
-Belief = tuple[Finding, Matrices]
+Misconception = tuple[Finding, Matrices]
 
 
-def home_on_the_wrong_side(product: Exponentials) -> list[Belief]:
+def home_on_the_wrong_side(product: Exponentials) -> list[Misconception]:
     """Space axes were multiplied behind M, or body axes in front of it."""
     finding = Finding(
         "home_on_wrong_side",
@@ -54,7 +53,7 @@ def home_on_the_wrong_side(product: Exponentials) -> list[Belief]:
     ]
 
 
-def missing_home(product: Exponentials) -> list[Belief]:
+def missing_home(product: Exponentials) -> list[Misconception]:
     """The home pose was left out."""
     finding = Finding(
         "missing_home",
@@ -68,7 +67,7 @@ def missing_home(product: Exponentials) -> list[Belief]:
     ]
 
 
-def reversed_product(product: Exponentials) -> list[Belief]:
+def reversed_product(product: Exponentials) -> list[Misconception]:
     """The exponentials were multiplied from the last joint to the first."""
     finding = Finding(
         "reversed_product",
@@ -82,7 +81,7 @@ def reversed_product(product: Exponentials) -> list[Belief]:
     ]
 
 
-def moment_sign(product: Exponentials) -> list[Belief]:
+def moment_sign(product: Exponentials) -> list[Misconception]:
     """V was taken to be ω × q for every turning joint."""
     finding = Finding(
         "moment_sign",
@@ -97,7 +96,7 @@ def moment_sign(product: Exponentials) -> list[Belief]:
     return found
 
 
-MISCONCEPTIONS: tuple[Callable[[Exponentials], list[Belief]], ...] = (
+MISCONCEPTIONS: tuple[Callable[[Exponentials], list[Misconception]], ...] = (
     home_on_the_wrong_side,
     missing_home,
     reversed_product,
@@ -112,7 +111,7 @@ def explain_product(case: MatrixCase, exercise: Exercise, samples: Samples) -> l
     product = Exponentials.of(exercise.reference, samples)
     for misconception in MISCONCEPTIONS:
         for finding, pose in misconception(product):
-            entries = Samples.few_of(np.moveaxis(pose, 0, -1), case.actual.shape[-1] // 2)
+            entries = Samples.subset_of(np.moveaxis(pose, 0, -1), case.actual.shape[-1] // 2)
             if case.explained_by(entries).all():
                 return [Explanation(finding, case.area((slice(None), slice(None))))]
     return []

@@ -14,7 +14,7 @@ from service.expressions.tree import Call, Node
 from service.grading.comparison import EXACT, ROUNDED
 from service.grading.diagnosis.formula_rewriting import EXCHANGED, negated, nodes
 from service.grading.diagnosis.wrong_value import WrongValue
-from service.grading.samples import Lanes
+from service.kinematics.transforms import Numbers
 
 # A formula of more nodes is compared, but not taken apart.
 MAX_NODES = 100
@@ -111,7 +111,7 @@ class WrongEntry(WrongValue):
                     return Repair(tree, turned, place)
         return None
 
-    def _evaluated(self, tree: Node) -> Lanes:
+    def _evaluated(self, tree: Node) -> Numbers:
         program = compile_tree(tree)
         if isinstance(program, float):
             return np.full_like(self.expected, program)

@@ -1,4 +1,4 @@
-"""What a student's formula would be without one belief: pure functions from tree to tree.
+"""What a student's formula would be without one misconception: pure functions from tree to tree.
 
 A tree is never changed. The new one shares every part that stays as it was, so that a tree that is
 returned as the same object is one that the rule has nothing to say to.

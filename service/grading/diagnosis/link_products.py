@@ -1,8 +1,8 @@
 """Transforms that a student may have worked out in place of the one asked for.
 
-Each function is one belief about how a pose comes from the links of a chain. It returns the poses
-that the belief leads to; where one is the student's matrix, or all of its rotation or of its
-position, the belief explains it.
+Each function is one misconception about how a pose comes from the links of a chain. It returns the
+poses that the misconception leads to; where one is the student's matrix, or all of its rotation or
+of its position, the misconception explains it.
 """
 
 from collections.abc import Callable
@@ -17,7 +17,7 @@ from service.kinematics.transforms import Matrices
 
 @dataclass(frozen=True, slots=True)
 class Alternative:
-    """Another pose ``(LANES, 4, 4)`` and the belief behind it.
+    """Another pose ``(SAMPLES, 4, 4)`` and the misconception behind it.
 
     ``what`` names the pose, so that "This matrix is …" and "The position comes from …" are
     sentences; ``look`` says what to look at, ``correction`` what would be right.
@@ -25,7 +25,7 @@ class Alternative:
 
     code: str
     what: str
-    look: str
+    hint: str
     correction: str
     pose: Matrices
 
@@ -150,7 +150,7 @@ MISCONCEPTIONS: tuple[Callable[[Chain], list[Alternative]], ...] = (
 
 
 def alternatives(chains: tuple[Chain, ...]) -> list[Alternative]:
-    """The poses of all beliefs, those of the exercise's own convention first."""
+    """The poses of all misconceptions, those of the exercise's own convention first."""
     return [
         alternative
         for chain in chains
@@ -160,5 +160,5 @@ def alternatives(chains: tuple[Chain, ...]) -> list[Alternative]:
 
 
 def as_entries(poses: Matrices) -> Matrices:
-    """``(..., LANES, 4, 4)`` as ``(..., 4, 4, LANES)``."""
+    """``(..., SAMPLES, 4, 4)`` as ``(..., 4, 4, SAMPLES)``."""
     return np.moveaxis(poses, -3, -1)

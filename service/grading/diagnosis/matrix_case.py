@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import Exercise
-from service.grading.comparison import Match, Numbers, matches
+from service.grading.comparison import Match, matches
 from service.grading.feedback import Finding
 from service.grading.samples import Samples
 from service.kinematics.chain import Table, links
 from service.kinematics.dh import Convention
-from service.kinematics.transforms import Matrices
+from service.kinematics.transforms import Matrices, Numbers
 
 Mask = NDArray[np.bool_]
 Block = tuple[slice, slice]
@@ -25,8 +25,8 @@ WHOLE: Block = (slice(None), slice(None))
 class Chain:
     """The links of the reference in one convention.
 
-    ``table`` is ``(rows, 4, LANES)``. ``frames`` names the frame that each row starts from, and in
-    the end the last one that is reached. ``own`` says that it is the exercise's own convention.
+    ``table`` is ``(rows, 4, SAMPLES)``. ``frames`` names the frame that each row starts from, and
+    in the end the last one that is reached. ``own`` says that it is the exercise's own convention.
     """
 
     table: Table
@@ -36,7 +36,7 @@ class Chain:
 
     @cached_property
     def links(self) -> Matrices:
-        """The link transform of each row, ``(rows, LANES, 4, 4)``."""
+        """The link transform of each row, ``(rows, SAMPLES, 4, 4)``."""
         return links(self.table, self.convention)
 
     @cached_property
@@ -87,7 +87,7 @@ def chains_of(exercise: Exercise, samples: Samples) -> tuple[Chain, ...]:
     order = sorted(robot.tables, key=lambda convention: convention is not robot.convention)
     return tuple(
         Chain(
-            table=robot.tables[convention].values(samples.values, samples.lanes),
+            table=robot.tables[convention].values(samples.values, samples.count),
             convention=convention,
             frames=(base, *robot.tables[convention].labels),
             own=convention is robot.convention,
@@ -100,7 +100,7 @@ def chains_of(exercise: Exercise, samples: Samples) -> tuple[Chain, ...]:
 class MatrixCase:
     """A matrix that was handed in and is not the expected one.
 
-    ``actual`` and ``expected`` are ``(rows, columns, LANES)``, NaN where nothing could be read;
+    ``actual`` and ``expected`` are ``(rows, columns, SAMPLES)``, NaN where nothing could be read;
     ``scale`` ``(rows, columns)`` is what entries are measured against; ``wrong`` says which have a
     value and are wrong. ``rigid`` marks a transform (4×4) or rotation (3×3), as against a matrix of
     any other meaning. ``chains`` holds the links that it is the product of, in each convention;
@@ -120,7 +120,7 @@ class MatrixCase:
         return self.rigid and self.expected.shape[:2] == (4, 4)
 
     def agrees(self, other: Numbers, block: Block = WHOLE) -> Mask:
-        """Where this block of the student's matrix is ``other`` ``(..., rows, columns, LANES)``."""
+        """Where this block of the student's matrix is ``other``, ``(..., rows, columns, n)``."""
         return self._match(self.actual[block], other, block)
 
     def would_be_right(self, other: Numbers, block: Block = WHOLE) -> Mask:

@@ -1,8 +1,8 @@
 """Slips in a single matrix entry.
 
-Each function is one belief that the student may have held. It returns what to say where the formula
-without that belief is right (or right but for its sign), else None. The first that explains the
-entry is told.
+Each function is one misconception that the student may have held. It returns what to say where the
+formula without that misconception is right (or right but for its sign), else None. The first that
+explains the entry is told.
 """
 
 from collections.abc import Callable, Iterator

@@ -1,7 +1,7 @@
 """Slips in the coordinates of a point, taken together.
 
-Each function is one belief that the student may have held. It returns what to say where the
-coordinates without that belief are right, else None.
+Each function is one misconception that the student may have held. It returns what to say where the
+coordinates without that misconception are right, else None.
 """
 
 from collections.abc import Callable
@@ -10,15 +10,16 @@ from itertools import permutations
 
 import numpy as np
 
-from service.grading.comparison import EXACT, Match, Numbers, matches
+from service.grading.comparison import EXACT, Match, matches
 from service.grading.diagnosis.link_products import alternatives
 from service.grading.diagnosis.matrix_case import Chain
 from service.grading.feedback import Finding
+from service.kinematics.transforms import Numbers
 
 
 @dataclass(frozen=True, slots=True)
 class WrongPosition:
-    """Coordinates ``(n, LANES)`` of the ``axes`` 0, 1, 2, as handed in and as expected.
+    """Coordinates ``(n, SAMPLES)`` of the ``axes`` 0, 1, 2, as handed in and as expected.
 
     ``chains`` holds the links that lead to the point, where it is the end of a chain.
     """
@@ -69,7 +70,7 @@ def other_pose(case: WrongPosition) -> Finding | None:
     for alternative in alternatives(case.chains):
         position = np.moveaxis(alternative.pose, 0, -1)[list(case.axes), 3]
         if np.ptp(position, axis=-1).max() > EXACT and case.is_what_was_written(position):
-            look = f"This position comes from {alternative.what}. {alternative.look}"
+            look = f"This position comes from {alternative.what}. {alternative.hint}"
             return Finding(alternative.code, look, alternative.correction)
     return None
 

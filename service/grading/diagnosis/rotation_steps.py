@@ -1,7 +1,8 @@
 """Slips in a composite rotation: which of its turns was made about another axis, or not at all.
 
-Each function is one belief. It returns the rotations that the belief leads to, with what to say;
-where one is the student's matrix, and not the right one, the belief explains it.
+Each function is one misconception. It returns the rotations that the misconception leads to, with
+what to say; where one is the student's matrix, and not the right one, the misconception explains
+it.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -18,21 +19,21 @@ from service.kinematics.transforms import Matrices
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One turn: its axis "X", "Y" or "Z", its rotation ``(LANES, 3, 3)``, and whose axis it is."""
+    """One turn: axis "X", "Y" or "Z", rotation ``(SAMPLES, 3, 3)``, whether the axis is fixed."""
 
     axis: str
     rotation: Matrices
     fixed: bool
 
 
-Belief = tuple[Finding, list[Step]]
+Misconception = tuple[Finding, list[Step]]
 
 RULE = (
     "A turn about a fixed axis is multiplied from the left, one about a moving axis from the right."
 )
 
 
-def fixed_for_moving(steps: Sequence[Step]) -> Iterator[Belief]:
+def fixed_for_moving(steps: Sequence[Step]) -> Iterator[Misconception]:
     """A turn about a moving axis was multiplied as if the axis were fixed, or the other way."""
     exchanged = [replace(step, fixed=not step.fixed) for step in steps]
     everywhere = "Every turn was multiplied from the wrong side. "
@@ -45,7 +46,7 @@ def fixed_for_moving(steps: Sequence[Step]) -> Iterator[Belief]:
         )
 
 
-def turned_back(steps: Sequence[Step]) -> Iterator[Belief]:
+def turned_back(steps: Sequence[Step]) -> Iterator[Misconception]:
     """One turn was made the wrong way round its axis."""
     for i, step in enumerate(steps):
         back = replace(step, rotation=np.swapaxes(step.rotation, 1, 2))
@@ -56,7 +57,7 @@ def turned_back(steps: Sequence[Step]) -> Iterator[Belief]:
         yield _finding("turn_sign", look), [*steps[:i], back, *steps[i + 1 :]]
 
 
-def left_out(steps: Sequence[Step]) -> Iterator[Belief]:
+def left_out(steps: Sequence[Step]) -> Iterator[Misconception]:
     """One turn is not in the product."""
     if len(steps) < 2:
         return
@@ -65,7 +66,7 @@ def left_out(steps: Sequence[Step]) -> Iterator[Belief]:
         yield _finding("missing_turn", look), [*steps[:i], *steps[i + 1 :]]
 
 
-def about_another_axis(steps: Sequence[Step]) -> Iterator[Belief]:
+def about_another_axis(steps: Sequence[Step]) -> Iterator[Misconception]:
     """One turn was made about another coordinate axis."""
     for i, step in enumerate(steps):
         for axis in "XYZ".replace(step.axis, ""):
@@ -79,7 +80,7 @@ def about_another_axis(steps: Sequence[Step]) -> Iterator[Belief]:
             )
 
 
-MISCONCEPTIONS: tuple[Callable[[Sequence[Step]], Iterator[Belief]], ...] = (
+MISCONCEPTIONS: tuple[Callable[[Sequence[Step]], Iterator[Misconception]], ...] = (
     fixed_for_moving,
     turned_back,
     about_another_axis,
@@ -95,7 +96,7 @@ def explain_steps(case: MatrixCase, steps: Sequence[Step]) -> list[Explanation]:
     for misconception in MISCONCEPTIONS:
         for finding, believed in misconception(steps):
             rotation = composed([(step.rotation, step.fixed) for step in believed])
-            entries = Samples.few_of(np.moveaxis(rotation, 0, -1), case.actual.shape[-1] // 2)
+            entries = Samples.subset_of(np.moveaxis(rotation, 0, -1), case.actual.shape[-1] // 2)
             if case.explained_by(entries).all():
                 return [Explanation(finding, everything)]
     return []

@@ -1,7 +1,7 @@
 """Slips in a screw axis (ω; v).
 
-Each function is one belief that the student may have held. It returns what to say where the axis
-without that belief is right, else None.
+Each function is one misconception that the student may have held. It returns what to say where the
+axis without that misconception is right, else None.
 """
 
 from collections.abc import Callable
@@ -10,15 +10,16 @@ from functools import cached_property
 
 import numpy as np
 
-from service.grading.comparison import EXACT, ROUNDED, Match, Numbers, matches
+from service.grading.comparison import EXACT, ROUNDED, Match, matches
 from service.grading.feedback import Finding
+from service.kinematics.transforms import Numbers
 
 SCREW_LABELS = ("ω1", "ω2", "ω3", "v1", "v2", "v3")
 
 
 @dataclass(frozen=True)
 class WrongScrew:
-    """A screw axis that is not the expected one, ``(6, LANES)`` each, with a value everywhere.
+    """A screw axis that is not the expected one, ``(6, SAMPLES)`` each, with a value everywhere.
 
     ``elsewhere`` is the same axis seen from the other frame, the tool's for the base's or the other
     way; None where that is not known. ``frame`` is "space" or "body", whichever is asked for.
@@ -42,12 +43,12 @@ class WrongScrew:
 
     @cached_property
     def pitch(self) -> Numbers:
-        """The advance per radian h = ω · v, ``(LANES,)``."""
+        """The advance per radian h = ω · v, ``(SAMPLES,)``."""
         return np.asarray((self.expected[:3] * self.expected[3:]).sum(axis=0))
 
     @cached_property
     def moment(self) -> Numbers:
-        """−ω × q, what v has from the place of the axis, ``(3, LANES)``."""
+        """−ω × q, what v has from the place of the axis, ``(3, SAMPLES)``."""
         return self.expected[3:] - self.pitch * self.expected[:3]
 
     def with_velocity(self, velocity: Numbers) -> Numbers:

@@ -1,7 +1,7 @@
 """Slips in a single table cell.
 
-Each function is one belief that the student may have held. It returns what to say where the belief
-explains the cell exactly, else None. The first that explains it is told.
+Each function is one misconception that the student may have held. It returns what to say where the
+misconception explains the cell exactly, else None. The first that explains it is told.
 """
 
 from collections.abc import Callable
@@ -12,7 +12,7 @@ import numpy as np
 from service.grading.comparison import ROUNDED, difference
 from service.grading.diagnosis.wrong_value import WrongCell, differs, undefined
 from service.grading.feedback import Finding
-from service.grading.samples import Lanes
+from service.kinematics.transforms import Numbers
 
 AXES = {
     "a": "along x",
@@ -238,7 +238,7 @@ def half_turn(case: WrongCell) -> Finding | None:
     )
 
 
-def _is_off_by(turn: float, actual: Lanes, expected: Lanes) -> bool:
+def _is_off_by(turn: float, actual: Numbers, expected: Numbers) -> bool:
     """Whether an angle is expected so much further on; the turn itself may have been rounded."""
     off = difference(actual + turn, expected, angle=True)
     return bool(np.abs(off).max() < ROUNDED * np.pi)
@@ -266,7 +266,7 @@ def diagnose(case: WrongCell) -> Finding:
     """What to say about a wrong cell: the first misconception that explains it."""
     finding = _first(case)
     if case.column == "d" and case.shared and case.same_motion:
-        return replace(finding, look=f"{finding.look} {SUM_COUNTS}")
+        return replace(finding, hint=f"{finding.hint} {SUM_COUNTS}")
     return finding
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import DhTableSpec
-from service.grading.comparison import Match, Numbers, difference
+from service.grading.comparison import Match, difference
 from service.grading.diagnosis.table_freedom import lost_freedom
 from service.grading.diagnosis.whole_table import (
     TOLERANCE,
@@ -28,6 +28,7 @@ from service.grading.reading.table import IS_ANGLE, values_of
 from service.grading.report import Severity
 from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
+from service.kinematics.transforms import Numbers
 
 # Enough samples to tell tables apart that are tried by the dozen.
 FEW = 3
@@ -36,7 +37,7 @@ SAME = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class _Meant:
-    """What a table was meant to be: ``(rows, 4, LANES)``, None where that takes other rows.
+    """What a table was meant to be: ``(rows, 4, SAMPLES)``, None where that takes other rows.
 
     ``changed`` are the cells in which that differs from what was handed in, ``(rows, 4)``;
     ``departures`` is what its frames cost.
@@ -87,17 +88,17 @@ def _explanations(
     *,
     combine: bool,
 ) -> tuple[WrittenTable, list[Explanation]]:
-    """The table taken apart, and the beliefs that explain it."""
+    """The table taken apart, and the misconceptions that explain it."""
     robot, samples = grading.exercise.robot, grading.samples
     reference = robot.tables.get(convention)
     own = None if reference is None else reference_values(reference, samples)
     table = written_table(values, convention, own, robot.joints, samples)
-    freedom, few = freedom_of(part), samples.few(FEW)
+    freedom, subset = freedom_of(part), samples.subset(FEW)
 
     def valid(tables: Numbers, convention: Convention) -> NDArray[np.bool_]:
-        return valid_tables(tables, roles, convention, freedom, grading.exercise, few, TOLERANCE)
+        return valid_tables(tables, roles, convention, freedom, grading.exercise, subset, TOLERANCE)
 
-    return table, explanations(table.at_few(FEW), valid, combine=combine)
+    return table, explanations(table.subset(FEW), valid, combine=combine)
 
 
 def _meant(

@@ -32,7 +32,7 @@ FEW = 2
 
 @dataclass(frozen=True, slots=True)
 class _Arm:
-    """Joints with the rows that they have in a table, and their screws ``(lanes, 6, joints)``.
+    """Joints with the rows that they have in a table, and their screws ``(samples, 6, joints)``.
 
     Lengths are measured in the exercise's typical length.
     """
@@ -42,7 +42,7 @@ class _Arm:
     screws: Screws
 
     def directions(self, i: int) -> NDArray[np.float64]:
-        """The axis of a joint, ``(lanes, 3)``."""
+        """The axis of a joint, ``(samples, 3)``."""
         return self.screws[:, 3:, i] if self.joints[i].prismatic else self.screws[:, :3, i]
 
 
@@ -55,11 +55,11 @@ def lost_freedom(
 ) -> tuple[Finding, ...]:
     """The joints of a table that get in each other's way, or move nothing.
 
-    ``values`` is the student's table ``(rows, 4, LANES)`` in ``convention``, NaN where a cell could
-    not be read: then nothing can be said. ``joint_rows`` names the row of each of the robot's
+    ``values`` is the student's table ``(rows, 4, SAMPLES)`` in ``convention``, NaN where a cell
+    could not be read: then nothing can be said. ``joint_rows`` names the row of each of the robot's
     joints; one without a row is left out.
     """
-    table = samples.few_of(values, FEW)
+    table = samples.subset_of(values, FEW)
     if not np.isfinite(table).all():
         return ()
     held = [(j, row) for j, row in enumerate(joint_rows) if row is not None]
@@ -71,9 +71,9 @@ def lost_freedom(
     written = _arm(table, convention, moving, exercise)
     if rank(written.screws) == len(moving):
         return still
-    few = samples.few(FEW)
+    subset = samples.subset(FEW)
     reference = exercise.robot.tables[exercise.robot.convention]
-    own = reference.values(few.values, few.lanes)
+    own = reference.values(subset.values, subset.count)
     intended = _arm(own, reference.convention, [(j, j) for j, _ in moving], exercise)
     shared = _shared_axes(written, intended, convention)
     # A joint that moves nothing may also leave lengths at 0 that would keep the others apart.
@@ -143,7 +143,7 @@ def _one_axis(
 
 
 def _lie(one: NDArray[np.float64], other: NDArray[np.float64]) -> tuple[bool, str]:
-    """Whether two axes ``(lanes, 3)`` are parallel throughout, and how they lie, in words."""
+    """Whether two axes ``(samples, 3)`` are parallel throughout, and how they lie, in words."""
     if np.abs(np.cross(one, other)).max() < SAME:
         return True, "parallel, but apart"
     cosines = np.abs(np.sum(one * other, axis=-1))

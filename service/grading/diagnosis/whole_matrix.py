@@ -1,7 +1,7 @@
 """Slips that run through a whole matrix.
 
-Each function is one belief that the student may have held, or one property that the matrix should
-have. It says what it explains; the entries that it explains need no word of their own.
+Each function is one misconception that the student may have held, or one property that the matrix
+should have. It says what it explains; the entries that it explains need no word of their own.
 """
 
 from collections.abc import Mapping, Sequence
@@ -10,13 +10,13 @@ from itertools import permutations
 
 import numpy as np
 
-from service.grading.comparison import EXACT, ROUNDED, Numbers
+from service.grading.comparison import EXACT, ROUNDED
 from service.grading.diagnosis.link_products import Alternative, alternatives, as_entries
 from service.grading.diagnosis.matrix_case import WHOLE, Block, Explanation, Mask, MatrixCase
 from service.grading.diagnosis.wrong_value import UNEXPLAINED
 from service.grading.feedback import Finding
 from service.grading.report import Severity
-from service.kinematics.transforms import inverse
+from service.kinematics.transforms import Numbers, inverse
 
 ROTATION = (slice(0, 3), slice(0, 3))
 POSITION = (slice(0, 3), slice(3, 4))
@@ -98,9 +98,10 @@ def bottom_row(case: MatrixCase) -> Explanation | None:
 
 @dataclass(frozen=True, slots=True)
 class _Offered:
-    """The poses of all beliefs ``(n, rows, columns, LANES)``, and where the student's agrees.
+    """The poses of all misconceptions ``(n, rows, columns, SAMPLES)``, compared with the answer.
 
-    ``right`` is where they are what is expected: a belief that changes nothing explains nothing.
+    ``right`` is where they are what is expected: a misconception that changes nothing explains
+    nothing.
     """
 
     alternatives: Sequence[Alternative]
@@ -122,9 +123,9 @@ class _Offered:
         return _first(_everywhere(self.agree[:, *block]) & changed & moves)
 
     def told(self, subject: str, i: int) -> Finding:
-        """What is said of belief ``i``."""
+        """What is said of misconception ``i``."""
         alternative = self.alternatives[i]
-        look = f"{subject} {alternative.what}. {alternative.look}"
+        look = f"{subject} {alternative.what}. {alternative.hint}"
         return Finding(alternative.code, look, alternative.correction)
 
 
@@ -138,7 +139,7 @@ def _offered(case: MatrixCase) -> _Offered | None:
 
 
 def other_pose(case: MatrixCase, offered: _Offered) -> list[Explanation]:
-    """Another pose was worked out; all beliefs of ``products``, and the inverse of each."""
+    """Another pose was worked out; all misconceptions of ``products``, and the inverse of each."""
     whole = offered.whole()
     if whole is not None:
         return [Explanation(offered.told("This matrix is", whole), case.area(UPPER))]
@@ -248,7 +249,7 @@ def rotation_not_orthonormal(rotation: Numbers) -> Finding | None:
 
 
 def _fault(rotation: Numbers) -> str | None:
-    """Which column of ``(LANES, 3, 3)`` has not length 1, or else which are at no right angle."""
+    """Which column of ``(SAMPLES, 3, 3)`` has not length 1, or else which are at no right angle."""
     products = np.swapaxes(rotation, 1, 2) @ rotation
     off = np.abs(products - np.eye(3)).max(axis=0) > 4 * ROUNDED
     for j in range(3):
@@ -284,13 +285,13 @@ def _of_pose(case: MatrixCase) -> list[Explanation]:
 
 
 def _of_blocks(case: MatrixCase, offered: _Offered | None) -> list[Explanation]:
-    beliefs: list[Explanation | None] = []
+    misconceptions: list[Explanation | None] = []
     if case.wrong[ROTATION].any():
         rearranged = transposed_rotation(case) or columns_exchanged(case)
-        beliefs.append(rearranged or (other_rotation(case, offered) if offered else None))
+        misconceptions.append(rearranged or (other_rotation(case, offered) if offered else None))
     if offered and case.is_transform and case.wrong[POSITION].any():
-        beliefs.append(other_position(case, offered))
-    found = [belief for belief in beliefs if belief is not None]
+        misconceptions.append(other_position(case, offered))
+    found = [misconception for misconception in misconceptions if misconception is not None]
     signs = line_sign(case, unexplained(case, found))
     return [*found, signs] if signs else found
 

@@ -1,7 +1,8 @@
 """Slips that run through a whole table.
 
-Each function is one belief that the student may have held. It offers the table as it would have
-been written without it; where that table describes the robot, the belief explains the answer.
+Each function is one misconception that the student may have held. It offers the table as it would
+have been written without it; where that table describes the robot, the misconception explains the
+answer.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -29,7 +30,7 @@ SYMBOLS = ("a", "α", "d", "θ")
 
 @dataclass(frozen=True, slots=True)
 class WrittenTable:
-    """A table that is wrong: numbers ``(rows, 4, lanes)``, angles in radians, all cells read.
+    """A table that is wrong: numbers ``(rows, 4, samples)``, angles in radians, all cells read.
 
     Its values are the sum of ``constants`` and ``motion``, which is what the joint variables
     contribute. ``reference`` is the reference's table where it has as many rows, to tell what fell
@@ -46,12 +47,12 @@ class WrittenTable:
         """The table as it was handed in."""
         return self.constants + self.motion
 
-    def at_few(self, count: int) -> "WrittenTable":
-        """The same table at few of its samples."""
+    def subset(self, count: int) -> "WrittenTable":
+        """The same table at a subset of its samples."""
         constants, motion = (
-            Samples.few_of(cells, count) for cells in (self.constants, self.motion)
+            Samples.subset_of(cells, count) for cells in (self.constants, self.motion)
         )
-        reference = None if self.reference is None else Samples.few_of(self.reference, count)
+        reference = None if self.reference is None else Samples.subset_of(self.reference, count)
         return WrittenTable(constants, motion, self.convention, reference)
 
     def changed(self, constants: Table, motion: Table | None = None) -> "WrittenTable":
@@ -61,7 +62,7 @@ class WrittenTable:
 
 
 class Repair(NamedTuple):
-    """The table without one belief, and how to tell of the belief."""
+    """The table without one misconception, and how to tell of the misconception."""
 
     table: WrittenTable
     finding: Callable[[], Finding]
@@ -258,28 +259,28 @@ MISCONCEPTIONS: tuple[Misconception, ...] = (
 )
 
 
-# Beliefs one after the other, and of each which of its repairs, by number.
+# Misconceptions one after the other, and of each which of its repairs, by number.
 Chain = tuple[tuple[Misconception, int], ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """Beliefs that explain the whole of a table, and how to repair it at any samples."""
+    """Misconceptions that explain the whole of a table, and how to repair it at any samples."""
 
     chain: Chain
     findings: tuple[Finding, ...]
 
     def repaired(self, table: WrittenTable) -> WrittenTable:
-        """The table, at whatever samples, as it would have been without the beliefs."""
-        for belief, which in self.chain:
-            table = list(belief(table))[which].table
+        """The table, at whatever samples, as it would have been without the misconceptions."""
+        for misconception, which in self.chain:
+            table = list(misconception(table))[which].table
         return table
 
 
 def explanations(table: WrittenTable, valid: Validity, *, combine: bool) -> list[Explanation]:
-    """What explains the whole table: one belief, or else two of them where ``combine`` allows.
+    """What explains the whole table: one misconception, or two where ``combine`` allows.
 
-    ``valid`` tells which tables describe the robot. A belief that would change nothing is no
+    ``valid`` tells which tables describe the robot. A misconception that would change nothing is no
     explanation.
     """
     found = _explaining(table, _repairs(table, MISCONCEPTIONS), valid)

@@ -9,20 +9,21 @@ from service.catalogue import Joint
 from service.expressions import Expression
 from service.grading.comparison import same
 from service.grading.feedback import Finding
-from service.grading.samples import Lanes, Samples
+from service.grading.samples import Samples
+from service.kinematics.transforms import Numbers
 
 
 @dataclass(frozen=True)
 class WrongValue:
     """Something handed in whose value is not the expected one.
 
-    ``actual`` and ``expected`` are ``(LANES,)``, angles in radians. ``expected_text`` is what would
-    be right, as the student would write it, or empty where it is not known as a formula.
+    ``actual`` and ``expected`` are ``(SAMPLES,)``, angles in radians. ``expected_text`` is what
+    would be right, as the student would write it, or empty where it is not known as a formula.
     """
 
     expression: Expression
-    actual: Lanes
-    expected: Lanes
+    actual: Numbers
+    expected: Numbers
     expected_text: str
     samples: Samples
     scale: float
@@ -33,7 +34,7 @@ class WrongValue:
         """The sentence that gives the answer away."""
         return f"It should be {self.expected_text}." if self.expected_text else ""
 
-    def equal(self, one: Lanes, other: Lanes) -> bool:
+    def equal(self, one: Numbers, other: Numbers) -> bool:
         """Whether two values of this quantity are the same."""
         return same(one, other, self.scale, self.angle)
 
@@ -60,7 +61,7 @@ class WrongCell(WrongValue):
         return self.actual_coefficients == self.expected_coefficients
 
     @cached_property
-    def constants(self) -> tuple[Lanes, Lanes]:
+    def constants(self) -> tuple[Numbers, Numbers]:
         """Actual and expected value without the joint variables that they share."""
         motion = sum(
             count * self.samples.values[joint.variable]
@@ -70,7 +71,7 @@ class WrongCell(WrongValue):
         return self.actual - motion, self.expected - motion
 
 
-# The code of a wrong value that no known belief explains.
+# The code of a wrong value that no known misconception explains.
 UNEXPLAINED = "value"
 
 
@@ -91,7 +92,7 @@ def undefined(case: WrongValue) -> Finding | None:
 
 
 def differs(case: WrongValue, look: str) -> Finding:
-    """No belief that is known explains the value: ``look``, and one counterexample."""
+    """No misconception that is known explains the value: ``look``, and one counterexample."""
     at = case.samples.at(0, case.expression.symbols)
     return Finding(
         UNEXPLAINED, look, case.correction, values={**at, "yours": float(f"{case.actual[0]:.4g}")}

@@ -11,26 +11,25 @@ from service.catalogue import (
     grid_values,
 )
 from service.catalogue.robot import Robot, Values, at_home
-from service.grading.comparison import Numbers
 from service.grading.judging.own_frames.reference import tool_pose
 from service.grading.part import Grading
-from service.grading.samples import LANES, Samples
-from service.kinematics.transforms import Matrices, inverse
+from service.grading.samples import SAMPLES, Samples
+from service.kinematics.transforms import Matrices, Numbers, inverse
 
 PoseSpec = TransformSpec | RotationSpec | PositionSpec | EulerAnglesSpec
 
 
 def own_values(part_id: str, exercise: Exercise, samples: Samples) -> Numbers | None:
-    """The numbers of the formulas that the part's file gives, ``(rows, columns, LANES)``.
+    """The numbers of the formulas that the part's file gives, ``(rows, columns, SAMPLES)``.
 
     None where it gives none: then the robot tells.
     """
     grid = exercise.formulas.get(part_id)
-    return None if grid is None else grid_values(grid, samples.values, LANES)
+    return None if grid is None else grid_values(grid, samples.values, SAMPLES)
 
 
 def robot_pose(part: PoseSpec, exercise: Exercise, samples: Samples) -> Matrices:
-    """The pose ``(LANES, 4, 4)`` of the robot that the part asks for. Raises LookupError."""
+    """The pose ``(SAMPLES, 4, 4)`` of the robot that the part asks for. Raises LookupError."""
     robot = exercise.reference
     if robot is None:
         raise LookupError(f"exercise {exercise.id!r} has no robot")
@@ -38,15 +37,15 @@ def robot_pose(part: PoseSpec, exercise: Exercise, samples: Samples) -> Matrices
         return tool_pose(exercise, samples)
     values: Values = samples.values
     if part.home:
-        values = at_home(robot.joints, values, LANES)
-    pose = robot.frame(part.to, values, LANES)
+        values = at_home(robot.joints, values, SAMPLES)
+    pose = robot.frame(part.to, values, SAMPLES)
     if part.start == "base":
         return pose
-    return inverse(robot.frame(part.start, values, LANES)) @ pose
+    return inverse(robot.frame(part.start, values, SAMPLES)) @ pose
 
 
 def asked_pose(part: PoseSpec, grading: Grading) -> Matrices:
-    """The pose ``(LANES, 4, 4)`` that the part asks for: the robot's, or the student's own chain's.
+    """The pose ``(SAMPLES, 4, 4)`` that the part asks for: of the robot, or of the student's chain.
 
     An own chain has the frames that its answer has; what asks for one that it has not is held
     against the robot.
@@ -71,5 +70,5 @@ def is_whole_chain(part: PoseSpec, exercise: Exercise) -> bool:
 
 
 def as_entries(matrices: Matrices) -> Numbers:
-    """``(LANES, rows, columns)`` as ``(rows, columns, LANES)``."""
+    """``(SAMPLES, rows, columns)`` as ``(rows, columns, SAMPLES)``."""
     return np.moveaxis(matrices, 0, -1)

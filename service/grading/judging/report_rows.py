@@ -42,7 +42,7 @@ def entry_rows(
                 _cell(entry, (label, str(j + 1)), match, slips.get((i, j)), grading)
                 for j, (entry, match) in enumerate(zip(row, found[i].tolist(), strict=True))
             ),
-            grading.show((remarks[i],), label) if remarks and i in remarks else (),
+            grading.visible((remarks[i],), label) if remarks and i in remarks else (),
         )
         for i, (label, row) in enumerate(zip(names, entries, strict=True))
     )
@@ -67,4 +67,4 @@ def _cell(
     elif entry.expression is not None and match < Match.ROUNDED:
         verdict = Verdict.INCORRECT
         findings = (*findings, slip) if slip else findings
-    return CellReport(column, verdict, grading.show(findings, row, column))
+    return CellReport(column, verdict, grading.visible(findings, row, column))

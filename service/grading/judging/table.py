@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import DhTableSpec, Joint, ReferenceTable
-from service.grading.comparison import Match, Numbers, difference, matches, same
+from service.grading.comparison import Match, difference, matches, same
 from service.grading.feedback import Finding
 from service.grading.joint_motion import TOLERANCE, changes
 from service.grading.judging.own_frames.few_cells import FrameReading, frames_from_reference
@@ -24,11 +24,11 @@ from service.grading.reading.table import (
     aligned,
     values_of,
 )
-from service.grading.samples import LANES, Lanes
+from service.grading.samples import SAMPLES
 from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh import Convention
 from service.kinematics.frame_choice import NO_SUCH_CELL, WRONG_CELL, departure
-from service.kinematics.transforms import Matrices
+from service.kinematics.transforms import Matrices, Numbers
 
 # Far beyond what rounding does to a cell.
 PLAIN = 0.02
@@ -39,7 +39,7 @@ FAR = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class JudgedRow:
-    """A row that was handed in, or is missing (None), and what it should be: ``(4, LANES)``.
+    """A row that was handed in, or is missing (None), and what it should be: ``(4, SAMPLES)``.
 
     ``shared`` says that its axis has a parallel neighbour, so that offsets along it add up.
     """
@@ -143,7 +143,7 @@ def _judged_in_own_frames(
 def judged_against(
     meant: Table, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Judgement:
-    """The table held against what it was meant to be, ``(rows, 4, LANES)``; all roles have rows."""
+    """The table held against the intended one, ``(rows, 4, SAMPLES)``; all roles have rows."""
     apart = frames_from_reference(meant, roles, convention, grading)
     return _held_against(FrameReading(roles, meant, apart, WRONG_CELL), roles, convention, grading)
 
@@ -178,7 +178,7 @@ def _held_against(
 
 
 def departures_of(apart: Matrices, grading: Grading) -> float:
-    """What the frames ``(joints, lanes, 4, 4)``, seen from the reference's, cost altogether."""
+    """What the frames ``(joints, samples, 4, 4)``, seen from the reference's, cost altogether."""
     return float(departure(apart, grading.exercise.length_scale).sum())
 
 
@@ -302,7 +302,7 @@ def column_scales(grading: Grading) -> Numbers:
 
 def _all_matches(judged: Sequence[JudgedRow], grading: Grading) -> NDArray[np.int_]:
     """The Match of each cell of each row, ``(rows, 4)``."""
-    nothing = np.full((len(COLUMNS), LANES), np.nan)
+    nothing = np.full((len(COLUMNS), SAMPLES), np.nan)
     actual = np.array([nothing if row.row is None else row.row.handed_in for row in judged])
     rounded = [[False] * len(COLUMNS) if row.row is None else row.row.rounded for row in judged]
     expected = np.array([row.expected for row in judged])
@@ -321,7 +321,7 @@ def _all_matches(judged: Sequence[JudgedRow], grading: Grading) -> NDArray[np.in
 
 
 def _is_rounded(
-    actual: Lanes, expected: Lanes, column: int, joint: Joint | None, grading: Grading
+    actual: Numbers, expected: Numbers, column: int, joint: Joint | None, grading: Grading
 ) -> bool:
     """Whether a cell within rounding is rounded: in its constant, and moved as it should be."""
     angle = bool(IS_ANGLE[column])
@@ -336,5 +336,5 @@ def _is_rounded(
     return same(actual - variable, expected - variable, scale, angle)
 
 
-def _moves_as(one: Lanes, other: Lanes, angle: bool) -> bool:
+def _moves_as(one: Numbers, other: Numbers, angle: bool) -> bool:
     return bool(np.abs(difference(one, other, angle)).max() < TOLERANCE)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.expressions import Kind
-from service.grading.comparison import Numbers, matches
+from service.grading.comparison import matches
 from service.grading.diagnosis.angle import diagnose_angle
 from service.grading.diagnosis.formula_repair import WrongEntry
 from service.grading.diagnosis.matrix_entry import diagnose
@@ -15,11 +15,12 @@ from service.grading.diagnosis.wrong_value import WrongValue
 from service.grading.feedback import Finding
 from service.grading.part import Grading
 from service.grading.reading.entry import Entry
+from service.kinematics.transforms import Numbers
 
 
 @dataclass(frozen=True, slots=True)
 class WrittenValues:
-    """What was written and what was expected, ``(n, LANES)``.
+    """What was written and what was expected, ``(n, SAMPLES)``.
 
     ``texts`` is what would be right as formulas, each empty where it is not known as one.
     """
@@ -30,7 +31,7 @@ class WrittenValues:
     texts: Sequence[str]
 
     def actual(self, grading: Grading) -> Numbers:
-        """The numbers that were written, ``(n, LANES)``; NaN where there are none."""
+        """The numbers that were written, ``(n, SAMPLES)``; NaN where there are none."""
         return grading.reader.numbers(self.entries, self.quantities)
 
     def scales(self, grading: Grading) -> Numbers:

@@ -20,10 +20,9 @@ from service.grading.reading.pasted import length_unit
 from service.grading.reading.table import IS_ANGLE, HandedInRow, UnreadableTableError, read_table
 from service.grading.reading.table_json import canonical_table
 from service.grading.report import CellReport, PartReport, Verdict, row_report
-from service.grading.samples import Lanes
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh_row import row
-from service.kinematics.transforms import Matrices
+from service.kinematics.transforms import Matrices, Numbers
 
 LABEL = "1"
 NONE = "none"
@@ -41,23 +40,23 @@ class DhRowKind:
         try:
             written = None if _says_none(answer) else _read_row(answer, grading)
         except UnreadableTableError as error:
-            return terms.unread(Verdict.UNREADABLE, grading.show((error.finding,)))
+            return terms.unread(Verdict.UNREADABLE, grading.visible((error.finding,)))
         if written is None:
             slips = () if broken else (has_a_row(part.convention),)
             verdict = Verdict.CORRECT if broken else Verdict.INCORRECT
             cell = CellReport(NONE, verdict)
-            report = row_report(LABEL, part.points, (cell,), grading.show(slips, LABEL))
+            report = row_report(LABEL, part.points, (cell,), grading.visible(slips, LABEL))
             return terms.report((report,))
         if broken:
             cells = tuple(
                 CellReport(
                     label,
                     Verdict.INCORRECT if entry.readable else entry.verdict,
-                    grading.show(entry.findings, LABEL, label),
+                    grading.visible(entry.findings, LABEL, label),
                 )
                 for label, entry in zip(COLUMNS, written.entries, strict=True)
             )
-            told = grading.show(tuple(broken), LABEL)
+            told = grading.visible(tuple(broken), LABEL)
             return terms.report((row_report(LABEL, part.points, cells, told),))
         return self._against_the_row(written, transform, part, grading, terms)
 
@@ -82,7 +81,7 @@ class DhRowKind:
             _cell(i, written, expected[i], match, grading, explained=remark is not None)
             for i, match in enumerate(found.tolist())
         )
-        told = grading.show((remark,) if remark else (), LABEL)
+        told = grading.visible((remark,) if remark else (), LABEL)
         return terms.report((row_report(LABEL, part.points, cells, told),))
 
 
@@ -170,7 +169,7 @@ _CONTRADICTION = Finding(
 def _cell(
     i: int,
     written: HandedInRow,
-    expected: Lanes,
+    expected: Numbers,
     match: int,
     grading: Grading,
     *,
@@ -199,4 +198,4 @@ def _cell(
         )
         if not (explained and slip.code == UNEXPLAINED):
             findings = (*findings, slip)
-    return CellReport(label, verdict, grading.show(findings, LABEL, label))
+    return CellReport(label, verdict, grading.visible(findings, LABEL, label))

@@ -45,7 +45,7 @@ from service.kinematics.transforms import Matrices
 EXACT = int(Match.EXACT)
 _RIGHT = tuple(CellReport(label, Verdict.CORRECT) for label in COLUMNS)
 
-# With so many wrong cells two beliefs at once are looked for.
+# With so many wrong cells two misconceptions at once are looked for.
 WRONG_THROUGHOUT = 3
 
 
@@ -59,21 +59,21 @@ class DhTableKind:
         try:
             table = read_table(answer, grading.reader, length_unit(grading.exercise))
         except UnreadableTableError as error:
-            return terms.unread(Verdict.UNREADABLE, grading.show((error.finding,)))
+            return terms.unread(Verdict.UNREADABLE, grading.visible((error.finding,)))
         if not table.rows:
             return terms.unread(Verdict.MISSING)
         convention, findings = _convention(part, table, grading.exercise)
         judgement = judged_table(part, table.rows, convention, grading)
         judgement, found, lost = _of_the_whole(part, table.rows, judgement, convention, grading)
         rows = _row_reports(judgement, part.points, grading, found)
-        told = grading.show((*table.findings, *findings, *found, *lost, *judgement.findings))
+        told = grading.visible((*table.findings, *findings, *found, *lost, *judgement.findings))
         missing = tuple(
             message
             for judged in judgement.rows
             if judged.row is None
-            for message in grading.show((_missing(judged),), judged.label)
+            for message in grading.visible((_missing(judged),), judged.label)
         )
-        extra = grading.show(tuple(_extra_row(i) for i in judgement.extra))
+        extra = grading.visible(tuple(_extra_row(i) for i in judgement.extra))
         return terms.report(rows, (*told, *missing, *extra), lost=judgement.lost)
 
 
@@ -131,7 +131,7 @@ def read_chain(part: DhTableSpec, answer: object, grading: Grading) -> OwnChain 
 
 
 def read_frames(part: DhTableSpec, answer: object, grading: Grading) -> Matrices | None:
-    """The frames of that chain alone, ``(rows + 1, LANES, 4, 4)``, without a judgement."""
+    """The frames of that chain alone, ``(rows + 1, SAMPLES, 4, 4)``, without a judgement."""
     read = _read_whole(part, answer, grading)
     if read is None:
         return None
@@ -160,7 +160,7 @@ def _row_reports(
     share = points / len(judgement.rows)
     slips = _slips(judgement, grading)
     if of_the_whole:
-        belongs = replace(of_the_whole[0], look=_PART_OF_IT)
+        belongs = replace(of_the_whole[0], hint=_PART_OF_IT)
         slips = {
             place: replace(belongs, correction=slip.correction) for place, slip in slips.items()
         }
@@ -194,7 +194,7 @@ def _cell(
     elif entry.expression is not None and match < Match.ROUNDED:
         verdict = Verdict.INCORRECT
         findings = (*findings, slip) if slip else findings
-    return CellReport(label, verdict, grading.show(findings, judged.label, label))
+    return CellReport(label, verdict, grading.visible(findings, judged.label, label))
 
 
 def _slips(judgement: Judgement, grading: Grading) -> dict[tuple[int, int], Finding]:

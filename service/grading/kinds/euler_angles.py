@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from service.catalogue import EulerAnglesSpec
 from service.expressions import Kind
 from service.expressions.tree import Call
-from service.grading.comparison import EXACT, ROUNDED, Match, Numbers, difference, matches
+from service.grading.comparison import EXACT, ROUNDED, Match, difference, matches
 from service.grading.diagnosis.angle import (
     ARCTANGENTS,
     AnglesExplained,
@@ -38,7 +38,7 @@ from service.kinematics.rotations import (
     other_triple,
     to_angles,
 )
-from service.kinematics.transforms import Matrices
+from service.kinematics.transforms import Matrices, Numbers
 
 QUANTITIES: tuple[Kind, ...] = ("angle",) * 3
 
@@ -60,7 +60,7 @@ class EulerAnglesKind:
         try:
             entries = read_list(answer, QUANTITIES, grading.reader)
         except UnreadableMatrixError as error:
-            return terms.unread(Verdict.UNREADABLE, grading.show((error.finding,)))
+            return terms.unread(Verdict.UNREADABLE, grading.visible((error.finding,)))
         turns, fixed = part.turns, part.axes == "fixed"
         rotation = _expected_rotation(part, grading)
         angles = grading.reader.numbers(entries, QUANTITIES)
@@ -80,7 +80,7 @@ class EulerAnglesKind:
         rows = entry_rows(
             [[entry] for entry in entries], found[:, None], slips, part.points, grading
         )
-        return terms.report(rows, grading.show(told))
+        return terms.report(rows, grading.visible(told))
 
 
 def _expected_rotation(part: EulerAnglesSpec, grading: Grading) -> Matrices:
@@ -110,7 +110,7 @@ def _found(
 def nearest_triple(
     angles: Numbers, rotation: Matrices, sequence: str, *, fixed: bool = False
 ) -> Numbers:
-    """Of all triples ``(3, LANES)`` that describe ``rotation``, the one nearest to ``angles``.
+    """Of all triples ``(3, SAMPLES)`` that describe ``rotation``, the one nearest to ``angles``.
 
     Nearest is the one that the fewest angles differ from. A NaN differs from nothing.
     """
@@ -123,18 +123,19 @@ def nearest_triple(
     both = np.stack([one, np.where(singular[:, None], one, other_triple(sequence, one))])
     off = np.nan_to_num(np.abs(difference(angles.T, both, angle=True)))
     hit = off <= ROUNDED * np.maximum(1.0, np.abs(both))
-    lanes = np.arange(len(one))
-    # The lanes may take sides differently: an atan2 is of one family, a robot's own angle of both.
-    by_lane = np.lexsort((off.sum(axis=-1), -hit.sum(axis=-1)), axis=0)[0]
-    sides = [np.zeros_like(by_lane), np.ones_like(by_lane), by_lane]
+    samples = np.arange(len(one))
+    # The samples may take sides differently: an atan2 is of one family, a robot's own angle of
+    # both.
+    by_sample = np.lexsort((off.sum(axis=-1), -hit.sum(axis=-1)), axis=0)[0]
+    sides = [np.zeros_like(by_sample), np.ones_like(by_sample), by_sample]
     best = min(
         sides,
         key=lambda side: (
-            np.count_nonzero(~hit[side, lanes].all(axis=0)),
-            float(off[side, lanes].sum()),
+            np.count_nonzero(~hit[side, samples].all(axis=0)),
+            float(off[side, samples].sum()),
         ),
     )
-    return np.asarray(both[best, lanes].T)
+    return np.asarray(both[best, samples].T)
 
 
 def _singular_triple(angles: Numbers, one: Numbers, rotation: Matrices, sequence: str) -> Numbers:

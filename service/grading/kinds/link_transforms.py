@@ -29,7 +29,7 @@ from service.grading.report import (
     RowReport,
     Verdict,
 )
-from service.grading.samples import LANES
+from service.grading.samples import SAMPLES
 from service.kinematics.chain import links
 from service.kinematics.dh import link_transforms
 from service.kinematics.dh_row import row as dh_row
@@ -43,7 +43,7 @@ _WORKED_OUT = Entry(read(0, Vocabulary([])))
 
 @dataclass(frozen=True, slots=True)
 class ReadLinks:
-    """A list of matrices as read: entries, and values ``(k, LANES, 4, 4)``, NaN where unread."""
+    """A list of matrices as read: entries, and values ``(k, SAMPLES, 4, 4)``, NaN where unread."""
 
     entries: list[list[list[Entry]]]
     values: Matrices
@@ -59,7 +59,7 @@ class LinkTransformsKind:
         labels = grading.exercise.robot.tables[part.convention].labels
         found = read_links(part, answer, grading)
         if found is None:
-            return terms.unread(Verdict.UNREADABLE, grading.show((_wrong_shape(labels),)))
+            return terms.unread(Verdict.UNREADABLE, grading.visible((_wrong_shape(labels),)))
         expected = np.moveaxis(_expected(part, found, grading), 1, -1)
         rows: list[RowReport] = []
         told: list[Feedback] = []
@@ -92,7 +92,7 @@ def read_links(part: LinkTransformsSpec, answer: object, grading: Grading) -> Re
 
 
 def _expected(part: LinkTransformsSpec, found: ReadLinks, grading: Grading) -> Matrices:
-    """What each matrix must be, ``(k, LANES, 4, 4)``."""
+    """What each matrix must be, ``(k, SAMPLES, 4, 4)``."""
     reference = grading.exercise.robot.tables[part.convention]
     source, wanted = grading.source, len(reference.rows)
     if source is not None and grading.following and len(source.frames) == wanted + 1:
@@ -103,7 +103,7 @@ def _expected(part: LinkTransformsSpec, found: ReadLinks, grading: Grading) -> M
                 return source.nearest_links
         else:
             return _nearest_links(part, found, grading)
-    return links(reference.values(grading.samples.values, LANES), part.convention)
+    return links(reference.values(grading.samples.values, SAMPLES), part.convention)
 
 
 def _nearest_links(part: LinkTransformsSpec, found: ReadLinks, grading: Grading) -> Matrices:

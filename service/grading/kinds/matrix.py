@@ -24,7 +24,7 @@ class MatrixKind:
         try:
             entries = read_matrix(answer, part.quantities, grading.reader)
         except UnreadableMatrixError as error:
-            return terms.unread(Verdict.UNREADABLE, grading.show((error.finding,)))
+            return terms.unread(Verdict.UNREADABLE, grading.visible((error.finding,)))
         values = own_values(part.id, grading.exercise, grading.samples)
         if values is None:
             raise LookupError(f"part {part.id!r} has no formulas")

@@ -7,7 +7,7 @@ from itertools import chain
 import numpy as np
 
 from service.expressions import Kind
-from service.grading.comparison import Match, Numbers, matches
+from service.grading.comparison import Match, matches
 from service.grading.diagnosis.formula_repair import WrongEntry
 from service.grading.diagnosis.matrix_case import Chain, Explanation, MatrixCase
 from service.grading.diagnosis.matrix_entry import diagnose
@@ -21,6 +21,7 @@ from service.grading.reading.pasted import from_grid_error, read_pasted_matrix
 from service.grading.report import Feedback, RowReport
 from service.grading.samples import Samples
 from service.grids import GridError
+from service.kinematics.transforms import Numbers
 
 # How many samples of each half show what a whole matrix is.
 FEW = 4
@@ -33,7 +34,7 @@ COST_IF_EXPLAINED = 0.25
 
 @dataclass(frozen=True, slots=True)
 class ExpectedMatrix:
-    """What a matrix must be: ``values`` is ``(rows, columns, lanes)``, each of a quantity.
+    """What a matrix must be: ``values`` is ``(rows, columns, samples)``, each of a quantity.
 
     ``rigid`` marks a homogeneous transform (4×4) or a rotation (3×3).
     """
@@ -53,7 +54,7 @@ class UnreadableMatrixError(Exception):
     """The answer is no matrix of the size asked for; ``finding`` says what it would look like."""
 
     def __init__(self, finding: Finding) -> None:
-        super().__init__(finding.look)
+        super().__init__(finding.hint)
         self.finding = finding
 
 
@@ -109,7 +110,7 @@ def _row(row: object, quantities: Sequence[Kind], reader: Reader) -> list[Entry]
 def numbers_of(
     entries: list[list[Entry]], quantities: Sequence[Sequence[Kind]], reader: Reader
 ) -> Numbers:
-    """The values of a matrix's entries, ``(rows, columns, LANES)``; NaN where there are none."""
+    """The values of a matrix's entries, ``(rows, columns, SAMPLES)``; NaN where there are none."""
     flat = reader.numbers(list(chain(*entries)), list(chain(*quantities)))
     return flat.reshape(len(entries), len(quantities[0]), -1)
 
@@ -126,7 +127,7 @@ def _no_chains(_samples: Samples) -> tuple[Chain, ...]:
     return ()
 
 
-def _no_beliefs(_case: MatrixCase) -> list[Explanation]:
+def _no_misconceptions(_case: MatrixCase) -> list[Explanation]:
     return []
 
 
@@ -136,14 +137,15 @@ def judged_matrix(
     points: float,
     grading: Grading,
     chains: Callable[[Samples], tuple[Chain, ...]] = _no_chains,
-    beliefs: Callable[[MatrixCase], list[Explanation]] = _no_beliefs,
+    misconceptions: Callable[[MatrixCase], list[Explanation]] = _no_misconceptions,
     patience: float = PATIENCE,
 ) -> JudgedMatrix:
     """A matrix that is worth ``points``, entry by entry.
 
     ``chains`` gives the links, at the samples it is handed, that the matrix is the product of where
-    it is one; ``beliefs`` explains the matrix by what else it is made of, and is asked first. Both
-    are asked only where something is wrong. ``patience`` bounds how much is taken apart.
+    it is one; ``misconceptions`` explains the matrix by what else it is made of, and is asked
+    first. Both are asked only where something is wrong. ``patience`` bounds how much is taken
+    apart.
     """
     actual = numbers_of(entries, expected.quantities, grading.reader)
     scale = expected.scale(grading.exercise.length_scale)
@@ -152,14 +154,14 @@ def judged_matrix(
     if (found >= Match.ROUNDED).all():
         return JudgedMatrix(entry_rows(entries, found, {}, points, grading))
     case = MatrixCase(
-        actual=Samples.few_of(actual, FEW),
-        expected=Samples.few_of(expected.values, FEW),
+        actual=Samples.subset_of(actual, FEW),
+        expected=Samples.subset_of(expected.values, FEW),
         scale=scale,
         wrong=found == Match.DIFFERENT,
         rigid=expected.rigid,
-        chains=chains(grading.samples.few(FEW)),
+        chains=chains(grading.samples.subset(FEW)),
     )
-    explanations = beliefs(case) or explain(case)
+    explanations = misconceptions(case) or explain(case)
     told_apart = unexplained(case, explanations) | (found == Match.UNDEFINED)
     wrong = {
         (int(i), int(j)): WrongEntry(
@@ -180,11 +182,11 @@ def judged_matrix(
     told = tuple(
         message
         for explanation in explanations
-        for message in grading.show((explanation.finding,), explanation.row)
+        for message in grading.visible((explanation.finding,), explanation.row)
     )
     return JudgedMatrix(
         entry_rows(entries, found, slips, points, grading),
-        (*told, *grading.show((check,) if check else ())),
+        (*told, *grading.visible((check,) if check else ())),
     )
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from service.catalogue import PositionSpec, Robot
 from service.expressions import Kind
-from service.grading.comparison import Match, Numbers
+from service.grading.comparison import Match
 from service.grading.diagnosis.matrix_case import chains_of
 from service.grading.diagnosis.position import WrongPosition, explain_position
 from service.grading.feedback import Finding
@@ -17,6 +17,7 @@ from service.grading.kinds.matrix_rows import UnreadableMatrixError, constant_te
 from service.grading.part import Grading, PartTerms
 from service.grading.reading.value_list import read_list
 from service.grading.report import PartReport, Verdict
+from service.kinematics.transforms import Numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +33,7 @@ class PositionKind:
             planar = part.coordinates == "xy"
             entries = read_list(answer, quantities, grading.reader, planar=planar)
         except UnreadableMatrixError as error:
-            return terms.unread(Verdict.UNREADABLE, grading.show((error.finding,)))
+            return terms.unread(Verdict.UNREADABLE, grading.visible((error.finding,)))
         expected = _expected(part, grading)
         texts = [constant_text(values) for values in expected]
         written = WrittenValues(entries, expected, quantities, texts)
@@ -42,11 +43,11 @@ class PositionKind:
         slips = {} if explained else slips_of(written, wrong, grading)
         column = [[entry] for entry in entries]
         rows = entry_rows(column, found[:, None], slips, part.points, grading)
-        return terms.report(rows, grading.show((explained,) if explained else ()))
+        return terms.report(rows, grading.visible((explained,) if explained else ()))
 
 
 def _expected(part: PositionSpec, grading: Grading) -> Numbers:
-    """The coordinates asked for, ``(n, LANES)``."""
+    """The coordinates asked for, ``(n, SAMPLES)``."""
     own = own_values(part.id, grading.exercise, grading.samples)
     if own is not None:
         return np.asarray(own[0])

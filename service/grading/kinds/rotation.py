@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 from service.catalogue import Robot, RotationSpec
 from service.catalogue.answers import ROTATION
-from service.grading.comparison import Numbers
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase, chains_of
 from service.grading.diagnosis.rotation_steps import Step, explain_steps
 from service.grading.judging.expected import as_entries, asked_pose, is_whole_chain, own_values
@@ -17,6 +16,7 @@ from service.grading.kinds.matrix_rows import (
 from service.grading.part import Grading, PartTerms
 from service.grading.report import PartReport, Verdict
 from service.kinematics.rotations import about, composed
+from service.kinematics.transforms import Numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class RotationKind:
         try:
             entries = read_matrix(answer, ROTATION, grading.reader)
         except UnreadableMatrixError as error:
-            return terms.unread(Verdict.UNREADABLE, grading.show((error.finding,)))
+            return terms.unread(Verdict.UNREADABLE, grading.visible((error.finding,)))
         exercise, samples = grading.exercise, grading.samples
         steps = _steps(part, grading)
         own = own_values(part.id, exercise, samples)
@@ -40,7 +40,7 @@ class RotationKind:
         else:
             values = as_entries(asked_pose(part, grading)[:, :3, :3])
 
-        def beliefs(case: MatrixCase) -> list[Explanation]:
+        def misconceptions(case: MatrixCase) -> list[Explanation]:
             return explain_steps(case, steps)
 
         whole = is_whole_chain(part, exercise) and isinstance(exercise.reference, Robot)
@@ -50,7 +50,7 @@ class RotationKind:
             part.points,
             grading,
             chains=lambda samples: chains_of(exercise, samples) if whole else (),
-            beliefs=beliefs,
+            misconceptions=misconceptions,
         )
         return terms.report(judged.rows, judged.feedback)
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from service.catalogue import ScrewAxesSpec
 from service.catalogue.answers import SCREW
 from service.catalogue.robot import at_home
-from service.grading.comparison import Match, Numbers, matches
+from service.grading.comparison import Match, matches
 from service.grading.diagnosis.screw_axis import WrongScrew, explain_screw
 from service.grading.feedback import Finding
 from service.grading.judging.expected import own_values
@@ -24,14 +24,14 @@ from service.grading.kinds.matrix_rows import (
 from service.grading.part import Grading, PartTerms
 from service.grading.reading.entry import Entry
 from service.grading.report import PartReport, RowReport, Severity, Verdict, rounded_points
-from service.grading.samples import LANES
+from service.grading.samples import SAMPLES
 from service.kinematics.screws import moved
-from service.kinematics.transforms import inverse
+from service.kinematics.transforms import Numbers, inverse
 
 
 @dataclass(frozen=True, slots=True)
 class ExpectedScrews:
-    """The axes asked for, and the same seen from the other frame: ``(joints, 6, LANES)``.
+    """The axes asked for, and the same seen from the other frame: ``(joints, 6, SAMPLES)``.
 
     ``labels`` are the joints' numbers.
     """
@@ -53,7 +53,7 @@ class ScrewAxesKind:
         try:
             entries = read_matrix(_as_rows(answer, len(quantities)), quantities, grading.reader)
         except UnreadableMatrixError as error:
-            return terms.unread(Verdict.UNREADABLE, grading.show((error.finding,)))
+            return terms.unread(Verdict.UNREADABLE, grading.visible((error.finding,)))
         actual = numbers_of(entries, quantities, grading.reader)
         found = _matches(actual, expected.axes, entries, grading)
         axes = expected.axes
@@ -115,8 +115,8 @@ def _expected(part: ScrewAxesSpec, grading: Grading) -> ExpectedScrews:
         return ExpectedScrews(own, None, tuple(str(i + 1) for i in range(len(own))))
     if robot is None:
         raise LookupError(f"exercise {exercise.id!r} has no robot")
-    home = robot.frame("tool", at_home(robot.joints, samples.values, LANES), LANES)
-    space = robot.screws(samples.values, LANES)
+    home = robot.frame("tool", at_home(robot.joints, samples.values, SAMPLES), SAMPLES)
+    space = robot.screws(samples.values, SAMPLES)
     body = moved(inverse(home), space)
     asked, other = (space, body) if part.frame == "space" else (body, space)
     return ExpectedScrews(

@@ -31,7 +31,7 @@ class TransformKind:
         try:
             entries = read_matrix(answer, HOMOGENEOUS, grading.reader)
         except UnreadableMatrixError as error:
-            return terms.unread(Verdict.UNREADABLE, grading.show((error.finding,)))
+            return terms.unread(Verdict.UNREADABLE, grading.visible((error.finding,)))
         exercise, samples = grading.exercise, grading.samples
         own = own_values(part.id, exercise, samples)
         values = as_entries(asked_pose(part, grading)) if own is None else own
@@ -41,7 +41,7 @@ class TransformKind:
         def chains(samples: Samples) -> tuple[Chain, ...]:
             return chains_of(exercise, samples) if linked else ()
 
-        def beliefs(case: MatrixCase) -> list[Explanation]:
+        def misconceptions(case: MatrixCase) -> list[Explanation]:
             return explain_product(case, exercise, samples) if whole else []
 
         judged = judged_matrix(
@@ -50,6 +50,6 @@ class TransformKind:
             part.points,
             grading,
             chains=chains,
-            beliefs=beliefs,
+            misconceptions=misconceptions,
         )
         return terms.report(judged.rows, judged.feedback)

@@ -6,7 +6,7 @@ import numpy as np
 
 from service.catalogue import VectorSpec
 from service.expressions import Kind
-from service.grading.comparison import Match, Numbers
+from service.grading.comparison import Match
 from service.grading.judging.expected import own_values
 from service.grading.judging.report_rows import entry_rows
 from service.grading.judging.value_list import WrittenValues, slips_of
@@ -14,6 +14,7 @@ from service.grading.kinds.matrix_rows import UnreadableMatrixError
 from service.grading.part import Grading, PartTerms
 from service.grading.reading.value_list import read_list
 from service.grading.report import PartReport, Verdict
+from service.kinematics.transforms import Numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +29,7 @@ class VectorKind:
             planar = len(quantities) == 2
             entries = read_list(answer, quantities, grading.reader, planar=planar)
         except UnreadableMatrixError as error:
-            return terms.unread(Verdict.UNREADABLE, grading.show((error.finding,)))
+            return terms.unread(Verdict.UNREADABLE, grading.visible((error.finding,)))
         expected = _expected(part, grading)
         [formulas] = grading.exercise.formulas[part.id]
         texts = [formula.text() for formula in formulas]

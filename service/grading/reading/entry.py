@@ -17,10 +17,10 @@ from service.expressions import (
     evaluate_all,
     read,
 )
-from service.grading.comparison import Numbers
 from service.grading.feedback import Finding
 from service.grading.report import Severity, Verdict
-from service.grading.samples import LANES, SAMPLES, Samples
+from service.grading.samples import HALF, SAMPLES, Samples
+from service.kinematics.transforms import Numbers
 
 AngleUnit = Literal["radians", "degrees"]
 
@@ -108,19 +108,19 @@ class Reader:
         return Entry(expression, findings=tuple(map(_from_note, notes)))
 
     def numbers(self, entries: Sequence[Entry], quantities: Sequence[Kind]) -> Numbers:
-        """The values of entries at the samples, ``(entries, LANES)``.
+        """The values of entries at the samples, ``(entries, SAMPLES)``.
 
         NaN where an entry has none: nothing could be read, or it is undefined or beyond all bounds
         there.
         """
         expressions = [entry.expression for entry in entries]
         found = evaluate_all(expressions, self.samples.values, self.samples.memo)
-        numbers = np.empty((len(entries), LANES))
+        numbers = np.empty((len(entries), SAMPLES))
         for i, values in enumerate(found):
             numbers[i] = values
         numbers[np.abs(numbers) > _bounds(tuple(quantities))] = np.nan
         if not self.moving:
-            change = np.abs(numbers[:, :SAMPLES] - numbers[:, SAMPLES:])
+            change = np.abs(numbers[:, :HALF] - numbers[:, HALF:])
             self.moving = bool((change > MOVES).any())
         return numbers
 

@@ -90,7 +90,7 @@ def _table(text: str, exercise: Exercise, reader: Reader) -> PastedPreview:
     for i, row in enumerate(table.rows):
         if row.problem:
             span = row.problem.span or row.cells[0].whole
-            problem = Problem(row.problem.code, row.problem.look, span)
+            problem = Problem(row.problem.code, row.problem.hint, span)
             typed = text[slice(*span)]
             rows.append((CellPreview(str(i + 1), "", span, typed, problem=problem),))
             continue
@@ -101,7 +101,7 @@ def _table(text: str, exercise: Exercise, reader: Reader) -> PastedPreview:
             cells.append(_cell(entry, cell, (str(i + 1), column), QUANTITIES[column], own))
         rows.append(tuple(cells))
     notes = tuple(
-        Note(finding.code, finding.look, finding.span or (0, 0)) for finding in table.findings
+        Note(finding.code, finding.hint, finding.span or (0, 0)) for finding in table.findings
     )
     return PastedPreview(tuple(rows), notes)
 
@@ -134,7 +134,7 @@ def _cell(
         [finding] = entry.findings
         suggestion = _suggestion(cell.text, quantity, reader)
         span = finding.span or cell.whole
-        return replace(empty, problem=Problem(finding.code, finding.look, span, suggestion))
+        return replace(empty, problem=Problem(finding.code, finding.hint, span, suggestion))
     expression = entry.expression
     return replace(
         empty,
@@ -142,7 +142,7 @@ def _cell(
         latex=expression.latex(),
         mathml=expression.mathml(),
         symbols=tuple(sorted(expression.symbols)),
-        notes=tuple(Note(f.code, f.look, f.span or cell.whole) for f in entry.findings),
+        notes=tuple(Note(f.code, f.hint, f.span or cell.whole) for f in entry.findings),
     )
 
 

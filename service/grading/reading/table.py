@@ -31,7 +31,7 @@ CONVENTION_NAMES: Mapping[str, Convention] = {
 
 @dataclass(frozen=True, slots=True)
 class HandedInRow:
-    """One row as read: an entry for each of a, α, d, θ, and their numbers ``(4, LANES)``.
+    """One row as read: an entry for each of a, α, d, θ, and their numbers ``(4, SAMPLES)``.
 
     A number is NaN where a cell could not be read. Where ``values`` are what rounded angles stand
     for, ``as_written`` are those that were written.
@@ -75,7 +75,7 @@ class UnreadableTableError(Exception):
     """The answer is no table at all; ``finding`` says what it would have to look like."""
 
     def __init__(self, finding: Finding) -> None:
-        super().__init__(finding.look)
+        super().__init__(finding.hint)
         self.finding = finding
 
 
@@ -180,7 +180,7 @@ _NO_ROW = Finding(
 
 
 def values_of(rows: Sequence[HandedInRow]) -> Table:
-    """The numbers of the rows, ``(rows, 4, LANES)``; NaN where a cell could not be read."""
+    """The numbers of the rows, ``(rows, 4, SAMPLES)``; NaN where a cell could not be read."""
     return np.array([row.values for row in rows])
 
 

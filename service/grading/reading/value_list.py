@@ -207,4 +207,4 @@ def _from_grid_error(error: GridError, count: int) -> Finding:
         f"This answer is a list of {count} values: write them with commas between them, or one on "
         f"each line. {_OF_TABLES[error.code]}"
     )
-    return replace(finding, look=look.strip())
+    return replace(finding, hint=look.strip())

@@ -1,4 +1,4 @@
-"""Each belief about angles: one case that it explains, one that it leaves alone."""
+"""Each misconception about angles: one case that it explains, one that it leaves alone."""
 
 from collections.abc import Callable
 from typing import Any
@@ -8,7 +8,6 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from service.expressions import Symbol, Vocabulary, read
-from service.grading.comparison import Numbers
 from service.grading.diagnosis import angle
 from service.grading.diagnosis.angle import (
     MISCONCEPTIONS,
@@ -20,19 +19,20 @@ from service.grading.diagnosis.angle import (
 )
 from service.grading.diagnosis.wrong_value import WrongValue, undefined
 from service.grading.feedback import Finding
-from service.grading.samples import LANES, Samples
+from service.grading.samples import SAMPLES, Samples
+from service.kinematics.transforms import Numbers
 
 RNG = np.random.default_rng(8)
-VALUES = {"q1": RNG.uniform(-3, 3, LANES), "q2": RNG.uniform(-3, 3, LANES)}
+VALUES = {"q1": RNG.uniform(-3, 3, SAMPLES), "q2": RNG.uniform(-3, 3, SAMPLES)}
 WORDS = Vocabulary([Symbol("q1", "angle"), Symbol("q2", "angle")])
 
-Belief = Callable[[WrongValue], Finding | None]
+Misconception = Callable[[WrongValue], Finding | None]
 
 
 def wrong(text: str, expected: str) -> WrongValue:
     expression = read(text, WORDS, quantity="angle")
     right = read(expected, WORDS, quantity="angle")
-    lanes = np.zeros(LANES)
+    lanes = np.zeros(SAMPLES)
     return WrongValue(
         expression=expression,
         actual=lanes + expression.evaluate(VALUES),
@@ -44,8 +44,9 @@ def wrong(text: str, expected: str) -> WrongValue:
     )
 
 
-# The belief, what was written and what is right, and the same for a case that it leaves alone.
-PAIRS: list[tuple[Belief, tuple[str, str], tuple[str, str]]] = [
+# The misconception, what was written and what is right, and the same for a case that it leaves
+# alone.
+PAIRS: list[tuple[Misconception, tuple[str, str], tuple[str, str]]] = [
     (undefined, ("1/0", "q1"), ("q2", "q1")),
     (angle.sign, ("-q1", "q1"), ("-q1 + 0.1", "q1")),
     (angle.degrees_as_radians, ("90", "pi/2"), ("91", "pi/2")),
@@ -58,30 +59,30 @@ PAIRS: list[tuple[Belief, tuple[str, str], tuple[str, str]]] = [
 
 
 @pytest.mark.parametrize(
-    ("belief", "explained", "left"), PAIRS, ids=lambda p: getattr(p, "__name__", "")
+    ("misconception", "explained", "left"), PAIRS, ids=lambda p: getattr(p, "__name__", "")
 )
-def test_a_belief_about_one_angle(
-    belief: Belief, explained: tuple[str, str], left: tuple[str, str]
+def test_a_misconception_about_one_angle(
+    misconception: Misconception, explained: tuple[str, str], left: tuple[str, str]
 ) -> None:
-    finding = belief(wrong(*explained))
+    finding = misconception(wrong(*explained))
     assert finding is not None
-    assert finding.code == belief.__name__
-    assert finding.look
-    assert belief(wrong(*left)) is None
+    assert finding.code == misconception.__name__
+    assert finding.hint
+    assert misconception(wrong(*left)) is None
 
 
-def test_every_belief_about_one_angle_is_tested_and_tried() -> None:
+def test_every_misconception_about_one_angle_is_tested_and_tried() -> None:
     assert {pair[0] for pair in PAIRS} == set(MISCONCEPTIONS)
 
 
-def test_what_no_belief_explains() -> None:
+def test_what_no_misconception_explains() -> None:
     finding = diagnose_angle(wrong("q1 + 0.5", "q1"))
     assert finding.code == "value"
     assert finding.values is not None
 
 
 def triple(*columns: Numbers | float) -> Numbers:
-    return np.array([np.zeros(LANES) + column for column in columns])
+    return np.array([np.zeros(SAMPLES) + column for column in columns])
 
 
 Q1, Q2 = VALUES["q1"], VALUES["q2"]
@@ -113,17 +114,17 @@ TRIPLE_PAIRS: list[tuple[TripleBelief, Numbers, Numbers, str]] = [
 ]
 
 
-@pytest.mark.parametrize(("belief", "explained", "left", "code"), TRIPLE_PAIRS)
-def test_a_belief_about_three_angles(
-    belief: TripleBelief, explained: Numbers, left: Numbers, code: str
+@pytest.mark.parametrize(("misconception", "explained", "left", "code"), TRIPLE_PAIRS)
+def test_a_misconception_about_three_angles(
+    misconception: TripleBelief, explained: Numbers, left: Numbers, code: str
 ) -> None:
-    found = belief(case(explained))
+    found = misconception(case(explained))
     assert found is not None
     assert found.finding.code == code
-    assert belief(case(left)) is None
+    assert misconception(case(left)) is None
 
 
-def test_every_belief_about_three_angles_is_tested_and_tried() -> None:
+def test_every_misconception_about_three_angles_is_tested_and_tried() -> None:
     assert {pair[0] for pair in TRIPLE_PAIRS} == set(TRIPLES)
 
 

@@ -1,4 +1,4 @@
-"""Each belief about a table cell: one cell that it explains, one that it leaves alone."""
+"""Each misconception about a table cell: one cell that it explains, one that it leaves alone."""
 
 from collections.abc import Callable
 
@@ -12,19 +12,19 @@ from service.grading.diagnosis.table_cell import MISCONCEPTIONS, diagnose
 from service.grading.diagnosis.wrong_value import WrongCell, undefined
 from service.grading.feedback import Finding
 from service.grading.joint_motion import coefficients
-from service.grading.samples import LANES, SAMPLES, Samples
+from service.grading.samples import HALF, SAMPLES, Samples
 
 RNG = np.random.default_rng(5)
 JOINTS = (Joint(1, "q1", False), Joint(2, "q2", False), Joint(3, "d3", True))
-LETTERS = {name: np.tile(RNG.uniform(0.2, 0.9, SAMPLES), 2) for name in ("a1", "a2")}
-VALUES = {joint.variable: RNG.uniform(-3, 3, LANES) for joint in JOINTS} | LETTERS
+LETTERS = {name: np.tile(RNG.uniform(0.2, 0.9, HALF), 2) for name in ("a1", "a2")}
+VALUES = {joint.variable: RNG.uniform(-3, 3, SAMPLES) for joint in JOINTS} | LETTERS
 SAMPLE = Samples(VALUES)
 KINDS = {"q1": "angle", "q2": "angle", "d3": "length", "a1": "length", "a2": "length"}
 WORDS = Vocabulary([Symbol(name, kind) for name, kind in KINDS.items()])  # type: ignore[arg-type]
 
 # The column, the number of the row's joint, what was written there and what is right.
 Cell = tuple[str, int, str, str]
-Belief = Callable[[WrongCell], Finding | None]
+Misconception = Callable[[WrongCell], Finding | None]
 
 
 def wrong(cell: Cell) -> WrongCell:
@@ -33,7 +33,7 @@ def wrong(cell: Cell) -> WrongCell:
     quantity = "angle" if angle else "length"
     expression = read(written, WORDS, quantity=quantity)  # type: ignore[arg-type]
     expected = read(right, WORDS, quantity=quantity)  # type: ignore[arg-type]
-    values = [np.zeros(LANES) + text.evaluate(VALUES) for text in (expression, expected)]
+    values = [np.zeros(SAMPLES) + text.evaluate(VALUES) for text in (expression, expected)]
     values[0][~np.isfinite(values[0])] = np.nan
     actual_counts, expected_counts = coefficients(
         np.array(values), JOINTS, SAMPLE, np.array([angle, angle])
@@ -54,7 +54,7 @@ def wrong(cell: Cell) -> WrongCell:
     )
 
 
-PAIRS: list[tuple[Belief, Cell, Cell]] = [
+PAIRS: list[tuple[Misconception, Cell, Cell]] = [
     (undefined, ("d", 1, "a1/0", "a1"), ("d", 1, "a2", "a1")),
     (
         table_cell.joint_variable_missing,
@@ -77,29 +77,33 @@ PAIRS: list[tuple[Belief, Cell, Cell]] = [
 
 
 @pytest.mark.parametrize(
-    ("belief", "explained", "left"), PAIRS, ids=lambda p: getattr(p, "__name__", "")
+    ("misconception", "explained", "left"), PAIRS, ids=lambda p: getattr(p, "__name__", "")
 )
-def test_a_belief_about_a_cell(belief: Belief, explained: Cell, left: Cell) -> None:
-    finding = belief(wrong(explained))
+def test_a_misconception_about_a_cell(
+    misconception: Misconception, explained: Cell, left: Cell
+) -> None:
+    finding = misconception(wrong(explained))
     assert finding is not None
-    assert finding.code == belief.__name__
-    assert "should be" not in finding.look  # the answer is in the correction alone
+    assert finding.code == misconception.__name__
+    assert "should be" not in finding.hint  # the answer is in the correction alone
     assert finding.correction == f"It should be {explained[3]}."
-    assert belief(wrong(left)) is None
+    assert misconception(wrong(left)) is None
 
 
 @pytest.mark.parametrize(
-    ("belief", "explained", "_"), PAIRS, ids=lambda p: getattr(p, "__name__", "")
+    ("misconception", "explained", "_"), PAIRS, ids=lambda p: getattr(p, "__name__", "")
 )
-def test_it_is_the_first_that_explains_its_cell(belief: Belief, explained: Cell, _: Cell) -> None:
-    assert diagnose(wrong(explained)).code == belief.__name__
+def test_it_is_the_first_that_explains_its_cell(
+    misconception: Misconception, explained: Cell, _: Cell
+) -> None:
+    assert diagnose(wrong(explained)).code == misconception.__name__
 
 
-def test_every_belief_about_a_cell_is_tested_and_tried() -> None:
+def test_every_misconception_about_a_cell_is_tested_and_tried() -> None:
     assert [pair[0] for pair in PAIRS] == list(MISCONCEPTIONS)
 
 
-def test_what_no_belief_explains_shows_a_counterexample() -> None:
+def test_what_no_misconception_explains_shows_a_counterexample() -> None:
     finding = diagnose(wrong(("a", 1, "a1 + 0.3", "a1")))
     assert finding.code == "value"
     assert finding.values is not None

@@ -1,21 +1,20 @@
-"""Each belief about the row of a transform: one case that it explains, one it leaves alone."""
+"""Each misconception about the row of a transform: a case it explains, and one it leaves alone."""
 
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 
-from service.grading.comparison import Numbers
 from service.grading.diagnosis import dh_row
 from service.grading.diagnosis.dh_row import MISCONCEPTIONS, RowCase, explain_row, violated
 from service.grading.feedback import Finding
-from service.grading.samples import LANES
+from service.grading.samples import SAMPLES
 from service.kinematics.dh import Convention, link_transforms
-from service.kinematics.transforms import Matrices, rot_x, rot_y, trans
+from service.kinematics.transforms import Matrices, Numbers, rot_x, rot_y, trans
 
 RNG = np.random.default_rng(10)
-A, ALPHA, D, THETA = ROW = RNG.uniform(0.3, 1.2, (4, LANES))
-ZERO = np.zeros(LANES)
+A, ALPHA, D, THETA = ROW = RNG.uniform(0.3, 1.2, (4, SAMPLES))
+ZERO = np.zeros(SAMPLES)
 STANDARD, MODIFIED = Convention.STANDARD, Convention.MODIFIED
 
 
@@ -32,8 +31,8 @@ FULL = link(STANDARD, *ROW)
 FLAT = link(STANDARD, A, ZERO, ZERO, THETA)
 SCREW_ALONG_Z = link(STANDARD, ZERO, ZERO, D, THETA)
 
-Belief = Callable[[RowCase], Finding | None]
-PAIRS: list[tuple[Belief, RowCase, RowCase, str]] = [
+Misconception = Callable[[RowCase], Finding | None]
+PAIRS: list[tuple[Misconception, RowCase, RowCase, str]] = [
     (
         dh_row.exchanged_parameters,
         case([D, ALPHA, A, THETA], FULL),
@@ -55,15 +54,17 @@ PAIRS: list[tuple[Belief, RowCase, RowCase, str]] = [
 ]
 
 
-@pytest.mark.parametrize(("belief", "explained", "left", "code"), PAIRS)
-def test_a_belief(belief: Belief, explained: RowCase, left: RowCase, code: str) -> None:
-    finding = belief(explained)
+@pytest.mark.parametrize(("misconception", "explained", "left", "code"), PAIRS)
+def test_a_misconception(
+    misconception: Misconception, explained: RowCase, left: RowCase, code: str
+) -> None:
+    finding = misconception(explained)
     assert finding is not None
     assert finding.code == code
-    assert belief(left) is None
+    assert misconception(left) is None
 
 
-def test_every_belief_is_tested_and_tried() -> None:
+def test_every_misconception_is_tested_and_tried() -> None:
     assert {pair[0] for pair in PAIRS} == set(MISCONCEPTIONS)
 
 
@@ -81,13 +82,13 @@ def test_a_right_row_is_left_alone() -> None:
     ],
 )
 def test_which_condition_is_broken(transform: Matrices, codes: list[str]) -> None:
-    batch = np.broadcast_to(transform, (LANES, 4, 4))
+    batch = np.broadcast_to(transform, (SAMPLES, 4, 4))
     findings = violated(batch, STANDARD, 0.7)
     assert [finding.code for finding in findings] == codes
-    assert all("x1" in finding.look and "z0" in finding.look for finding in findings)
+    assert all("x1" in finding.hint and "z0" in finding.hint for finding in findings)
 
 
 def test_the_modified_convention_speaks_of_its_own_axes() -> None:
-    [finding] = violated(np.broadcast_to(rot_y(0.3), (LANES, 4, 4)), MODIFIED, 0.7)
-    assert "x0" in finding.look
-    assert "z1" in finding.look
+    [finding] = violated(np.broadcast_to(rot_y(0.3), (SAMPLES, 4, 4)), MODIFIED, 0.7)
+    assert "x0" in finding.hint
+    assert "z1" in finding.hint

@@ -1,4 +1,4 @@
-"""Beliefs about single matrix entries: what each explains, and what it leaves alone."""
+"""Misconceptions about single matrix entries: what each explains, and what it leaves alone."""
 
 from collections.abc import Callable
 
@@ -11,9 +11,9 @@ from service.grading.diagnosis import matrix_entry
 from service.grading.diagnosis.formula_repair import WrongEntry
 from service.grading.feedback import Finding
 from service.grading.reading.entry import AngleUnit
-from service.grading.samples import LANES, draw
+from service.grading.samples import SAMPLES, draw
 
-Belief = Callable[[WrongEntry], Finding | None]
+Misconception = Callable[[WrongEntry], Finding | None]
 
 ARM = """
 title = "Arm of four turning joints"
@@ -58,7 +58,7 @@ def wrong(make_exercise: Callable[[str], Exercise]) -> Case:
         texts = [read(written, exercise.vocabulary, angle_unit=unit)]
         texts.append(read(expected, exercise.vocabulary))
         actual, right = (
-            np.array(np.broadcast_to(text.evaluate(samples.values), LANES)) for text in texts
+            np.array(np.broadcast_to(text.evaluate(samples.values), SAMPLES)) for text in texts
         )
         return WrongEntry(
             expression=texts[0],
@@ -74,7 +74,7 @@ def wrong(make_exercise: Callable[[str], Exercise]) -> Case:
     return case
 
 
-EXPLAINED: list[tuple[Belief, str, str, str]] = [
+EXPLAINED: list[tuple[Misconception, str, str, str]] = [
     (matrix_entry.sign, "-c12", "c12", ""),
     (matrix_entry.sine_for_cosine, "s12", "c12", "It should be cos(q1 + q2)."),
     (matrix_entry.sine_for_cosine, "-l1*c1", "-l1*s1", "It should be -l1*sin(q1)."),
@@ -121,14 +121,14 @@ EXPLAINED: list[tuple[Belief, str, str, str]] = [
 ]
 
 
-@pytest.mark.parametrize(("belief", "written", "expected", "correction"), EXPLAINED)
-def test_a_belief_explains_its_entry(
-    belief: Belief, written: str, expected: str, correction: str, wrong: Case
+@pytest.mark.parametrize(("misconception", "written", "expected", "correction"), EXPLAINED)
+def test_a_misconception_explains_its_entry(
+    misconception: Misconception, written: str, expected: str, correction: str, wrong: Case
 ) -> None:
     case = wrong(written, expected)
-    finding = belief(case)
+    finding = misconception(case)
     assert finding is not None
-    assert finding.code == belief.__name__
+    assert finding.code == misconception.__name__
     assert correction in finding.correction
     assert matrix_entry.diagnose(case) == finding
 
@@ -138,7 +138,7 @@ def test_degrees_where_radians_were_meant(wrong: Case) -> None:
     assert finding.code == "radians_as_degrees"
 
 
-LEFT_ALONE: list[tuple[Belief, str, str]] = [
+LEFT_ALONE: list[tuple[Misconception, str, str]] = [
     (matrix_entry.sign, "-c12", "s12"),
     (matrix_entry.sine_for_cosine, "tan(q1)", "c1"),
     (matrix_entry.sine_for_cosine, "s1", "c2"),
@@ -159,18 +159,18 @@ LEFT_ALONE: list[tuple[Belief, str, str]] = [
 ]
 
 
-@pytest.mark.parametrize(("belief", "written", "expected"), LEFT_ALONE)
-def test_a_belief_leaves_other_entries_alone(
-    belief: Belief, written: str, expected: str, wrong: Case
+@pytest.mark.parametrize(("misconception", "written", "expected"), LEFT_ALONE)
+def test_a_misconception_leaves_other_entries_alone(
+    misconception: Misconception, written: str, expected: str, wrong: Case
 ) -> None:
-    assert belief(wrong(written, expected)) is None
+    assert misconception(wrong(written, expected)) is None
 
 
-@pytest.mark.parametrize("belief", matrix_entry.MISCONCEPTIONS)
-def test_what_changes_nothing_explains_nothing(belief: Belief, wrong: Case) -> None:
+@pytest.mark.parametrize("misconception", matrix_entry.MISCONCEPTIONS)
+def test_what_changes_nothing_explains_nothing(misconception: Misconception, wrong: Case) -> None:
     """An answer within rounding of the right one, but not allowed to be."""
     case = wrong("l1*c1*c2 + cos(0) + s1*s2/1000000", "l1*c1*c2 + cos(0)")
-    finding = belief(case)
+    finding = misconception(case)
     assert finding is None
 
 

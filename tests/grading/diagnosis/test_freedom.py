@@ -9,7 +9,7 @@ from service.catalogue import Exercise, Robot, load_catalogue, shipped_folder
 from service.grading import Severity
 from service.grading.diagnosis.table_freedom import lost_freedom
 from service.grading.feedback import Finding
-from service.grading.samples import LANES, Samples, draw
+from service.grading.samples import SAMPLES, Samples, draw
 from service.kinematics.chain import ALPHA, A, D, Table
 from service.kinematics.dh import Convention
 
@@ -31,7 +31,7 @@ def written(rows: Sequence[Sequence[Cell]], samples: Samples) -> Table:
     return np.array(
         [
             [
-                samples.values[cell] if isinstance(cell, str) else np.full(LANES, float(cell))
+                samples.values[cell] if isinstance(cell, str) else np.full(SAMPLES, float(cell))
                 for cell in row
             ]
             for row in rows
@@ -64,7 +64,7 @@ def test_the_printed_stanford_table(stanford: Exercise) -> None:
     [finding] = found(stanford, written(PRINTED, samples_of(stanford)))
     assert finding.code == "lost_freedom"
     assert finding.severity is Severity.ERROR
-    assert finding.look == (
+    assert finding.hint == (
         "Joints 5 and 6 turn about one and the same line, so the arm has lost a degree of freedom: "
         "check α of row 5."
     )
@@ -86,7 +86,7 @@ def test_a_reference_has_lost_nothing(
     exercise = catalogue[exercise_id]
     values = samples_of(exercise).values
     assert (
-        found(exercise, exercise.robot.tables[convention].values(values, LANES), convention) == ()
+        found(exercise, exercise.robot.tables[convention].values(values, SAMPLES), convention) == ()
     )
 
 
@@ -97,30 +97,30 @@ def test_parallel_axes_that_fall_together(
     convention: Convention, row: int, catalogue: Mapping[str, Exercise]
 ) -> None:
     exercise = catalogue["scara"]
-    table = exercise.robot.tables[convention].values(samples_of(exercise).values, LANES)
+    table = exercise.robot.tables[convention].values(samples_of(exercise).values, SAMPLES)
     table[row, A] = 0.0
     [finding] = found(exercise, table, convention)
-    assert finding.look.startswith("Joints 1 and 2 turn about one and the same line")
-    assert finding.look.endswith(f"check a of row {row + 1}.")
+    assert finding.hint.startswith("Joints 1 and 2 turn about one and the same line")
+    assert finding.hint.endswith(f"check a of row {row + 1}.")
     assert finding.correction == "The axes of these joints are parallel, but apart."
 
 
 def test_joints_that_are_not_neighbours(stanford: Exercise) -> None:
-    table = stanford.robot.tables[Convention.STANDARD].values(samples_of(stanford).values, LANES)
+    table = stanford.robot.tables[Convention.STANDARD].values(samples_of(stanford).values, SAMPLES)
     table[1, ALPHA] = 0.0
     [finding] = found(stanford, table)
-    assert finding.look.startswith("Joints 2 and 4 turn")
-    assert finding.look.endswith("check α of rows 2 and 3.")
+    assert finding.hint.startswith("Joints 2 and 4 turn")
+    assert finding.hint.endswith("check α of rows 2 and 3.")
 
 
 def test_four_joints_in_the_place_of_three(catalogue: Mapping[str, Exercise]) -> None:
     """With α3 = 90° the last joint slides in the plane that the other three move in."""
     exercise = catalogue["rrrp"]
-    table = exercise.robot.tables[Convention.STANDARD].values(samples_of(exercise).values, LANES)
+    table = exercise.robot.tables[Convention.STANDARD].values(samples_of(exercise).values, SAMPLES)
     table[2, ALPHA] = H
     [finding] = found(exercise, table)
-    assert "joints 1, 2, 3 and 4" in finding.look
-    assert "only 3 degrees of freedom in place of 4" in finding.look
+    assert "joints 1, 2, 3 and 4" in finding.hint
+    assert "only 3 degrees of freedom in place of 4" in finding.hint
 
 
 CARTESIAN = """
@@ -152,13 +152,13 @@ def test_two_joints_that_slide_along_one_direction(
     make_exercise: Callable[[str], Exercise],
 ) -> None:
     exercise = make_exercise(CARTESIAN)
-    table = exercise.robot.tables[Convention.STANDARD].values(samples_of(exercise).values, LANES)
+    table = exercise.robot.tables[Convention.STANDARD].values(samples_of(exercise).values, SAMPLES)
     assert found(exercise, table) == ()
     table[0, ALPHA] = np.pi
     table[0, A] = 0.4
     [finding] = found(exercise, table)
-    assert finding.look.startswith("Joints 1 and 2 slide along one and the same direction")
-    assert finding.look.endswith("check α of row 1.")
+    assert finding.hint.startswith("Joints 1 and 2 slide along one and the same direction")
+    assert finding.hint.endswith("check α of row 1.")
 
 
 REDUNDANT = """
@@ -194,22 +194,22 @@ convention = "standard"
 
 def test_what_the_robot_itself_lacks_is_no_loss(make_exercise: Callable[[str], Exercise]) -> None:
     exercise = make_exercise(REDUNDANT)
-    table = exercise.robot.tables[Convention.STANDARD].values(samples_of(exercise).values, LANES)
+    table = exercise.robot.tables[Convention.STANDARD].values(samples_of(exercise).values, SAMPLES)
     assert found(exercise, table) == ()
     table[0, A] = 0.0
     [finding] = found(exercise, table)
-    assert finding.look.startswith("Joints 1 and 2 turn")
+    assert finding.hint.startswith("Joints 1 and 2 turn")
 
 
 def test_joints_without_effect(stanford: Exercise) -> None:
-    table = stanford.robot.tables[Convention.STANDARD].values(samples_of(stanford).values, LANES)
+    table = stanford.robot.tables[Convention.STANDARD].values(samples_of(stanford).values, SAMPLES)
     table[2, D] = 0.0
     [finding] = found(stanford, table)
-    assert finding.look == "Joint 3 moves nothing: its row contains no joint variable."
+    assert finding.hint == "Joint 3 moves nothing: its row contains no joint variable."
     assert finding.severity is Severity.WARNING
     table[4, 3] = 0.2
     [finding] = found(stanford, table)
-    assert finding.look == "Joints 3 and 5 move nothing: their rows contain no joint variable."
+    assert finding.hint == "Joints 3 and 5 move nothing: their rows contain no joint variable."
 
 
 def test_a_joint_without_a_row_is_left_out(stanford: Exercise) -> None:
@@ -217,7 +217,7 @@ def test_a_joint_without_a_row_is_left_out(stanford: Exercise) -> None:
     assert found(stanford, table, rows=[0, 1, 2, 3, 4, None]) == ()
     table = written(PRINTED, samples_of(stanford))[3:]
     [finding] = found(stanford, table, rows=[None, None, None, 0, 1, 2])
-    assert finding.look.startswith("Joints 5 and 6 turn")
+    assert finding.hint.startswith("Joints 5 and 6 turn")
 
 
 def test_an_unreadable_cell_says_nothing(stanford: Exercise) -> None:
@@ -227,7 +227,7 @@ def test_an_unreadable_cell_says_nothing(stanford: Exercise) -> None:
 
 
 def test_a_wrong_table_may_be_free_all_the_same(stanford: Exercise) -> None:
-    table = stanford.robot.tables[Convention.STANDARD].values(samples_of(stanford).values, LANES)
+    table = stanford.robot.tables[Convention.STANDARD].values(samples_of(stanford).values, SAMPLES)
     table[1, D] *= -1
     table[4, ALPHA] *= -1
     table[3, A] = 0.3

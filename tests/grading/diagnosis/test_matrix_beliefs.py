@@ -1,4 +1,4 @@
-"""Beliefs about whole matrices: what each explains, and what it leaves alone.
+"""Misconceptions about whole matrices: what each explains, and what it leaves alone.
 
 The poses are multiplied out by SymPy from elementary turns and shifts.
 """
@@ -266,7 +266,7 @@ def wrong_entries(report: PartReport) -> set[tuple[int, int]]:
 
 
 @pytest.mark.parametrize("slip", SLIPS.values(), ids=SLIPS.keys())
-def test_a_belief_explains_its_matrix(slip: Slip, catalogue: Mapping[str, Exercise]) -> None:
+def test_a_misconception_explains_its_matrix(slip: Slip, catalogue: Mapping[str, Exercise]) -> None:
     """It is said once, and the entries that it explains say nothing of their own."""
     robot, matrix, expected, words, explained = slip
     report = graded_pose(catalogue[robot.exercise], text(matrix))
@@ -366,7 +366,7 @@ def test_a_rotation_says_which_column_to_check(catalogue: Mapping[str, Exercise]
     assert "columns 1 and 2 are not at right angles" in message.message
 
 
-def test_beliefs_that_change_nothing_are_not_held(catalogue: Mapping[str, Exercise]) -> None:
+def test_misconceptions_that_change_nothing_are_not_held(catalogue: Mapping[str, Exercise]) -> None:
     """The links of a planar arm turn about one direction: their order leaves the rotation as is."""
     pose = product([x * z for z, x in factors(PLANAR_RRR)])
     slightly_off = changed(pose, {(0, 0): "cos(q1 + q2 + q3) + 0*q1 + c1/5000"})

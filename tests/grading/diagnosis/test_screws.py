@@ -1,23 +1,23 @@
-"""Each belief about a screw axis: one axis that it explains, one that it leaves alone."""
+"""Each misconception about a screw axis: one axis that it explains, one that it leaves alone."""
 
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 
-from service.grading.comparison import Numbers
 from service.grading.diagnosis import screw_axis
 from service.grading.diagnosis.screw_axis import MISCONCEPTIONS, WrongScrew, explain_screw
 from service.grading.feedback import Finding
-from service.grading.samples import LANES
+from service.grading.samples import SAMPLES
+from service.kinematics.transforms import Numbers
 
 RNG = np.random.default_rng(9)
-LENGTH = RNG.uniform(0.3, 0.9, LANES)
-PITCH = RNG.uniform(0.1, 0.4, LANES)
+LENGTH = RNG.uniform(0.3, 0.9, SAMPLES)
+PITCH = RNG.uniform(0.1, 0.4, SAMPLES)
 
 
 def axis(*numbers: Numbers | float) -> Numbers:
-    return np.array([np.zeros(LANES) + number for number in numbers])
+    return np.array([np.zeros(SAMPLES) + number for number in numbers])
 
 
 # The axis along z through (l, 0, 0), from the base; the tool lies at (2l, 0, 0).
@@ -31,10 +31,10 @@ def case(actual: Numbers, expected: Numbers = TURN, elsewhere: Numbers | None = 
     return WrongScrew(actual, expected, elsewhere, "space", 0.5)
 
 
-Belief = Callable[[WrongScrew], Finding | None]
+Misconception = Callable[[WrongScrew], Finding | None]
 # An axis seen from a third place, so that the other frame is told from the sign of the moment.
 ELSEWHERE = axis(0, 0, 1, 0.2, LENGTH, 0)
-PAIRS: list[tuple[Belief, WrongScrew, WrongScrew, str]] = [
+PAIRS: list[tuple[Misconception, WrongScrew, WrongScrew, str]] = [
     (
         screw_axis.other_frame,
         case(ELSEWHERE, TURN, ELSEWHERE),
@@ -87,16 +87,18 @@ PAIRS: list[tuple[Belief, WrongScrew, WrongScrew, str]] = [
 ]
 
 
-@pytest.mark.parametrize(("belief", "explained", "left", "code"), PAIRS)
-def test_a_belief(belief: Belief, explained: WrongScrew, left: WrongScrew, code: str) -> None:
-    finding = belief(explained)
+@pytest.mark.parametrize(("misconception", "explained", "left", "code"), PAIRS)
+def test_a_misconception(
+    misconception: Misconception, explained: WrongScrew, left: WrongScrew, code: str
+) -> None:
+    finding = misconception(explained)
     assert finding is not None
     assert finding.code == code
-    assert finding.look
-    assert belief(left) is None
+    assert finding.hint
+    assert misconception(left) is None
 
 
-def test_every_belief_is_tested_and_tried() -> None:
+def test_every_misconception_is_tested_and_tried() -> None:
     assert {pair[0] for pair in PAIRS} == set(MISCONCEPTIONS)
 
 

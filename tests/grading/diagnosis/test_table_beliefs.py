@@ -1,7 +1,7 @@
-"""Each belief that a student may hold of a table is put into every robot and must be named.
+"""Each misconception that a student may hold of a table is put into every robot and must be named.
 
-Whether the table is wrong at all is decided by independent forward kinematics; a belief that does
-not change the mechanism cannot be seen and is left out.
+Whether the table is wrong at all is decided by independent forward kinematics; a misconception that
+does not change the mechanism cannot be seen and is left out.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -158,8 +158,8 @@ def row_missing(robot: Robot, rows: Rows) -> Iterator[Rows]:
         yield [*rows[:i], *rows[i + 1 :]]
 
 
-# The belief, and the codes that name it. Some slips are two things at once: −90° for 90° is a sign
-# and half a turn, and to mirror every α of a wrist is to reverse its joint 5.
+# The misconception, and the codes that name it. Some slips are two things at once: −90° for 90° is
+# a sign and half a turn, and to mirror every α of a wrist is to reverse its joint 5.
 BELIEFS: tuple[tuple[Slip, set[str]], ...] = (
     (wrong_sign, {"sign", "half_turn"}),
     (quarter_turn, {"quarter_turn"}),
@@ -180,13 +180,15 @@ BELIEFS: tuple[tuple[Slip, set[str]], ...] = (
 )
 
 
-@pytest.mark.parametrize(("belief", "names"), BELIEFS, ids=lambda x: getattr(x, "__name__", ""))
-def test_a_belief_is_named_in_every_robot_that_it_changes(
-    belief: Slip, names: set[str], figure: Callable[[str], None]
+@pytest.mark.parametrize(
+    ("misconception", "names"), BELIEFS, ids=lambda x: getattr(x, "__name__", "")
+)
+def test_a_misconception_is_named_in_every_robot_that_it_changes(
+    misconception: Slip, names: set[str], figure: Callable[[str], None]
 ) -> None:
     named, missed = 0, []
     for robot in ROBOTS:
-        for rows in belief(robot, robot.rows):
+        for rows in misconception(robot, robot.rows):
             plain = [list(row) for row in rows]
             complete = len(rows) == len(robot.rows)
             if complete and is_equivalent(robot, GIVEN, plain, robot.convention):
@@ -197,7 +199,7 @@ def test_a_belief_is_named_in_every_robot_that_it_changes(
             else:
                 missed.append((robot.name, rows, sorted(found)))
     total = named + len(missed)
-    figure(f"{belief.__name__}: named in {named} of {total}")
+    figure(f"{misconception.__name__}: named in {named} of {total}")
     assert total
     assert named >= 0.95 * total, missed[:6]
 

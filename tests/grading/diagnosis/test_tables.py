@@ -1,7 +1,8 @@
-"""Each belief about a whole table: one table that it explains, one that it leaves alone.
+"""Each misconception about a whole table: one table that it explains, one that it leaves alone.
 
-What a belief is tried on is the Stanford arm of Spong, Hutchinson and Vidyasagar, with d1 and a2
-added so that every column holds something. A table is right if its pose is, multiplied out here.
+What a misconception is tried on is the Stanford arm of Spong, Hutchinson and Vidyasagar, with d1
+and a2 added so that every column holds something. A table is right if its pose is, multiplied out
+here.
 """
 
 from collections.abc import Callable
@@ -19,20 +20,20 @@ from service.grading.diagnosis.whole_table import (
     explanations,
     written_table,
 )
-from service.grading.samples import LANES, SAMPLES, Samples
+from service.grading.samples import HALF, SAMPLES, Samples
 from service.kinematics.chain import ALPHA, THETA, A, D, Table
 from service.kinematics.dh import Convention
 from tests.frame_choice.kinematics import screw_x, screw_z
 
 RNG = np.random.default_rng(6)
 JOINTS = tuple(Joint(i + 1, f"q{i + 1}", i == 2) for i in range(6))
-SAMPLE = Samples({joint.variable: RNG.uniform(0.2, 1.4, LANES) for joint in JOINTS})
-LENGTHS = {name: np.tile(RNG.uniform(0.2, 0.9, SAMPLES), 2) for name in ("d1", "d2", "a2", "d6")}
+SAMPLE = Samples({joint.variable: RNG.uniform(0.2, 1.4, SAMPLES) for joint in JOINTS})
+LENGTHS = {name: np.tile(RNG.uniform(0.2, 0.9, HALF), 2) for name in ("d1", "d2", "a2", "d6")}
 QUARTER = np.pi / 2
 
 
 def right() -> Table:
-    table = np.zeros((6, 4, LANES))
+    table = np.zeros((6, 4, SAMPLES))
     table[:, ALPHA] = np.array([-QUARTER, QUARTER, 0, -QUARTER, QUARTER, 0])[:, None]
     table[0, D], table[1, D], table[5, D] = LENGTHS["d1"], LENGTHS["d2"], LENGTHS["d6"]
     table[1, A] = LENGTHS["a2"]
@@ -60,7 +61,7 @@ def written(table: Table) -> WrittenTable:
 
 def in_modified_rows(table: Table) -> Table:
     """Row i with the link before joint i: the last link has no row, here it is none."""
-    table[:, :2] = np.concatenate([np.zeros((1, 2, LANES)), table[:-1, :2]])
+    table[:, :2] = np.concatenate([np.zeros((1, 2, SAMPLES)), table[:-1, :2]])
     return table
 
 
@@ -125,12 +126,12 @@ PAIRS: list[tuple[Misconception, Change, Change]] = [
         lambda t: with_cell(t, 3, ALPHA, QUARTER),
     ),
 ]
-IDS = [belief.__name__ for belief, _, _ in PAIRS]
+IDS = [misconception.__name__ for misconception, _, _ in PAIRS]
 
 
-def repairs(belief: Misconception, table: Table) -> list[str]:
-    """The codes of what the belief offers, where that makes the table right."""
-    offered = list(belief(written(table)))
+def repairs(misconception: Misconception, table: Table) -> list[str]:
+    """The codes of what the misconception offers, where that makes the table right."""
+    offered = list(misconception(written(table)))
     return [
         repair.finding().code
         for repair in offered
@@ -138,20 +139,22 @@ def repairs(belief: Misconception, table: Table) -> list[str]:
     ]
 
 
-@pytest.mark.parametrize(("belief", "explained", "left"), PAIRS, ids=IDS)
-def test_a_belief_about_a_table(belief: Misconception, explained: Change, left: Change) -> None:
+@pytest.mark.parametrize(("misconception", "explained", "left"), PAIRS, ids=IDS)
+def test_a_misconception_about_a_table(
+    misconception: Misconception, explained: Change, left: Change
+) -> None:
     for change in (explained, left):
         assert not valid(change(right())[None], Convention.STANDARD)[0]
-    assert set(repairs(belief, explained(right()))) == {belief.__name__}
-    assert repairs(belief, left(right())) == []
+    assert set(repairs(misconception, explained(right()))) == {misconception.__name__}
+    assert repairs(misconception, left(right())) == []
 
 
-@pytest.mark.parametrize(("belief", "explained", "_"), PAIRS, ids=IDS)
-def test_it_is_what_is_told(belief: Misconception, explained: Change, _: Change) -> None:
-    assert belief.__name__ in told(explained(right()), combine=True)
+@pytest.mark.parametrize(("misconception", "explained", "_"), PAIRS, ids=IDS)
+def test_it_is_what_is_told(misconception: Misconception, explained: Change, _: Change) -> None:
+    assert misconception.__name__ in told(explained(right()), combine=True)
 
 
-def test_two_beliefs_at_once() -> None:
+def test_two_misconceptions_at_once() -> None:
     both = in_modified_rows(with_angles(right(), 180 / np.pi))
     assert told(both, combine=True) == ["other_convention", "degrees_as_radians"]
     assert told(both, combine=False) == []
@@ -159,13 +162,13 @@ def test_two_beliefs_at_once() -> None:
 
 def test_an_explanation_repairs_the_table_at_other_samples() -> None:
     table = written(in_modified_rows(with_angles(right(), 180 / np.pi)))
-    [found] = explanations(table.at_few(3), valid_at_few, combine=True)
+    [found] = explanations(table.subset(3), valid_subset, combine=True)
     repaired = found.repaired(table)
     assert valid(repaired.values[None], repaired.convention)[0]
 
 
-def valid_at_few(candidates: NDArray[np.float64], convention: Convention) -> NDArray[np.bool_]:
-    wanted = SAMPLE.few_of(np.moveaxis(pose(right(), Convention.STANDARD), 0, -1), 3)
+def valid_subset(candidates: NDArray[np.float64], convention: Convention) -> NDArray[np.bool_]:
+    wanted = SAMPLE.subset_of(np.moveaxis(pose(right(), Convention.STANDARD), 0, -1), 3)
     reached = [np.moveaxis(pose(table, convention), 0, -1) for table in candidates]
     return np.array([np.abs(each - wanted).max() < 1e-6 for each in reached])
 
@@ -175,5 +178,5 @@ def told(table: Table, *, combine: bool) -> list[str]:
     return [finding.code for explanation in found for finding in explanation.findings]
 
 
-def test_every_belief_about_a_table_is_tested_and_tried() -> None:
+def test_every_misconception_about_a_table_is_tested_and_tried() -> None:
     assert [pair[0] for pair in PAIRS] == list(MISCONCEPTIONS)

@@ -11,7 +11,7 @@ from service.grading.judging.own_frames.constants import without_motion
 from service.grading.judging.own_frames.frame_freedom import Freedom
 from service.grading.judging.own_frames.reference import Mechanism, start_frames
 from service.grading.judging.own_frames.row_roles import Role
-from service.grading.samples import SAMPLES
+from service.grading.samples import HALF
 from service.kinematics.base_fit import carry
 from service.kinematics.chain import pose
 from service.kinematics.dh import Convention
@@ -25,7 +25,7 @@ def own_bases(
     mechanism: Mechanism,
     freedom: Freedom,
 ) -> list[Matrices]:
-    """Where a free frame 0 may lie in the reference's, ``(SAMPLES, 4, 4)`` each.
+    """Where a free frame 0 may lie in the reference's, ``(HALF, 4, 4)`` each.
 
     A given tool leaves one place. Otherwise the joint axes tell, each taken the way its variable
     says, or either way where the directions are free.
@@ -34,7 +34,7 @@ def own_bases(
     if len(table) < len(roles) or np.isnan(table).any():
         return []
     if not freedom.tool:
-        return [(mechanism.pose @ inverse(pose(table, convention)))[:SAMPLES]]
+        return [(mechanism.pose @ inverse(pose(table, convention)))[:HALF]]
     sliding = np.array([joint.prismatic for joint in joints])
     rows = [i for i, role in enumerate(roles) if role.joint is not None]
     at_rest, senses = (found[0] for found in without_motion(table[None], roles, mechanism.samples))

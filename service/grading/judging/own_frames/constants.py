@@ -6,20 +6,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import Joint
-from service.grading.comparison import ROUNDED, Numbers, difference
+from service.grading.comparison import ROUNDED, difference
 from service.grading.joint_motion import TOLERANCE, halves, joint_counts
 from service.grading.judging.own_frames.reference import regrouped
 from service.grading.judging.own_frames.row_roles import Role, variable_column
 from service.grading.reading.table import IS_ANGLE
-from service.grading.samples import LANES, SAMPLES, Samples
+from service.grading.samples import HALF, SAMPLES, Samples
 from service.kinematics.chain import COLUMNS
 from service.kinematics.chain_match import WrittenRow
 from service.kinematics.dh import Convention
+from service.kinematics.transforms import Numbers
 
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """The constants of all rows ``(rows, 4, SAMPLES)``, which cells count, which are wrong anyway.
+    """The constants of all rows ``(rows, 4, HALF)``, which cells count, which are wrong anyway.
 
     ``senses`` ``(rows,)`` is the sign that each row's joint variable was written with, 0 for none.
     """
@@ -35,13 +36,13 @@ def written_constants(
     roles: tuple[Role, ...], joints: tuple[Joint, ...], samples: Samples
 ) -> Written:
     """The rows taken apart; a cell that moves otherwise than its joint does is spoiled."""
-    nothing = np.full((len(COLUMNS), LANES), np.nan)
+    nothing = np.full((len(COLUMNS), SAMPLES), np.nan)
     cells = np.array([role.row.values if role.row else nothing for role in roles])
     judged = np.array(
         [[bool(role.row and role.row.entries[c].readable) for c in range(4)] for role in roles]
     )
     angle = np.tile(IS_ANGLE, len(roles))
-    counts, linear = joint_counts(cells.reshape(-1, LANES), joints, samples, angle)
+    counts, linear = joint_counts(cells.reshape(-1, SAMPLES), joints, samples, angle)
     counts = counts.reshape(len(roles), len(COLUMNS), len(joints))
     of_form = linear.reshape(judged.shape)
     wanted = np.zeros_like(counts)
@@ -52,7 +53,7 @@ def written_constants(
             senses[i] = counts[place] if abs(counts[place]) == 1 else 0
             wanted[place] = senses[i] or 1
     variables = np.array([samples.values[joint.variable] for joint in joints])
-    constants = (cells - counts @ variables)[..., :SAMPLES]
+    constants = (cells - counts @ variables)[..., :HALF]
     return Written(
         own=np.where((judged & of_form)[..., None], constants, np.nan),
         judged=judged,
@@ -81,9 +82,9 @@ def written_rows(
 def without_motion(
     tables: Numbers, roles: tuple[Role, ...], samples: Samples
 ) -> tuple[Numbers, NDArray[np.int_]]:
-    """Tables ``(T, rows, 4, LANES)`` less their joint variables, and the variables' signs.
+    """Tables ``(T, rows, 4, SAMPLES)`` less their joint variables, and the variables' signs.
 
-    The constants are ``(T, rows, 4, SAMPLES)``, NaN where a cell moves as it must not.
+    The constants are ``(T, rows, 4, HALF)``, NaN where a cell moves as it must not.
     """
     tables = tables.copy()
     senses = np.zeros(tables.shape[:2], dtype=np.int_)

@@ -11,14 +11,14 @@ from itertools import chain
 
 import numpy as np
 
-from service.grading.comparison import Numbers, difference
+from service.grading.comparison import difference
 from service.grading.joint_motion import TOLERANCE, changes, moves_with
 from service.grading.judging.own_frames.reference import reference_frames
 from service.grading.judging.own_frames.row_roles import Role, joint_cells, motion_of
 from service.grading.judging.own_frames.slip_likelihood import unlikelihood
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE
-from service.grading.samples import SAMPLES
+from service.grading.samples import HALF
 from service.kinematics.cell_repairs import (
     SAME,
     Mend,
@@ -30,20 +30,20 @@ from service.kinematics.chain import Table, frames, joint_frames
 from service.kinematics.dh import Convention
 from service.kinematics.factors import Cell, factors_of
 from service.kinematics.frame_choice import WRONG_CELL, departure
-from service.kinematics.transforms import Matrices, inverse
+from service.kinematics.transforms import Matrices, Numbers, inverse
 
 # Enough samples to find out which cells mend a table; what they must be is told by all.
 FEW = 3
-FEW_LANES = np.r_[:FEW, SAMPLES : SAMPLES + FEW]
+FEW_SAMPLES = np.r_[:FEW, HALF : HALF + FEW]
 MOST = 2
 
 
 @dataclass(frozen=True, slots=True)
 class FrameReading:
-    """A table read in the student's own frames: ``expected`` is ``(rows, 4, LANES)``.
+    """A table read in the student's own frames: ``expected`` is ``(rows, 4, SAMPLES)``.
 
-    ``frames`` ``(joints, lanes, 4, 4)`` are where the student's frames on the joint axes lie in the
-    reference's. ``cost`` is that of ``frame_choice``: below 1 the table is valid.
+    ``frames`` ``(joints, samples, 4, 4)`` are where the student's frames on the joint axes lie in
+    the reference's. ``cost`` is that of ``frame_choice``: below 1 the table is valid.
     """
 
     roles: tuple[Role, ...]
@@ -56,9 +56,9 @@ class FrameReading:
 class _Case:
     """A table to be mended: its values, and how each cell changes with the joints if it is right.
 
-    ``table`` is ``(rows, 4, lanes)``, ``motion`` ``(rows, 4, lanes / 2)``; ``wrong`` are the cells
-    that are wrong whatever the others are; ``variables`` what belongs in the cells of the joints'
-    variables, in the order of the joints.
+    ``table`` is ``(rows, 4, samples)``, ``motion`` ``(rows, 4, samples / 2)``; ``wrong`` are the
+    cells that are wrong whatever the others are; ``variables`` what belongs in the cells of the
+    joints' variables, in the order of the joints.
     """
 
     table: Table
@@ -75,7 +75,7 @@ class _Case:
 
     @property
     def reference(self) -> Matrices:
-        """The reference's frames on the axes and its tool's, ``(joints + 1, LANES, 4, 4)``."""
+        """The reference's frames on the axes and its tool's, ``(joints + 1, SAMPLES, 4, 4)``."""
         return reference_frames(self.grading.exercise, self.convention, self.grading.samples)
 
     def apart(self, reached: Matrices) -> Matrices:
@@ -84,7 +84,7 @@ class _Case:
         They are seen from the reference's, ``(joints, T, few, 4, 4)``.
         """
         on_axes = joint_frames(reached, self.convention)[[row for row, _ in self.variables]]
-        return np.asarray(inverse(self.reference[:-1, FEW_LANES])[:, None] @ on_axes)
+        return np.asarray(inverse(self.reference[:-1, FEW_SAMPLES])[:, None] @ on_axes)
 
 
 def nearest_by_few_cells(
@@ -101,7 +101,7 @@ def nearest_by_few_cells(
     if not case.wrong:
         reached = frames(case.table, convention)
         if _coincide(reached[-1], case.reference[-1], case.unit):
-            apart = case.apart(reached[:, None, FEW_LANES])
+            apart = case.apart(reached[:, None, FEW_SAMPLES])
             return FrameReading(roles, case.table, apart[:, 0], 0.0)
     mends = _mends(case)
     return _likeliest(mends, roles, case) if mends else None
@@ -112,7 +112,7 @@ def frames_from_reference(
 ) -> Matrices:
     """A table's frames on the joint axes as seen from the reference's, ``(joints, few, 4, 4)``."""
     case = _case(roles, convention, grading)
-    return case.apart(frames(table, convention)[:, None, FEW_LANES])[:, 0]
+    return case.apart(frames(table, convention)[:, None, FEW_SAMPLES])[:, 0]
 
 
 def _case(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> _Case:
@@ -129,15 +129,15 @@ def _case(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> 
 
 
 def _coincide(one: Matrices, other: Matrices, unit: float) -> bool:
-    """Whether frames ``(lanes, 4, 4)`` are the same."""
+    """Whether frames ``(samples, 4, 4)`` are the same."""
     off = np.abs(one - other).max(axis=0)
     return bool(off[:3, :3].max() < SAME and off[:3, 3].max() < SAME * unit)
 
 
 def _mends(case: _Case) -> list[Mend]:
     """The ways to make the table valid by one cell; if there are none, by two."""
-    factors = factors_of(case.table[..., FEW_LANES], case.convention, case.unit)
-    pose = _in_unit(case.reference[-1, FEW_LANES], case.unit)
+    factors = factors_of(case.table[..., FEW_SAMPLES], case.convention, case.unit)
+    pose = _in_unit(case.reference[-1, FEW_SAMPLES], case.unit)
     by_factor = one_factor_mends(factors, pose)
     of_one = _fitting(by_factor, 1, case)
     return of_one or _fitting(chain(by_factor, two_factor_mends(factors, pose)), MOST, case)
@@ -148,7 +148,7 @@ def _likeliest(mends: Sequence[Mend], roles: tuple[Role, ...], case: _Case) -> F
 
     They are taken in the order of what their frames cost, until that alone is too much.
     """
-    tables = np.repeat(case.table[:, :, None, FEW_LANES], len(mends), axis=2)
+    tables = np.repeat(case.table[:, :, None, FEW_SAMPLES], len(mends), axis=2)
     for k, mend in enumerate(mends):
         _fill(tables[:, :, k], mend)
     apart = case.apart(frames(tables, case.convention))
@@ -160,7 +160,7 @@ def _likeliest(mends: Sequence[Mend], roles: tuple[Role, ...], case: _Case) -> F
         cost = wrong + float(departures[k])
         if best is not None and cost >= best.cost:
             break
-        table = _at_all_lanes(mends[k].cells, case)
+        table = _at_all_samples(mends[k].cells, case)
         if table is None:
             continue
         if len(mends) > 1:
@@ -201,16 +201,16 @@ def _fitting(mends: Iterable[Mend], count: int, case: _Case) -> list[Mend]:
     ]
 
 
-def _moves_so(mend: Mend, case: _Case, lanes: slice) -> bool:
+def _moves_so(mend: Mend, case: _Case, chosen: slice) -> bool:
     """Whether each value changes with the joints as its cell should."""
     return all(
-        moves_with(value, case.motion[cell][lanes], IS_ANGLE[cell[1]])
+        moves_with(value, case.motion[cell][chosen], IS_ANGLE[cell[1]])
         for cell, value in zip(mend.cells, mend.values, strict=True)
     )
 
 
-def _at_all_lanes(cells: Sequence[Cell], case: _Case) -> Table | None:
-    """The table with these cells mended, ``(rows, 4, LANES)``; None where they do not mend it."""
+def _at_all_samples(cells: Sequence[Cell], case: _Case) -> Table | None:
+    """The table with these cells mended, ``(rows, 4, SAMPLES)``; None where they do not mend it."""
     factors = factors_of(case.table, case.convention, case.unit)
     values = mended(factors, _in_unit(case.reference[-1], case.unit), cells)
     if values is None:
@@ -224,7 +224,7 @@ def _at_all_lanes(cells: Sequence[Cell], case: _Case) -> Table | None:
 
 
 def _fill(table: Table, mend: Mend) -> None:
-    """Write the values of a mend into their cells of a table ``(rows, 4, lanes)``."""
+    """Write the values of a mend into their cells of a table ``(rows, 4, samples)``."""
     for cell, value in zip(mend.cells, mend.values, strict=True):
         table[cell] = value
 

@@ -122,7 +122,7 @@ def _expected(
     samples: Samples,
     freedom: Freedom,
 ) -> Table:
-    """What each cell should be, joint variables and all: ``(rows, 4, LANES)``."""
+    """What each cell should be, joint variables and all: ``(rows, 4, SAMPLES)``."""
     table = np.tile(as_table(nearest.rows, convention), 2)
     for i, role in enumerate(roles):
         if role.joint is not None:

@@ -9,14 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import Exercise, ReferenceTable
-from service.grading.comparison import Numbers
 from service.grading.joint_motion import halves
 from service.grading.judging.own_frames.row_roles import variable_column
 from service.grading.samples import Samples
 from service.kinematics.chain import THETA, D, Table, frames, joint_frames, pose
 from service.kinematics.dh import Convention, standard_link
 from service.kinematics.factors import factors_of
-from service.kinematics.transforms import Matrices
+from service.kinematics.transforms import Matrices, Numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,10 +23,10 @@ class Mechanism:
     """The reference's constants: to each joint from the one before, and beyond the last joint.
 
     ``joints`` is ``(n, L, 4, 4)``; ``fixed`` are the frames of the fixed rows and ``tool`` that of
-    the end effector, ``(L, 4, 4)``, seen from the last joint's frame; L is half the lanes.
+    the end effector, ``(L, 4, 4)``, seen from the last joint's frame; L is half the samples.
     ``offsets`` ``(n, L, 4, 4)`` is what each joint's own d and θ do beside its variable. ``axes``
-    ``(n, L, 4, 4)`` are the joints' frames in the base frame, ``pose`` ``(lanes, 4, 4)`` is the end
-    effector's.
+    ``(n, L, 4, 4)`` are the joints' frames in the base frame, ``pose`` ``(samples, 4, 4)`` is the
+    end effector's.
     """
 
     joints: Matrices
@@ -42,7 +41,7 @@ class Mechanism:
 
 def mechanism_at(exercise: Exercise, samples: Samples) -> Mechanism:
     """The mechanism that the exercise's reference describes, in any convention."""
-    return samples.once("mechanism", lambda: _mechanism(exercise, samples))
+    return samples.cached("mechanism", lambda: _mechanism(exercise, samples))
 
 
 def _mechanism(exercise: Exercise, samples: Samples) -> Mechanism:
@@ -71,24 +70,24 @@ def _mechanism(exercise: Exercise, samples: Samples) -> Mechanism:
 
 
 def reference_values(reference: ReferenceTable, samples: Samples) -> Table:
-    """The reference's table in numbers, ``(rows, 4, lanes)``; it must not be written to."""
-    return samples.once(
-        reference.convention, lambda: reference.values(samples.values, samples.lanes)
+    """The reference's table in numbers, ``(rows, 4, samples)``; it must not be written to."""
+    return samples.cached(
+        reference.convention, lambda: reference.values(samples.values, samples.count)
     )
 
 
 def reference_frames(exercise: Exercise, convention: Convention, samples: Samples) -> Matrices:
-    """The reference's frames on the joint axes and its tool's: ``(joints + 1, lanes, 4, 4)``.
+    """The reference's frames on the joint axes and its tool's: ``(joints + 1, samples, 4, 4)``.
 
     They are the frames that a table of this convention has, whether the robot has one or not.
     """
-    return samples.once(
+    return samples.cached(
         ("frames", convention), lambda: _frames_on_axes(exercise, convention, samples)
     )
 
 
 def tool_pose(exercise: Exercise, samples: Samples) -> Matrices:
-    """The reference's end-effector frame in the base frame, ``(lanes, 4, 4)``."""
+    """The reference's end-effector frame in the base frame, ``(samples, 4, 4)``."""
     pose: Matrices = reference_frames(exercise, exercise.robot.convention, samples)[-1]
     return pose
 

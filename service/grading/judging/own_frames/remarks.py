@@ -18,7 +18,7 @@ def choices(
 ) -> tuple[Finding, ...]:
     """One message for each frame that departs from the reference's.
 
-    ``apart`` ``(joints, lanes, 4, 4)`` are the student's frames on the axes in the reference's.
+    ``apart`` ``(joints, samples, 4, 4)`` are the student's frames on the axes in the reference's.
     """
     away = np.abs(apart - np.eye(4)).max(axis=1)
     away[:, :3, 3] /= exercise.length_scale

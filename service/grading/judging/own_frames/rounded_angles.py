@@ -13,11 +13,12 @@ import numpy as np
 
 from service.catalogue import Exercise
 from service.catalogue.robot import at_home
-from service.grading.comparison import LARGEST_ANGLE, ROUNDED, Numbers
+from service.grading.comparison import LARGEST_ANGLE, ROUNDED
 from service.grading.joint_motion import changes
 from service.grading.judging.own_frames.row_roles import Role, joint_cells
 from service.grading.reading.table import IS_ANGLE
 from service.grading.samples import Samples
+from service.kinematics.transforms import Numbers
 
 STEP = np.pi / 12
 SAME = 1e-9
@@ -32,7 +33,7 @@ def steadied(roles: tuple[Role, ...], exercise: Exercise, samples: Samples) -> t
     digits = np.array([_last_digits(role) for role in roles])
     if not digits.any() or not _turns_in_steps(exercise, samples):
         return roles
-    nothing = np.full((len(IS_ANGLE), samples.lanes), np.nan)
+    nothing = np.full((len(IS_ANGLE), samples.count), np.nan)
     values = np.array([role.row.values if role.row else nothing for role in roles])
     off = _off_step(values, _variables(roles, samples), digits)
     exact = values - off[..., None]
@@ -60,7 +61,7 @@ def _last_digit(text: str) -> float:
 
 
 def _off_step(values: Numbers, variables: Numbers, digits: Numbers) -> Numbers:
-    """By how much the constant of each cell ``(rows, 4, LANES)`` misses a step by being rounded.
+    """By how much the constant of each cell ``(rows, 4, SAMPLES)`` misses a step by being rounded.
 
     0 where it is more than rounding, or the cell is no constant beside its joint's variable.
     """
@@ -75,8 +76,8 @@ def _off_step(values: Numbers, variables: Numbers, digits: Numbers) -> Numbers:
 
 
 def _variables(roles: tuple[Role, ...], samples: Samples) -> Numbers:
-    """The joint variable that belongs in each cell, ``(rows, 4, lanes)``; 0 where there is none."""
-    variables = np.zeros((len(roles), len(IS_ANGLE), samples.lanes))
+    """The joint variable that belongs in each cell, ``(rows, 4, samples)``; else 0."""
+    variables = np.zeros((len(roles), len(IS_ANGLE), samples.count))
     for cell, joint in joint_cells(roles).items():
         variables[cell] = samples.values[joint.variable]
     return variables
@@ -84,12 +85,12 @@ def _variables(roles: tuple[Role, ...], samples: Samples) -> Numbers:
 
 def _turns_in_steps(exercise: Exercise, samples: Samples) -> bool:
     """Whether the reference's constant angles are multiples of the step."""
-    return samples.once("turns in steps", lambda: _in_steps(exercise, samples))
+    return samples.cached("turns in steps", lambda: _in_steps(exercise, samples))
 
 
 def _in_steps(exercise: Exercise, samples: Samples) -> bool:
     robot = exercise.robot
-    values = at_home(robot.joints, samples.values, samples.lanes)
-    table = robot.tables[robot.convention].values(values, samples.lanes)
+    values = at_home(robot.joints, samples.values, samples.count)
+    table = robot.tables[robot.convention].values(values, samples.count)
     steps = table[:, IS_ANGLE] / STEP
     return bool(np.abs(steps - np.round(steps)).max() < SAME)

@@ -7,11 +7,11 @@ from itertools import zip_longest
 import numpy as np
 
 from service.catalogue import Joint
-from service.grading.comparison import Numbers
 from service.grading.joint_motion import changes, joint_counts
 from service.grading.reading.table import IS_ANGLE, HandedInRow, aligned, values_of
-from service.grading.samples import LANES, Samples
+from service.grading.samples import SAMPLES, Samples
 from service.kinematics.chain import COLUMNS, THETA, D
+from service.kinematics.transforms import Numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +35,8 @@ def joint_cells(roles: Sequence[Role]) -> dict[tuple[int, int], Joint]:
 
 
 def motion_of(roles: Sequence[Role], samples: Samples) -> Numbers:
-    """How each cell of a right table changes with the joints: ``(rows, 4, lanes / 2)``."""
-    motion = np.zeros((len(roles), len(COLUMNS), samples.lanes // 2))
+    """How each cell of a right table changes with the joints: ``(rows, 4, samples / 2)``."""
+    motion = np.zeros((len(roles), len(COLUMNS), samples.count // 2))
     for cell, joint in joint_cells(roles).items():
         motion[cell] = changes(samples.values[joint.variable])
     return motion
@@ -60,7 +60,7 @@ def roles_of(
     one_by_one = tuple(Role(row, joint) for row, joint in zip_longest(rows, joints))
     if len(rows) == len(joints) if in_order is None else in_order:
         return one_by_one
-    values = values_of(rows).reshape(-1, LANES)
+    values = values_of(rows).reshape(-1, SAMPLES)
     counts, _ = joint_counts(values, joints, samples, np.tile(IS_ANGLE, len(rows)))
     holds = np.abs(counts.reshape(len(rows), len(COLUMNS), len(joints))) > 0
     scores: Numbers = np.asarray(0.25 + holds.any(axis=1))

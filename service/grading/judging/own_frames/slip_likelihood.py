@@ -8,10 +8,11 @@ that does not belong there, a joint variable missing or misplaced.
 
 import numpy as np
 
-from service.grading.comparison import Numbers, difference
+from service.grading.comparison import difference
 from service.grading.formula_text import multiples
 from service.grading.part import Grading
-from service.grading.samples import SAMPLES
+from service.grading.samples import HALF
+from service.kinematics.transforms import Numbers
 
 # Far below a wrong cell, and so that a slip of no kind weighs less than a frame that was moved.
 TERM = 0.002
@@ -23,7 +24,7 @@ UNRELATED = 4
 
 
 def unlikelihood(written: Numbers | None, right: Numbers, angle: bool, grading: Grading) -> float:
-    """What speaks against a slip that wrote one constant ``(LANES,)`` for another; 0 is least.
+    """What speaks against a slip that wrote one constant ``(SAMPLES,)`` for another; 0 is least.
 
     ``written`` is None where the cell moved otherwise than it should, or could not be read: there
     the joint variable is what was mistaken.
@@ -55,7 +56,7 @@ _Terms = dict[str, float]
 
 def _terms(constant: Numbers, angle: bool, grading: Grading) -> _Terms | None:
     """The sum that a student would write; quarter turns are left out. None where it is no such."""
-    found = multiples(constant[:SAMPLES], angle, grading.exercise, grading.samples)
+    found = multiples(constant[:HALF], angle, grading.exercise, grading.samples)
     if found is None:
         return None
     letters, number = found

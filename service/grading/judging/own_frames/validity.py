@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import Exercise
-from service.grading.comparison import Numbers
 from service.grading.joint_motion import moves_with
 from service.grading.judging.own_frames.constants import without_motion
 from service.grading.judging.own_frames.frame_freedom import Freedom
@@ -23,7 +22,7 @@ from service.kinematics.chain import pose
 from service.kinematics.chain_match import Stop, followed
 from service.kinematics.dh import Convention
 from service.kinematics.fit import Place
-from service.kinematics.transforms import Matrices
+from service.kinematics.transforms import Matrices, Numbers
 
 
 def valid_tables(
@@ -37,7 +36,7 @@ def valid_tables(
 ) -> NDArray[np.bool_]:
     """Which of many tables describe the mechanism, in whatever frames: ``(T,)``.
 
-    ``tables`` is ``(T, rows, 4, lanes)`` at the samples, all with the same rows for the same
+    ``tables`` is ``(T, rows, 4, samples)`` at the samples, all with the same rows for the same
     joints. A free base is not looked into here: it counts as given.
     """
     if not (freedom.tool or freedom.directions):
@@ -66,11 +65,11 @@ def _by_pose(
     wanted = reference_frames(exercise, convention, samples)[-1]
     reach = max(exercise.length_scale, float(np.abs(wanted[:, :3, 3]).max()))
     # Most fail at the first sample already.
-    for lanes in (slice(0, 1), slice(None)):
+    for chosen in (slice(0, 1), slice(None)):
         left = np.flatnonzero(valid)
         if left.size:
-            reached = pose(np.moveaxis(tables[left][..., lanes], 0, 2), convention)
-            off = np.abs(reached - wanted[lanes])
+            reached = pose(np.moveaxis(tables[left][..., chosen], 0, 2), convention)
+            off = np.abs(reached - wanted[chosen])
             off[..., :3, 3] /= reach
             valid[left] = off.max(axis=(1, 2, 3)) <= tolerance
     return valid

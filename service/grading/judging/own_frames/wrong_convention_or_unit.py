@@ -22,14 +22,14 @@ SAME = 1e-9
 def read_as_meant(
     roles: tuple[Role, ...], convention: Convention, freedom: Freedom, grading: Grading
 ) -> FrameReading | None:
-    """The table without one basic belief, where that makes it valid as a whole; else None."""
+    """The table without one basic misconception, if that makes it valid; else None."""
     values = np.array([role.row.values for role in roles if role.row])
     if len(values) < len(roles) or not np.isfinite(values).all():
         return None
     exercise, samples = grading.exercise, grading.samples
     handed_in = written_table(values, convention, None, exercise.robot.joints, samples)
-    for belief in BASIC:
-        for repair in belief(handed_in):
+    for misconception in BASIC:
+        for repair in misconception(handed_in):
             table = repair.table
             valid = valid_tables(
                 table.values[None], roles, table.convention, freedom, exercise, samples, TOLERANCE
@@ -43,7 +43,7 @@ def read_as_meant(
 
 
 def in_convention(table: WrittenTable, convention: Convention) -> Table | None:
-    """The same chain in a convention, ``(rows, 4, lanes)``; None where that takes other rows."""
+    """The same chain in a convention, ``(rows, 4, samples)``; None where that takes other rows."""
     values = table.values
     if table.convention is convention:
         return values
