@@ -8,11 +8,6 @@ from numpy.typing import NDArray
 
 from service.expressions import Kind
 from service.grading.comparison import matches
-from service.grading.diagnosis.angle import diagnose_angle
-from service.grading.diagnosis.formula_repair import WrongEntry
-from service.grading.diagnosis.matrix_entry import diagnose
-from service.grading.diagnosis.wrong_value import WrongValue
-from service.grading.feedback import Finding
 from service.grading.part import Grading
 from service.grading.reading.entry import Entry
 from service.kinematics.transforms import Numbers
@@ -49,42 +44,3 @@ class WrittenValues:
             angle=angle[:, None],
             rounded=[entry.may_be_rounded for entry in self.entries],
         )
-
-
-def slips_of(
-    written: WrittenValues, wrong: NDArray[np.bool_], grading: Grading
-) -> dict[tuple[int, int], Finding]:
-    """What is to be said of each wrong value that could be read, at (its place, 0)."""
-    if not wrong.any():
-        return {}
-    actual, scales = written.actual(grading), written.scales(grading)
-    slips: dict[tuple[int, int], Finding] = {}
-    for i in np.flatnonzero(wrong).tolist():
-        expression = written.entries[i].expression
-        if expression is None:
-            continue
-        angle = written.quantities[i] == "angle"
-        value = WrongValue(
-            expression=expression,
-            actual=actual[i],
-            expected=written.expected[i],
-            expected_text=written.texts[i],
-            samples=grading.samples,
-            scale=float(scales[i]),
-            angle=angle,
-        )
-        slips[i, 0] = diagnose_angle(value) if angle else diagnose(_as_entry(value, grading))
-    return slips
-
-
-def _as_entry(value: WrongValue, grading: Grading) -> WrongEntry:
-    return WrongEntry(
-        expression=value.expression,
-        actual=value.actual,
-        expected=value.expected,
-        expected_text=value.expected_text,
-        samples=value.samples,
-        scale=value.scale,
-        angle=False,
-        turning=grading.exercise.vocabulary.turning,
-    )

@@ -5,25 +5,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from service.catalogue import DhTableSpec, Exercise
-from service.expressions import Expression
 from service.grading.comparison import Match
-from service.grading.diagnosis.table_cell import diagnose
+from service.grading.diagnosis.table_cell import diagnose_cells
 from service.grading.diagnosis.table_explained import explained, freedom_lost
-from service.grading.diagnosis.wrong_value import WrongCell
 from service.grading.feedback import ROUNDED, Finding
-from service.grading.formula_text import sum_text
-from service.grading.joint_motion import coefficients
 from service.grading.judging.table import (
     JudgedRow,
     Judgement,
-    column_scales,
     judged_table,
     roles_in,
 )
 from service.grading.part import Grading, OwnChain, PartTerms
 from service.grading.reading.pasted import length_unit
 from service.grading.reading.table import (
-    IS_ANGLE,
     HandedInRow,
     HandedInTable,
     UnreadableTableError,
@@ -158,7 +152,7 @@ def _row_reports(
 ) -> tuple[RowReport, ...]:
     """The rows with their cells, which belong to the slip of the whole table if there is one."""
     share = points / len(judgement.rows)
-    slips = _slips(judgement, grading)
+    slips = diagnose_cells(judgement, grading)
     if of_the_whole:
         belongs = replace(of_the_whole[0], hint=_PART_OF_IT)
         slips = {
@@ -195,45 +189,6 @@ def _cell(
         verdict = Verdict.INCORRECT
         findings = (*findings, slip) if slip else findings
     return CellReport(label, verdict, grading.visible(findings, judged.label, label))
-
-
-def _slips(judgement: Judgement, grading: Grading) -> dict[tuple[int, int], Finding]:
-    """What is to be said of each wrong cell that was read."""
-    written: list[tuple[int, int, JudgedRow, HandedInRow, Expression]] = []
-    for i, column in np.argwhere(judgement.matches < Match.ROUNDED).tolist():
-        judged = judgement.rows[i]
-        expression = judged.row.entries[column].expression if judged.row else None
-        if judged.row is not None and expression is not None:
-            written.append((i, column, judged, judged.row, expression))
-    if not written:
-        return {}
-    joints, samples = grading.exercise.robot.joints, grading.samples
-    actual = [row.handed_in[column] for _, column, _, row, _ in written]
-    expected = [judged.expected[column] for _, column, judged, _, _ in written]
-    angles = [bool(IS_ANGLE[column]) for _, column, *_ in written]
-    contained = coefficients(np.array(actual + expected), joints, samples, np.array(angles * 2))
-    scales = column_scales(grading).tolist()
-    slips = {}
-    for k, (i, column, judged, _, expression) in enumerate(written):
-        wanted = contained[len(written) + k]
-        slips[i, column] = diagnose(
-            WrongCell(
-                expression=expression,
-                actual=actual[k],
-                expected=expected[k],
-                expected_text=sum_text(expected[k], wanted, angles[k], grading.exercise, samples),
-                samples=samples,
-                scale=scales[column],
-                angle=angles[k],
-                column=COLUMNS[column],
-                joint=judged.joint,
-                joints=joints,
-                actual_coefficients=contained[k],
-                expected_coefficients=wanted or (0,) * len(joints),
-                shared=judged.shared,
-            )
-        )
-    return slips
 
 
 _PART_OF_IT = "This belongs to what is said of the table as a whole."

@@ -6,12 +6,12 @@ import numpy as np
 
 from service.catalogue import LinkTransformsSpec
 from service.expressions import Vocabulary, read
+from service.grading.diagnosis.matrix_entry import WORK_BUDGET
 from service.grading.feedback import Finding
 from service.grading.judging.own_frames.frame_freedom import Freedom
 from service.grading.judging.own_frames.row_roles import Role
 from service.grading.judging.table import nearest_reading
 from service.grading.kinds.matrix_rows import (
-    PATIENCE,
     ExpectedMatrix,
     UnreadableMatrixError,
     judged_matrix,
@@ -66,8 +66,8 @@ class LinkTransformsKind:
         for label, entries, values in zip(labels, found.entries, expected, strict=True):
             share = part.points / len(labels)
             matrix = ExpectedMatrix(values, HOMOGENEOUS, rigid=True)
-            patience = PATIENCE / len(labels)
-            judged = judged_matrix(entries, matrix, share, grading, patience=patience)
+            work_budget = WORK_BUDGET / len(labels)
+            judged = judged_matrix(entries, matrix, share, grading, work_budget=work_budget)
             rows.extend(_named(row, label) for row in judged.rows)
             told.extend(_placed(message, label) for message in judged.feedback)
         return terms.report(tuple(rows), tuple(told))

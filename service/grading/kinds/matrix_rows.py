@@ -1,6 +1,6 @@
 """Reading handed-in matrices and judging them entry by entry, whatever they stand for."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
@@ -10,11 +10,10 @@ from service.expressions import Kind
 from service.grading.comparison import Match, matches
 from service.grading.diagnosis.formula_repair import WrongEntry
 from service.grading.diagnosis.matrix_case import Chain, Explanation, MatrixCase
-from service.grading.diagnosis.matrix_entry import diagnose
+from service.grading.diagnosis.matrix_entry import WORK_BUDGET, diagnose_entries
 from service.grading.diagnosis.whole_matrix import check_yourself, explain, unexplained
-from service.grading.diagnosis.wrong_value import UNEXPLAINED
 from service.grading.feedback import Finding
-from service.grading.judging.report_rows import Slips, entry_rows
+from service.grading.judging.report_rows import entry_rows
 from service.grading.part import Grading
 from service.grading.reading.entry import MISSING, Entry, Reader, unreadable
 from service.grading.reading.pasted import from_grid_error, read_pasted_matrix
@@ -25,11 +24,6 @@ from service.kinematics.transforms import Numbers
 
 # How many samples of each half show what a whole matrix is.
 FEW = 4
-# How many nodes of unexplained formulas are taken apart before the rest of a matrix is only
-# compared: where so much has another cause, the rest will have it too. What can be explained costs
-# less of it, but not nothing: the work must be bounded.
-PATIENCE = 100
-COST_IF_EXPLAINED = 0.25
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,14 +132,14 @@ def judged_matrix(
     grading: Grading,
     chains: Callable[[Samples], tuple[Chain, ...]] = _no_chains,
     misconceptions: Callable[[MatrixCase], list[Explanation]] = _no_misconceptions,
-    patience: float = PATIENCE,
+    work_budget: float = WORK_BUDGET,
 ) -> JudgedMatrix:
     """A matrix that is worth ``points``, entry by entry.
 
     ``chains`` gives the links, at the samples it is handed, that the matrix is the product of where
     it is one; ``misconceptions`` explains the matrix by what else it is made of, and is asked
-    first. Both are asked only where something is wrong. ``patience`` bounds how much is taken
-    apart.
+    first. Both are asked only where something is wrong. ``work_budget`` bounds how
+    much is taken apart.
     """
     actual = numbers_of(entries, expected.quantities, grading.reader)
     scale = expected.scale(grading.exercise.length_scale)
@@ -177,7 +171,7 @@ def judged_matrix(
         for i, j in np.argwhere(told_apart)
         if (expression := entries[i][j].expression) is not None
     }
-    slips = _slips(wrong, patience)
+    slips = diagnose_entries(wrong, work_budget)
     check = check_yourself(case, slips)
     told = tuple(
         message
@@ -188,16 +182,6 @@ def judged_matrix(
         entry_rows(entries, found, slips, points, grading),
         (*told, *grading.visible((check,) if check else ())),
     )
-
-
-def _slips(wrong: Mapping[tuple[int, int], WrongEntry], patience: float) -> Slips:
-    """What is to be said of single entries."""
-    slips: dict[tuple[int, int], Finding] = {}
-    for place, entry in wrong.items():
-        slips[place] = diagnose(entry, patient=patience > 0)
-        explained = slips[place].code != UNEXPLAINED
-        patience -= entry.size * (COST_IF_EXPLAINED if explained else 1.0)
-    return slips
 
 
 def constant_text(values: Numbers) -> str:

@@ -9,10 +9,11 @@ from service.expressions import Kind
 from service.grading.comparison import Match
 from service.grading.diagnosis.matrix_case import chains_of
 from service.grading.diagnosis.position import WrongPosition, explain_position
+from service.grading.diagnosis.value_list import slips_of
 from service.grading.feedback import Finding
 from service.grading.judging.expected import as_entries, asked_pose, is_whole_chain, own_values
 from service.grading.judging.report_rows import entry_rows
-from service.grading.judging.value_list import WrittenValues, slips_of
+from service.grading.judging.value_list import WrittenValues
 from service.grading.kinds.matrix_rows import UnreadableMatrixError, constant_text
 from service.grading.part import Grading, PartTerms
 from service.grading.reading.value_list import read_list

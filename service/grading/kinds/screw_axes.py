@@ -11,10 +11,11 @@ from service.catalogue.answers import SCREW
 from service.catalogue.robot import at_home
 from service.grading.comparison import Match, matches
 from service.grading.diagnosis.screw_axis import WrongScrew, explain_screw
+from service.grading.diagnosis.value_list import slips_of
 from service.grading.feedback import Finding
 from service.grading.judging.expected import own_values
 from service.grading.judging.report_rows import entry_rows
-from service.grading.judging.value_list import WrittenValues, slips_of
+from service.grading.judging.value_list import WrittenValues
 from service.grading.kinds.matrix_rows import (
     UnreadableMatrixError,
     constant_text,

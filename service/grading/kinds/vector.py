@@ -7,9 +7,10 @@ import numpy as np
 from service.catalogue import VectorSpec
 from service.expressions import Kind
 from service.grading.comparison import Match
+from service.grading.diagnosis.value_list import slips_of
 from service.grading.judging.expected import own_values
 from service.grading.judging.report_rows import entry_rows
-from service.grading.judging.value_list import WrittenValues, slips_of
+from service.grading.judging.value_list import WrittenValues
 from service.grading.kinds.matrix_rows import UnreadableMatrixError
 from service.grading.part import Grading, PartTerms
 from service.grading.reading.value_list import read_list
