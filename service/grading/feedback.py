@@ -1,4 +1,4 @@
-"""What a grader has to say, before it is decided how much of it the student is shown."""
+"""Findings: the messages of a grading, before the feedback level decides what is visible."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -30,7 +30,7 @@ class Finding:
     values: dict[str, float | str] | None = None
     reading: bool = False
 
-    def shown(
+    def visible(
         self, level: FeedbackLevel, row: str | None = None, cell: str | None = None
     ) -> Feedback | None:
         """The message at this level, or None where the level keeps it back."""
@@ -49,6 +49,24 @@ class Finding:
         )
 
 
+def reading_error(code: str, message: str, span: tuple[int, int] | None = None) -> Finding:
+    """The finding that something cannot be read."""
+    return Finding(code, message, span=span, reading=True)
+
+
+def reading_note(code: str, message: str, span: tuple[int, int] | None = None) -> Finding:
+    """The finding that something was read, and how."""
+    return Finding(code, message, severity=Severity.INFO, span=span, reading=True)
+
+
+class UnreadableAnswerError(Exception):
+    """Nothing of an answer can be read; ``finding`` says what it would have to look like."""
+
+    def __init__(self, finding: Finding) -> None:
+        super().__init__(finding.hint)
+        self.finding = finding
+
+
 ROUNDED = Finding(
     "rounded",
     "Accepted, though rounded: write it exactly (pi/2, sqrt(2)/2) and nothing can be lost.",
@@ -56,7 +74,7 @@ ROUNDED = Finding(
 )
 
 
-def shown(
+def visible_messages(
     findings: tuple[Finding, ...],
     level: FeedbackLevel,
     row: str | None = None,
@@ -65,5 +83,5 @@ def shown(
     """The messages that the level lets through."""
     if not findings:
         return ()
-    feedback = (finding.shown(level, row, cell) for finding in findings)
+    feedback = (finding.visible(level, row, cell) for finding in findings)
     return tuple(message for message in feedback if message is not None)

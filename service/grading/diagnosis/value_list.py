@@ -8,28 +8,28 @@ from service.grading.diagnosis.formula_repair import WrongEntry
 from service.grading.diagnosis.matrix_entry import diagnose
 from service.grading.diagnosis.wrong_value import WrongValue
 from service.grading.feedback import Finding
-from service.grading.judging.value_list import WrittenValues
+from service.grading.judging.value_list import ComparedValues
 from service.grading.part import Grading
 
 
 def slips_of(
-    written: WrittenValues, wrong: NDArray[np.bool_], grading: Grading
+    compared: ComparedValues, wrong: NDArray[np.bool_], grading: Grading
 ) -> dict[tuple[int, int], Finding]:
     """The finding on each wrong value that was read, at (its place, 0)."""
     if not wrong.any():
         return {}
-    actual, scales = written.actual(grading), written.scales(grading)
+    student, scales = compared.student, compared.scales(grading)
     slips: dict[tuple[int, int], Finding] = {}
     for i in np.flatnonzero(wrong).tolist():
-        expression = written.entries[i].expression
+        expression = student.entries[i].expression
         if expression is None:
             continue
-        angle = written.quantities[i] == "angle"
+        angle = student.quantities[i] == "angle"
         value = WrongValue(
             expression=expression,
-            actual=actual[i],
-            expected=written.expected[i],
-            expected_text=written.texts[i],
+            actual=student.values[i],
+            expected=compared.expected[i],
+            expected_text=compared.texts[i],
             samples=grading.samples,
             scale=float(scales[i]),
             angle=angle,

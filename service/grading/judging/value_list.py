@@ -1,4 +1,4 @@
-"""A list of single values, each of its own quantity, held against what was expected."""
+"""A list of single values, each of its own quantity, held against the expected one."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,41 +6,35 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from service.expressions import Kind
 from service.grading.comparison import matches
 from service.grading.part import Grading
-from service.grading.reading.entry import Entry
+from service.grading.reading.value_list import StudentValues
 from service.kinematics.transforms import Numbers
 
 
 @dataclass(frozen=True, slots=True)
-class WrittenValues:
-    """What was written and what was expected, ``(n, SAMPLES)``.
+class ComparedValues:
+    """A list as read and the expected values, ``(n, SAMPLES)``.
 
-    ``texts`` is what would be right as formulas, each empty where it is not known as one.
+    ``texts`` are the expected values as formulas, each empty where it is not known as one.
     """
 
-    entries: Sequence[Entry]
+    student: StudentValues
     expected: Numbers
-    quantities: Sequence[Kind]
     texts: Sequence[str]
 
-    def actual(self, grading: Grading) -> Numbers:
-        """The numbers that were written, ``(n, SAMPLES)``; NaN where there are none."""
-        return grading.reader.numbers(self.entries, self.quantities)
-
     def scales(self, grading: Grading) -> Numbers:
-        """What each value is measured against, ``(n,)``."""
-        lengths = [quantity == "length" for quantity in self.quantities]
+        """The size that each value is measured against, ``(n,)``."""
+        lengths = [quantity == "length" for quantity in self.student.quantities]
         return np.where(lengths, grading.exercise.length_scale, 1.0)
 
     def matches(self, grading: Grading) -> NDArray[np.int_]:
         """The Match of each value, ``(n,)``; angles modulo 2π."""
-        angle = np.array([quantity == "angle" for quantity in self.quantities])
+        angle = np.array([quantity == "angle" for quantity in self.student.quantities])
         return matches(
-            self.actual(grading),
+            self.student.values,
             self.expected,
             self.scales(grading),
             angle=angle[:, None],
-            rounded=[entry.may_be_rounded for entry in self.entries],
+            rounded=self.student.rounded,
         )

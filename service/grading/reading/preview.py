@@ -7,7 +7,8 @@ from service.expressions import ExpressionError, Kind, Note, read
 from service.expressions.errors import Span
 from service.grading.reading.column_headers import QUANTITIES
 from service.grading.reading.entry import AngleUnit, Entry, Reader
-from service.grading.reading.pasted import length_unit, placed, read_pasted_table, table_entry
+from service.grading.reading.pasted import placed
+from service.grading.reading.pasted_table import read_pasted_table, table_entry
 from service.grading.samples import draw
 from service.grids import Cell, GridError, read_grid
 from service.kinematics.chain import COLUMNS
@@ -74,18 +75,17 @@ def preview_pasted(
     spec = exercise.part(part)
     if spec is None:
         raise LookupError(f"exercise {exercise.id!r} has no part {part!r}")
-    reader = Reader(exercise.vocabulary, draw(exercise, text), angle_unit)
+    reader = Reader.of(exercise, draw(exercise, text), angle_unit)
     try:
         if spec.kind == "dh_table":
-            return _table(text, exercise, reader)
+            return _table(text, reader)
         return _matrix(text, "angle" if spec.kind == "euler_angles" else "number", reader)
     except GridError as error:
         return PastedPreview(problem=Problem(error.code, error.message, error.span))
 
 
-def _table(text: str, exercise: Exercise, reader: Reader) -> PastedPreview:
+def _table(text: str, reader: Reader) -> PastedPreview:
     table = read_pasted_table(text, reader)
-    unit = length_unit(exercise)
     rows: list[tuple[CellPreview, ...]] = []
     for i, row in enumerate(table.rows):
         if row.problem:
@@ -96,7 +96,7 @@ def _table(text: str, exercise: Exercise, reader: Reader) -> PastedPreview:
             continue
         cells = []
         for cell, column, header in zip(row.cells, COLUMNS, table.headers, strict=True):
-            entry = table_entry(cell, column, header, reader, unit)
+            entry = table_entry(cell, column, header, reader)
             own = replace(reader, angle_unit=header.angle_unit or reader.angle_unit)
             cells.append(_cell(entry, cell, (str(i + 1), column), QUANTITIES[column], own))
         rows.append(tuple(cells))

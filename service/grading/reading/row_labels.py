@@ -5,8 +5,7 @@ import unicodedata
 from collections.abc import Sequence
 from typing import Final
 
-from service.grading.feedback import Finding
-from service.grading.report import Severity
+from service.grading.feedback import Finding, reading_note
 from service.grids import Cell, GridError
 
 LAST: Final = 10_000
@@ -55,7 +54,7 @@ def in_order(labels: Sequence[Cell]) -> tuple[list[int], tuple[Finding, ...]]:
             return typed, ()
         unknown = next(i for i in typed if places[i] is None)
         message = "Not all rows have a number in front, so they were read in the order as pasted."
-        return typed, (_info("row_labels", message, labels[unknown]),)
+        return typed, (reading_note("row_labels", message, labels[unknown].whole),)
     if len(set(known)) < len(known):
         again = next(i for i in typed if known[i] in known[:i])
         raise GridError(
@@ -68,8 +67,4 @@ def in_order(labels: Sequence[Cell]) -> tuple[list[int], tuple[Finding, ...]]:
         return typed, ()
     moved = next(i for i in typed if order[i] != i)
     message = "The rows were put into the order of their labels."
-    return order, (_info("rows_reordered", message, labels[moved]),)
-
-
-def _info(code: str, message: str, cell: Cell) -> Finding:
-    return Finding(code, message, severity=Severity.INFO, span=cell.whole, reading=True)
+    return order, (reading_note("rows_reordered", message, labels[moved].whole),)

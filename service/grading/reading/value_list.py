@@ -2,36 +2,62 @@
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from service.expressions import Kind
-from service.grading.feedback import Finding
-from service.grading.kinds.matrix_rows import UnreadableMatrixError
-from service.grading.reading.entry import MISSING, Entry, Reader
+from service.grading.feedback import (
+    Finding,
+    UnreadableAnswerError,
+    reading_error,
+    reading_note,
+)
+from service.grading.reading.entry import MISSING, Entry, Reader, entry_values
 from service.grading.reading.pasted import from_grid_error, placed
-from service.grading.report import Severity
 from service.grids import Cell, GridError, read_grid
+from service.kinematics.transforms import Numbers
+
+
+@dataclass(frozen=True, slots=True)
+class StudentValues:
+    """A list of values as read: entries, and numbers ``(n, SAMPLES)``, NaN where there are none."""
+
+    entries: list[Entry]
+    quantities: Sequence[Kind]
+    values: Numbers
+
+    @property
+    def rounded(self) -> list[bool]:
+        """Which values may be off by what rounding does."""
+        return [entry.may_be_rounded for entry in self.entries]
 
 
 def read_list(
     answer: object, quantities: Sequence[Kind], reader: Reader, *, planar: bool = False
-) -> list[Entry]:
-    """The entries of a list, one for each quantity asked for.
+) -> StudentValues:
+    """The values of a list, one for each quantity asked for.
 
     A column, a list of lists of one, or a row in a list of its own will do, and pasted text. Values
     that were left off at the end are missing. Where the values are those of a ``planar`` answer,
-    one 0 more, as in [x, y, 0], is left aside and said to be. Raises UnreadableMatrixError where
+    one 0 more, as in [x, y, 0], is left aside and said to be. Raises UnreadableAnswerError where
     there is no list of the length asked for.
     """
     if isinstance(answer, str):
-        return _pasted(answer, quantities, reader, planar=planar)
+        entries = _pasted(answer, quantities, reader, planar=planar)
+    else:
+        entries = _listed(answer, quantities, reader, planar=planar)
+    return StudentValues(entries, quantities, entry_values(entries, quantities, reader.samples))
+
+
+def _listed(
+    answer: object, quantities: Sequence[Kind], reader: Reader, *, planar: bool
+) -> list[Entry]:
     values = _flat(answer)
     left_aside = planar and len(values) == len(quantities) + 1 and _is_zero(values[-1])
     if left_aside:
         values = values[:-1]
     is_nested = all(isinstance(value, list) for value in values)
     if is_nested or len(values) > len(quantities):
-        raise UnreadableMatrixError(_wrong_shape(len(quantities), 0 if is_nested else len(values)))
+        raise UnreadableAnswerError(_wrong_shape(len(quantities), 0 if is_nested else len(values)))
     padded = [*values, *[None] * (len(quantities) - len(values))]
     entries = [reader.read(raw, quantity) for raw, quantity in zip(padded, quantities, strict=True)]
     return _with_note(entries) if left_aside else entries
@@ -71,7 +97,7 @@ def _pasted(text: str, quantities: Sequence[Kind], reader: Reader, *, planar: bo
         if error.code in _OF_TABLES:
             entries = _taken_apart(text, quantities, reader, planar=planar)
         if entries is None:
-            raise UnreadableMatrixError(_from_grid_error(error, len(quantities))) from error
+            raise UnreadableAnswerError(_from_grid_error(error, len(quantities))) from error
         return entries
     cells: Sequence[Cell] = rows[0] if len(rows) == 1 else [row[0] for row in rows]
     is_list = len(rows) == 1 or all(len(row) == 1 for row in rows)
@@ -80,7 +106,7 @@ def _pasted(text: str, quantities: Sequence[Kind], reader: Reader, *, planar: bo
         entries = None if is_list else _taken_apart(text, quantities, reader, planar=planar)
         if entries is None:
             found = len(cells) if is_list else 0
-            raise UnreadableMatrixError(_wrong_shape(len(quantities), found))
+            raise UnreadableAnswerError(_wrong_shape(len(quantities), found))
         return entries
     entries = [
         placed(reader.read(cell.text, quantity), cell)
@@ -180,21 +206,17 @@ _OF_TABLES = {
     "and a -b.",
 }
 
-_ZERO_LEFT_ASIDE = Finding(
-    "zero_left_aside",
-    "Only two values are asked for; the third, 0, was left aside.",
-    severity=Severity.INFO,
-    reading=True,
+_ZERO_LEFT_ASIDE = reading_note(
+    "zero_left_aside", "Only two values are asked for; the third, 0, was left aside."
 )
 
 
 def _wrong_shape(count: int, found: int) -> Finding:
     """What a list would look like; ``found`` is how many values one too long has."""
-    return Finding(
+    return reading_error(
         "wrong_shape",
         f"This answer is a list of {count} values, such as [{', '.join(['…'] * count)}]"
         f"{f'; this one has {found}' if found else ''}.",
-        reading=True,
     )
 
 
@@ -203,8 +225,8 @@ def _from_grid_error(error: GridError, count: int) -> Finding:
     finding = from_grid_error(error)
     if error.code not in _OF_TABLES:
         return finding
-    look = (
+    message = (
         f"This answer is a list of {count} values: write them with commas between them, or one on "
         f"each line. {_OF_TABLES[error.code]}"
     )
-    return replace(finding, hint=look.strip())
+    return replace(finding, hint=message.strip())
