@@ -75,6 +75,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
         (
             "grading/kinds/dh_table.py",
             "grading/judging/table.py",
+            "grading/judging/own_frames/written_table.py",
             f"{DIAGNOSIS}table_freedom.py",
             f"{DIAGNOSIS}whole_table.py",
         ),
@@ -91,7 +92,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     ),
     ((SINGLE,), (f"{DIAGNOSIS}matrix_entry.py", VALUES)),
     (("Positions",), (f"{DIAGNOSIS}position.py",)),
-    (("Angles",), (f"{DIAGNOSIS}angle.py", VALUES)),
+    (("Angles",), (f"{DIAGNOSIS}angle.py", f"{DIAGNOSIS}euler_triple.py", VALUES)),
     (("Screws",), (f"{DIAGNOSIS}screw_axis.py",)),
     (("Parts as a whole",), ("grading/follow_through.py",)),
 )

@@ -1,41 +1,86 @@
-"""Slips in the DH row of a transform: a condition overlooked, or the numbers of something else.
+"""Slips in the DH row of a transform: a condition overlooked, or the row of something else."""
 
-Each function is one misconception that the student may have held. It returns what to say where that
-misconception explains the answer, else None.
-"""
-
-from collections.abc import Callable
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from service.grading.comparison import EXACT, Match, matches
+from service.grading.comparison import EXACT
+from service.grading.diagnosis.wrong_value import Hypotheses, WrongNumbers
 from service.grading.feedback import Finding
+from service.grading.misconception import Written, diagnosed
 from service.grading.reading.table import IS_ANGLE
+from service.kinematics.chain import A
 from service.kinematics.dh import Convention
 from service.kinematics.dh_row import gap, row, slant
 from service.kinematics.transforms import Matrices, Numbers, inverse
 
 
-@dataclass(frozen=True, slots=True)
-class RowCase:
-    """A row ``(4, SAMPLES)`` that was given for a transform ``(SAMPLES, 4, 4)``."""
+@dataclass(frozen=True)
+class WrongRow(WrongNumbers):
+    """A wrong row ``(4, SAMPLES)`` of a ``transform`` ``(SAMPLES, 4, 4)``."""
 
-    actual: Numbers
     transform: Matrices
     convention: Convention
-    length_scale: float
+    angle: ClassVar[ArrayLike] = IS_ANGLE[:, None]
 
-    def is_what_was_written(self, other: Numbers) -> bool:
-        """Whether the row that was handed in is ``other``."""
-        scale = np.where(IS_ANGLE, 1.0, self.length_scale)
-        found = matches(self.actual, other, scale, IS_ANGLE[:, None])
-        return bool((found >= Match.ROUNDED).all())
+    def row_of(self, transform: Matrices, convention: Convention) -> Numbers | None:
+        """The row of another transform or convention, ``(4, SAMPLES)``; None where it has none."""
+        length_scale = float(np.asarray(self.scale)[A])
+        if violated(transform, convention, length_scale):
+            return None
+        return row(transform, convention)
 
-    @property
-    def expected(self) -> Numbers:
-        """The row that the transform has, ``(4, SAMPLES)``."""
-        return row(self.transform, self.convention)
+
+def exchanged_parameters(case: WrongRow) -> Hypotheses:
+    """A and d, or α and θ, stand in each other's places."""
+    for names, order in (
+        ("a and d", [2, 1, 0, 3]),
+        ("α and θ", [0, 3, 2, 1]),
+        ("a and d, and α and θ,", [2, 3, 0, 1]),
+    ):
+        finding = Finding(
+            "exchanged_parameters",
+            f"{names} stand in each other's places: a and α belong to the x axis, d and θ to "
+            f"the z axis.",
+        )
+        yield Written(case.expected[order], finding)
+
+
+def other_convention(case: WrongRow) -> Hypotheses:
+    """The row is that of the other convention."""
+    other = next(each for each in Convention if each is not case.convention)
+    finding = Finding(
+        "other_convention",
+        f"This is the row of the {other.value} convention; the {case.convention.value} one is "
+        f"asked for.",
+    )
+    found = case.row_of(case.transform, other)
+    if found is not None:
+        yield Written(found, finding)
+
+
+def inverse_row(case: WrongRow) -> Hypotheses:
+    """The row is that of the inverse transform."""
+    finding = Finding(
+        "inverse_transform",
+        "This is the row of the inverse: the transform describes the second frame in the first.",
+    )
+    found = case.row_of(inverse(case.transform), case.convention)
+    if found is not None:
+        yield Written(found, finding)
+
+
+MISCONCEPTIONS = (exchanged_parameters, other_convention, inverse_row)
+
+
+def explain_row(case: WrongRow) -> Finding | None:
+    """The finding that explains the whole of a wrong row."""
+    return diagnosed(case, MISCONCEPTIONS)
+
+
+# --- the conditions that a transform with a row meets
 
 
 def axes_named(convention: Convention) -> tuple[str, str]:
@@ -72,80 +117,18 @@ def not_intersecting(
 
 
 def violated(transform: Matrices, convention: Convention, length_scale: float) -> list[Finding]:
-    """The conditions that a transform breaks; none where it has a row."""
-    found = (
+    """The findings on the conditions that a transform does not meet; none where it has a row."""
+    findings = (
         not_perpendicular(transform, convention),
         not_intersecting(transform, convention, length_scale),
     )
-    return [finding for finding in found if finding is not None]
+    return [finding for finding in findings if finding is not None]
 
 
 def has_a_row(convention: Convention) -> Finding:
-    """What to say to who found no row where there is one."""
+    """The finding on the answer "none" where the transform has a row."""
     x, z = axes_named(convention)
     return Finding(
         "dh_row_exists",
         f"This transform has a row: {x} is perpendicular to {z} and meets it.",
     )
-
-
-def exchanged_parameters(case: RowCase) -> Finding | None:
-    """A and d, or α and θ, stand in each other's places."""
-    a, alpha, d, theta = case.expected
-    for names, other in (
-        ("a and d", [d, alpha, a, theta]),
-        ("α and θ", [a, theta, d, alpha]),
-        ("a and d, and α and θ,", [d, theta, a, alpha]),
-    ):
-        if case.is_what_was_written(np.array(other)):
-            return Finding(
-                "exchanged_parameters",
-                f"{names} stand in each other's places: a and α belong to the x axis, d and θ to "
-                f"the z axis.",
-            )
-    return None
-
-
-def inverse_row(case: RowCase) -> Finding | None:
-    """The row is that of the inverse transform."""
-    turned = inverse(case.transform)
-    if violated(turned, case.convention, case.length_scale):
-        return None
-    if not case.is_what_was_written(row(turned, case.convention)):
-        return None
-    return Finding(
-        "inverse_transform",
-        "This is the row of the inverse: the transform describes the second frame in the first.",
-    )
-
-
-def other_convention(case: RowCase) -> Finding | None:
-    """The row is that of the other convention."""
-    other = next(each for each in Convention if each is not case.convention)
-    if violated(case.transform, other, case.length_scale):
-        return None
-    if not case.is_what_was_written(row(case.transform, other)):
-        return None
-    return Finding(
-        "other_convention",
-        f"This is the row of the {other.value} convention; the {case.convention.value} one is "
-        f"asked for.",
-    )
-
-
-MISCONCEPTIONS: tuple[Callable[[RowCase], Finding | None], ...] = (
-    exchanged_parameters,
-    other_convention,
-    inverse_row,
-)
-
-
-def explain_row(case: RowCase) -> Finding | None:
-    """The first misconception that explains the whole of a wrong row."""
-    if case.is_what_was_written(case.expected):
-        return None
-    for misconception in MISCONCEPTIONS:
-        finding = misconception(case)
-        if finding is not None:
-            return finding
-    return None

@@ -1,8 +1,9 @@
-"""A wrong matrix entry, and the trying out of formulas that its writer may have meant."""
+"""A wrong entry, and the formulas that its writer may have intended."""
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -14,43 +15,35 @@ from service.expressions.tree import Call, Node
 from service.grading.comparison import EXACT, ROUNDED
 from service.grading.diagnosis.formula_rewriting import EXCHANGED, negated, nodes
 from service.grading.diagnosis.wrong_value import WrongValue
+from service.grading.misconception import AnyHypothesis, Repaired
 from service.kinematics.transforms import Numbers
 
 # A formula of more nodes is compared, but not taken apart.
 MAX_NODES = 100
-# How much of a repaired formula is worth reading.
+# A longer formula is not worth reading.
 MAX_TEXT = 200
 
 
 @dataclass(frozen=True, slots=True)
-class Repair:
-    """A formula that is right, or right but for its sign, and the place where it was changed."""
+class Rewritten(Repaired[Node]):
+    """The student's formula without the misconception.
 
-    tree: Node
-    negated: bool
-    place: Node | None
+    It explains the entry if it is right, or right but for its sign unless ``signed``. The sign and
+    the correction, where it has none, are added to the finding.
+    """
 
-    @property
-    def correction(self) -> str:
-        """The sentence that gives the repaired formula, where it is short enough to be read."""
-        text = to_text(negated(self.tree) if self.negated else self.tree)
-        return f"It should be {text}." if len(text) <= MAX_TEXT else ""
-
-    @property
-    def sign_too(self) -> str:
-        """What is to be said where only the other sign makes it right."""
-        return " Its sign is wrong, too." if self.negated else ""
+    signed: bool = False
 
 
 @dataclass(frozen=True)
 class WrongEntry(WrongValue):
-    """A wrong matrix entry. ``turning`` are the exercise's turning joints by their number."""
+    """A wrong entry of a matrix or a list. ``turning`` are the turning joints by their number."""
 
     turning: Mapping[int, Symbol]
 
     @cached_property
     def tree(self) -> Node:
-        """What the student wrote."""
+        """The student's formula."""
         return self.expression.tree
 
     @cached_property
@@ -64,10 +57,37 @@ class WrongEntry(WrongValue):
         return self.size <= MAX_NODES and bool(np.isfinite(self.actual).all())
 
     @cached_property
-    def waves(self) -> list[Call]:
-        """The sines and cosines that were written."""
+    def sines_and_cosines(self) -> list[Call]:
+        """The sines and cosines in the formula."""
         calls = (node for node in nodes(self.tree) if isinstance(node, Call))
         return [call for call in calls if call.function in EXCHANGED]
+
+    def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterator[AnyHypothesis]:
+        """Those hypotheses that explain the entry, each tried when it is asked for."""
+        for hypothesis in hypotheses:
+            if not isinstance(hypothesis, Rewritten):
+                yield from super().explained_by((hypothesis,))
+            elif (sign := self._sign(hypothesis)) is not None:
+                yield _completed(hypothesis, sign)
+
+    def _sign(self, rewritten: Rewritten) -> int | None:
+        """The sign with which the formula is right; None where it is right with neither.
+
+        A formula that is right at one point is evaluated at all samples. One that has the value of
+        the student's formula explains nothing.
+        """
+        tree = rewritten.answer
+        if tree is self.tree:
+            return None
+        value = value_at(tree, self._point, self._known)
+        if not abs(abs(value) - abs(float(self.expected[0]))) <= self._tolerance:
+            return None
+        values = self._evaluated(tree)
+        if self.equal(values, self.actual):
+            return None
+        if self.equal(values, self.expected):
+            return 1
+        return None if rewritten.signed or not self.equal(-values, self.expected) else -1
 
     @cached_property
     def _point(self) -> Mapping[str, float]:
@@ -82,38 +102,19 @@ class WrongEntry(WrongValue):
         size = float(np.sqrt(np.mean(self.expected * self.expected)))
         return ROUNDED * size + EXACT * self.scale
 
-    def repaired_by(self, trees: Iterable[Node]) -> Repair | None:
-        """The first of the trees that is right, or right but for its sign.
-
-        One that has the value of what was written explains nothing.
-        """
-        return self.repaired_at((tree, None) for tree in trees)
-
-    def repaired_at(
-        self, trees: Iterable[tuple[Node, Node | None]], *, negated_too: bool = True
-    ) -> Repair | None:
-        """The same for trees that come with the place where each was changed.
-
-        Only what is right at one point is evaluated at all samples.
-        """
-        expected = float(self.expected[0])
-        for tree, place in trees:
-            if tree is self.tree:
-                continue
-            value = value_at(tree, self._point, self._known)
-            if not abs(abs(value) - abs(expected)) <= self._tolerance:
-                continue
-            actual = self._evaluated(tree)
-            if self.equal(actual, self.actual):
-                continue
-            for turned in (False, True) if negated_too else (False,):
-                if self.equal(-actual if turned else actual, self.expected):
-                    return Repair(tree, turned, place)
-        return None
-
     def _evaluated(self, tree: Node) -> Numbers:
         program = compile_tree(tree)
         if isinstance(program, float):
             return np.full_like(self.expected, program)
         with np.errstate(all="ignore"):
             return np.asarray(program(self.samples.values, {}))
+
+
+def _completed(rewritten: Any, sign: int) -> Any:
+    """The hypothesis with its sign and its formula in the finding."""
+    [finding] = rewritten.findings
+    hint = finding.hint if sign > 0 else f"{finding.hint} Its sign is wrong, too."
+    text = to_text(rewritten.answer if sign > 0 else negated(rewritten.answer))
+    formula = f"It should be {text}." if len(text) <= MAX_TEXT else ""
+    correction = finding.correction or formula
+    return replace(rewritten, finding=replace(finding, hint=hint, correction=correction))

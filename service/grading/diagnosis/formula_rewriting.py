@@ -1,7 +1,7 @@
-"""What a student's formula would be without one misconception: pure functions from tree to tree.
+"""Functions that rewrite a student's formula as it would be without one misconception.
 
-A tree is never changed. The new one shares every part that stays as it was, so that a tree that is
-returned as the same object is one that the rule has nothing to say to.
+A tree is never changed. The new one shares every part that stays as it was; a tree in which there
+is nothing to rewrite is returned itself.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -21,7 +21,7 @@ from service.expressions.tree import (
     children,
 )
 
-Rule = Callable[[Node], Node]
+Rewriting = Callable[[Node], Node]
 # A factor or term with the sign that it counts with.
 Signed = tuple[int, Node]
 
@@ -37,25 +37,25 @@ def nodes(tree: Node) -> Iterator[Node]:
         pending.extend(reversed(children(node)))
 
 
-def is_wave(node: Node) -> bool:
+def is_sine_or_cosine(node: Node) -> bool:
     """Whether the node is a sine or cosine."""
     return isinstance(node, Call) and node.function in EXCHANGED
 
 
-def mapped(node: Node, change: Rule) -> Node:
-    """The node with ``change`` applied to each of its operands or arguments."""
+def mapped(node: Node, rewrite: Rewriting) -> Node:
+    """The node with ``rewrite`` applied to each of its operands or arguments."""
     if isinstance(node, Binary):
-        left, right = change(node.left), change(node.right)
+        left, right = rewrite(node.left), rewrite(node.right)
         if left is node.left and right is node.right:
             return node
         return Binary(node.operator, left, right, node.start, node.end)
     if isinstance(node, Call):
-        arguments = tuple(map(change, node.arguments))
+        arguments = tuple(map(rewrite, node.arguments))
         if all(map(is_, arguments, node.arguments)):
             return node
         return Call(node.function, arguments, node.start, node.end)
     if isinstance(node, Negation | Unit):
-        operand = change(node.operand)
+        operand = rewrite(node.operand)
         if operand is node.operand:
             return node
         if isinstance(node, Unit):
@@ -64,31 +64,31 @@ def mapped(node: Node, change: Rule) -> Node:
     return node
 
 
-def everywhere(tree: Node, rule: Rule) -> Node:
-    """The tree with ``rule`` applied to every node, the innermost first."""
+def everywhere(tree: Node, rewrite: Rewriting) -> Node:
+    """The tree with ``rewrite`` applied to every node, the innermost first."""
 
     def visit(node: Node) -> Node:
-        return rule(mapped(node, visit))
+        return rewrite(mapped(node, visit))
 
     return visit(tree)
 
 
-def at_waves(tree: Node, rule: Rule) -> Node:
-    """The tree with ``rule`` applied to its sines and cosines, which are not looked into."""
+def at_sines_and_cosines(tree: Node, rewrite: Rewriting) -> Node:
+    """The tree with ``rewrite`` applied to its sines and cosines, but not to their arguments."""
 
     def visit(node: Node) -> Node:
-        return rule(node) if is_wave(node) else mapped(node, visit)
+        return rewrite(node) if is_sine_or_cosine(node) else mapped(node, visit)
 
     return visit(tree)
 
 
-def one_place(node: Node, rule: Rule) -> Iterator[tuple[Node, Node]]:
-    """The trees with ``rule`` applied in one place, each with the node that stood there."""
-    changed = rule(node)
+def one_place(node: Node, rewrite: Rewriting) -> Iterator[tuple[Node, Node]]:
+    """The trees with ``rewrite`` applied in one place, each with the node that stood there."""
+    changed = rewrite(node)
     if changed is not node:
         yield changed, node
     for child in children(node):
-        for repaired, place in one_place(child, rule):
+        for repaired, place in one_place(child, rewrite):
             yield _with_child(node, child, repaired), place
 
 
@@ -125,10 +125,10 @@ def without_degrees(node: Node) -> Node:
     return node.operand if isinstance(node, Unit) and node.unit == "deg" else node
 
 
-def summed_from(first: int, turning: Mapping[int, Symbol]) -> Rule:
+def summed_from(first: int, turning: Mapping[int, Symbol]) -> Rewriting:
     """The sine or cosine of one joint angle as that of all from joint ``first`` up to it."""
 
-    def rule(node: Node) -> Node:
+    def rewrite(node: Node) -> Node:
         if not (isinstance(node, Call) and node.function in EXCHANGED):
             return node
         last = _joint_of(node.arguments[0])
@@ -138,7 +138,7 @@ def summed_from(first: int, turning: Mapping[int, Symbol]) -> Rule:
         total = joined([(1, angle) for angle in angles])
         return Call(node.function, (total,), node.start, node.end)
 
-    return rule
+    return rewrite
 
 
 def _joint_of(node: Node) -> int | None:
@@ -149,11 +149,11 @@ def _joint_of(node: Node) -> int | None:
 
 
 class _Term(NamedTuple):
-    """A term of a sum: its sign, its factors but one, and that one where it is a sine or cosine."""
+    """A term of a sum: its sign, its last sine or cosine if there is one, and its other factors."""
 
     sign: int
     factors: list[Node]
-    wave: Call | None
+    call: Call | None
 
 
 def sums_merged(node: Node) -> Node:
@@ -163,7 +163,7 @@ def sums_merged(node: Node) -> Node:
     terms = [_split(sign, sums_merged(term)) for sign, term in terms_of(node)]
     groups: dict[tuple[object, ...], list[_Term]] = {}
     for i, term in enumerate(terms):
-        like = term.wave.function if term.wave else i
+        like = term.call.function if term.call else i
         groups.setdefault((like, *sorted(map(to_text, term.factors))), []).append(term)
     if len(groups) == len(terms):
         return mapped(node, sums_merged)
@@ -172,18 +172,18 @@ def sums_merged(node: Node) -> Node:
 
 def _split(sign: int, term: Node) -> _Term:
     inner, factors = factors_of(term)
-    last = next((factor for factor in reversed(factors) if is_wave(factor)), None)
+    last = next((factor for factor in reversed(factors) if is_sine_or_cosine(factor)), None)
     if not isinstance(last, Call):
         return _Term(sign * inner, factors, None)
     return _Term(sign * inner, [factor for factor in factors if factor is not last], last)
 
 
 def _merged_term(group: list[_Term]) -> Signed:
-    sign, factors, wave = group[0]
-    if wave is None:
+    sign, factors, call = group[0]
+    if call is None:
         return sign, _product(factors)
-    angles = [(sign * term.sign, term.wave.arguments[0]) for term in group if term.wave]
-    return sign, _product([*factors, Call(wave.function, (joined(angles),))])
+    angles = [(sign * term.sign, term.call.arguments[0]) for term in group if term.call]
+    return sign, _product([*factors, Call(call.function, (joined(angles),))])
 
 
 def products_merged(tree: Node, joints: frozenset[int] | None = None) -> Node:
@@ -193,7 +193,7 @@ def products_merged(tree: Node, joints: frozenset[int] | None = None) -> Node:
     """
 
     def visit(node: Node) -> Node:
-        if is_wave(node):
+        if is_sine_or_cosine(node):
             return node
         if not (isinstance(node, Binary) and node.operator == "*"):
             return mapped(node, visit)
@@ -254,7 +254,7 @@ def _products(tree: Node) -> Iterator[list[Node]]:
             _, factors = factors_of(node)
             yield factors
             pending.extend(factors)
-        elif not is_wave(node):
+        elif not is_sine_or_cosine(node):
             pending.extend(children(node))
 
 

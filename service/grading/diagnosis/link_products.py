@@ -1,145 +1,194 @@
-"""Transforms that a student may have worked out in place of the one asked for.
+"""Slips in a product of link transforms.
 
-Each function is one misconception about how a pose comes from the links of a chain. It returns the
-poses that the misconception leads to; where one is the student's matrix, or all of its rotation or
-of its position, the misconception explains it.
+Each misconception leads to another pose ``(SAMPLES, 4, 4)``. A student may hand in the whole of it,
+its rotation or its position; so the first sentence of the finding lacks its subject, which
+``named`` puts in front: "This matrix is …", "The position comes from …".
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from service.grading.diagnosis.matrix_case import Chain
-from service.kinematics.chain import compound
+from service.catalogue import Exercise
+from service.grading.feedback import Finding
+from service.grading.misconception import Written, hypotheses_of
+from service.grading.samples import Samples
+from service.kinematics.chain import Table, compound, links
+from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices
 
+LinkPose = Written[Matrices]
 
-@dataclass(frozen=True, slots=True)
-class Alternative:
-    """Another pose ``(SAMPLES, 4, 4)`` and the misconception behind it.
 
-    ``what`` names the pose, so that "This matrix is …" and "The position comes from …" are
-    sentences; ``look`` says what to look at, ``correction`` what would be right.
+@dataclass(frozen=True)
+class Chain:
+    """The links of the reference in one convention.
+
+    ``table`` is ``(rows, 4, SAMPLES)``. ``frames`` names the frame that each row starts from, then
+    the last frame. ``is_asked`` says that the convention is the exercise's.
     """
 
-    code: str
-    what: str
-    hint: str
-    correction: str
-    pose: Matrices
+    table: Table
+    convention: Convention
+    frames: tuple[str, ...]
+    is_asked: bool = True
+
+    @cached_property
+    def links(self) -> Matrices:
+        """The link transform of each row, ``(rows, SAMPLES, 4, 4)``."""
+        return links(self.table, self.convention)
+
+    @cached_property
+    def from_base(self) -> Matrices:
+        """The pose of the frame behind each row in the base frame: A_1, A_1 A_2 and so on."""
+        return _running_products(self.links)
+
+    @cached_property
+    def to_end(self) -> Matrices:
+        """The pose of the last frame in the one before each row: A_1 … A_n first, A_n last."""
+        turned = np.swapaxes(self.links[::-1], -1, -2)
+        return np.swapaxes(_running_products(turned), -1, -2)[::-1]
+
+    @property
+    def other_convention(self) -> Convention:
+        """The convention that the table is not written in."""
+        if self.convention is Convention.STANDARD:
+            return Convention.MODIFIED
+        return Convention.STANDARD
+
+    @cached_property
+    def misread_links(self) -> Matrices:
+        """The link transforms of the same numbers in the other convention."""
+        return links(self.table, self.other_convention)
+
+    def product(self, order: Sequence[int]) -> str:
+        """The product of the links in this order as a formula: A1·A2·A3."""
+        return "·".join(f"A{self.frames[i + 1]}" for i in order)
+
+    def frame(self, i: int) -> str:
+        """Frame ``i`` as a textbook writes it; in another convention than asked, with its name."""
+        name = f"{{{self.frames[i]}}}"
+        return name if self.is_asked else f"{name} of the {self.convention.value} convention"
 
 
-def reversed_product(chain: Chain) -> list[Alternative]:
+def _running_products(transforms: Matrices) -> Matrices:
+    products = np.empty_like(transforms)
+    products[0] = transforms[0]
+    for i in range(1, len(transforms)):
+        np.matmul(products[i - 1], transforms[i], out=products[i])
+    return products
+
+
+def chains_of(exercise: Exercise, samples: Samples) -> tuple[Chain, ...]:
+    """The exercise's robot in each convention that can express it, the exercise's own first."""
+    robot = exercise.robot
+    base = str(robot.joints[0].index - 1)
+    order = sorted(robot.tables, key=lambda convention: convention is not robot.convention)
+    return tuple(
+        Chain(
+            table=robot.tables[convention].values(samples.values, samples.count),
+            convention=convention,
+            frames=(base, *robot.tables[convention].labels),
+            is_asked=convention is robot.convention,
+        )
+        for convention in order
+    )
+
+
+def reversed_product(chain: Chain) -> Iterator[LinkPose]:
     """The link transforms were multiplied in reverse order."""
     order = range(len(chain.links))
-    wrong_way = chain.product(order[::-1])
-    return [
-        Alternative(
-            "reversed_product",
-            f"the product of the link transforms in reverse order, {wrong_way}",
-            "Each link transform describes its frame in the one before.",
-            f"Multiply {chain.product(order)}.",
-            compound(chain.links[::-1]),
-        )
-    ]
+    finding = Finding(
+        "reversed_product",
+        f"the product of the link transforms in reverse order, {chain.product(order[::-1])}. "
+        "Each link transform describes its frame in the one before.",
+        f"Multiply {chain.product(order)}.",
+    )
+    yield Written(compound(chain.links[::-1]), finding)
 
 
-def other_convention(chain: Chain) -> list[Alternative]:
-    """The link transform of the other convention was filled with this table's numbers."""
+def other_convention(chain: Chain) -> Iterator[LinkPose]:
+    """The table's numbers were put into the link transform of the other convention."""
     used, right = chain.other_convention.value, chain.convention.value
-    return [
-        Alternative(
-            "other_convention",
-            f"the product that the table gives with the link transform of the {used} convention",
-            "Check in which order a link transform turns and shifts about z and about x.",
-            f"The table is written in the {right} convention.",
-            compound(chain.misread_links),
-        )
-    ]
+    finding = Finding(
+        "other_convention",
+        f"the product that the table gives with the link transform of the {used} convention. "
+        "Check in which order a link transform turns and shifts about z and about x.",
+        f"The table is written in the {right} convention.",
+    )
+    yield Written(compound(chain.misread_links), finding)
 
 
-def wrong_frame(chain: Chain) -> list[Alternative]:
+def wrong_frame(chain: Chain) -> Iterator[LinkPose]:
     """The pose of a frame before the last was handed in."""
     last = len(chain.links)
-    return [
-        Alternative(
+    for k in reversed(range(1, last)):
+        finding = Finding(
             "wrong_frame",
-            f"the pose of frame {chain.frame(k)}",
-            f"The pose of frame {chain.frame(last)} is asked for.",
+            f"the pose of frame {chain.frame(k)}. The pose of frame {chain.frame(last)} is asked "
+            "for.",
             f"Go on with {chain.product(range(k, last))}.",
-            chain.from_base[k - 1],
         )
-        for k in reversed(range(1, last))
-    ]
+        yield Written(chain.from_base[k - 1], finding)
 
 
-def wrong_base(chain: Chain) -> list[Alternative]:
-    """The pose was given as seen from a frame behind the base frame."""
-    last = len(chain.links)
-    return [
-        Alternative(
+def wrong_base(chain: Chain) -> Iterator[LinkPose]:
+    """The pose was described in a frame after the base frame."""
+    for k in range(1, len(chain.links)):
+        finding = Finding(
             "wrong_base",
-            f"the pose seen from frame {chain.frame(k)}",
-            f"The pose in frame {chain.frame(0)} is asked for.",
+            f"the pose seen from frame {chain.frame(k)}. The pose in frame {chain.frame(0)} is "
+            "asked for.",
             f"Put {chain.product(range(k))} in front.",
-            chain.to_end[k],
         )
-        for k in range(1, last)
-    ]
+        yield Written(chain.to_end[k], finding)
 
 
-def missing_link(chain: Chain) -> list[Alternative]:
+def missing_link(chain: Chain) -> Iterator[LinkPose]:
     """One link transform between the first and the last was left out of the product."""
     last = len(chain.links)
-    inner = range(1, last - 1)
-    if not inner:
-        return []
     poses = chain.from_base[: last - 2] @ chain.to_end[2:]
-    return [
-        Alternative(
+    for k, pose in enumerate(poses, start=1):
+        finding = Finding(
             "missing_link",
-            f"the product without A{chain.frames[i + 1]}",
-            "Check that each row of the table takes part in the product.",
+            f"the product without A{chain.frames[k + 1]}. Check that each row of the table takes "
+            "part in the product.",
             f"Multiply {chain.product(range(last))}.",
-            poses[i - 1],
         )
-        for i in inner
-    ]
+        yield Written(pose, finding)
 
 
-def premultiplied(chain: Chain) -> list[Alternative]:
-    """One link transform was multiplied from the left, as if it turned about the fixed base axes.
+def premultiplied(chain: Chain) -> Iterator[LinkPose]:
+    """One link transform was multiplied from the left, as if it turned about the base axes.
 
     Multiplied so throughout, the whole product is reversed, down to the turns and shifts in a link.
     """
     order = list(range(len(chain.links)))
-    right = f"Multiply from the right throughout: {chain.product(order)}."
-    look = "What happens about the axes of the frame reached so far is multiplied from the right."
+    advice = "What happens about the axes of the frame reached so far is multiplied from the right."
+    correction = f"Multiply from the right throughout: {chain.product(order)}."
     poses = chain.links[1:] @ chain.from_base[:-1]
     poses[:-1] = poses[:-1] @ chain.to_end[2:]
-    alternatives = [
-        Alternative(
+    for k, pose in zip(order[1:], poses, strict=True):
+        wrong_order = chain.product([k, *order[:k], *order[k + 1 :]])
+        finding = Finding(
             "premultiplied",
-            f"the product with A{chain.frames[k + 1]} multiplied from the left, "
-            f"{chain.product([k, *order[:k], *order[k + 1 :]])}",
-            look,
-            right,
-            poses[k - 1],
+            f"the product with A{chain.frames[k + 1]} multiplied from the left, {wrong_order}. "
+            f"{advice}",
+            correction,
         )
-        for k in order[1:]
-    ]
-    throughout = Alternative(
+        yield Written(pose, finding)
+    throughout = Finding(
         "premultiplied",
-        "the product of all turns and shifts in reverse order, each multiplied from the left",
-        look,
-        right,
-        compound(chain.misread_links[::-1]),
+        "the product of all turns and shifts in reverse order, each multiplied from the left. "
+        f"{advice}",
+        correction,
     )
-    return [*alternatives, throughout]
+    yield Written(compound(chain.misread_links[::-1]), throughout)
 
 
-MISCONCEPTIONS: tuple[Callable[[Chain], list[Alternative]], ...] = (
+MISCONCEPTIONS = (
     reversed_product,
     other_convention,
     wrong_frame,
@@ -149,14 +198,15 @@ MISCONCEPTIONS: tuple[Callable[[Chain], list[Alternative]], ...] = (
 )
 
 
-def alternatives(chains: tuple[Chain, ...]) -> list[Alternative]:
-    """The poses of all misconceptions, those of the exercise's own convention first."""
-    return [
-        alternative
-        for chain in chains
-        for misconception in MISCONCEPTIONS
-        for alternative in misconception(chain)
-    ]
+def other_poses(chains: tuple[Chain, ...]) -> list[LinkPose]:
+    """The poses that all misconceptions lead to, those of the exercise's own convention first."""
+    return [pose for chain in chains for pose in hypotheses_of(chain, MISCONCEPTIONS)]
+
+
+def named(pose: LinkPose, subject: str, *others: Finding) -> Callable[[], tuple[Finding, ...]]:
+    """``others``, then the finding on the pose with the subject of its first sentence."""
+    [finding] = pose.findings
+    return lambda: (*others, replace(finding, hint=f"{subject} {finding.hint}"))
 
 
 def as_entries(poses: Matrices) -> Matrices:

@@ -1,18 +1,14 @@
-"""Slips in a single matrix entry.
+"""Slips in a single matrix entry."""
 
-Each function is one misconception that the student may have held. It returns what to say where the
-formula without that misconception is right (or right but for its sign), else None. The first that
-explains the entry is told.
-"""
-
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
+from functools import partial
 
 from service.expressions.parsing.degrees import in_degrees
 from service.expressions.printing.text import to_text
 from service.expressions.tree import Node, Number, Unit, children
-from service.grading.diagnosis.formula_repair import WrongEntry
+from service.grading.diagnosis.formula_repair import Rewritten, WrongEntry
 from service.grading.diagnosis.formula_rewriting import (
-    at_waves,
+    at_sines_and_cosines,
     everywhere,
     exchanged,
     first_term_negated,
@@ -26,6 +22,8 @@ from service.grading.diagnosis.formula_rewriting import (
 )
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, differs, undefined
 from service.grading.feedback import Finding
+from service.grading.misconception import Written, diagnosed
+from service.kinematics.transforms import Numbers
 
 # A planar arm of three joints has three runs of joints whose angles add up.
 MAX_RUNS = 3
@@ -35,150 +33,115 @@ MAX_RUNS = 3
 WORK_BUDGET = 100.0
 COST_IF_EXPLAINED = 0.25
 
+Formulas = Iterator[Rewritten]
 
-def sign(case: WrongEntry) -> Finding | None:
+
+def sign(case: WrongEntry) -> Iterator[Written[Numbers]]:
     """The size is right, the direction is not."""
-    if not case.equal(case.actual, -case.expected):
-        return None
-    return Finding("sign", "The sign of this entry is wrong.", case.correction)
+    yield Written(
+        -case.expected, Finding("sign", "The sign of this entry is wrong.", case.correction)
+    )
 
 
-def degrees_as_radians(case: WrongEntry) -> Finding | None:
-    """A number in a sine or cosine was meant in degrees where radians are read."""
-    if not any(_in_radians(wave) for wave in case.waves):
-        return None
-    repair = case.repaired_by([in_degrees(case.tree, is_angle=False, notes=[])])
-    if repair is None:
-        return None
-    return Finding(
+def degrees_as_radians(case: WrongEntry) -> Formulas:
+    """A number in degrees was written in a sine or cosine where radians are read."""
+    finding = Finding(
         "degrees_as_radians",
         "A number in a sine or cosine was read in radians, but it fits in degrees: write the unit "
-        f"(90deg or 90°), or write it with pi.{repair.sign_too}",
-        repair.correction,
+        "(90deg or 90°), or write it with pi.",
     )
+    if any(map(_has_bare_number, case.sines_and_cosines)):
+        yield Rewritten(in_degrees(case.tree, is_angle=False, notes=[]), finding)
 
 
-def _in_radians(wave: Node) -> bool:
+def _has_bare_number(node: Node) -> bool:
     """Whether a number other than 0 stands in it without a unit."""
-    if isinstance(wave, Unit):
+    if isinstance(node, Unit):
         return False
-    if isinstance(wave, Number):
-        return wave.value != 0
-    return any(map(_in_radians, children(wave)))
+    if isinstance(node, Number):
+        return node.value != 0
+    return any(map(_has_bare_number, children(node)))
 
 
-def radians_as_degrees(case: WrongEntry) -> Finding | None:
-    """A number in a sine or cosine was meant in radians where degrees are read."""
-    repair = case.repaired_by([everywhere(case.tree, without_degrees)])
-    if repair is None:
-        return None
-    return Finding(
+def radians_as_degrees(case: WrongEntry) -> Formulas:
+    """A number in radians was written in a sine or cosine where degrees are read."""
+    finding = Finding(
         "radians_as_degrees",
         "A number in a sine or cosine was read in degrees, but it fits in radians: write it with "
-        f"pi, or in degrees.{repair.sign_too}",
-        repair.correction,
+        "pi, or in degrees.",
     )
+    yield Rewritten(everywhere(case.tree, without_degrees), finding)
 
 
-def sine_for_cosine(case: WrongEntry) -> Finding | None:
+def sine_for_cosine(case: WrongEntry) -> Formulas:
     """Sine was taken for cosine, or cosine for sine: throughout, or in one place."""
-    if not case.waves:
-        return None
-    repair = case.repaired_by([at_waves(case.tree, exchanged)])
-    if repair is not None:
-        return Finding(
-            "sine_for_cosine",
-            f"Sine and cosine are exchanged in this entry.{repair.sign_too}",
-            repair.correction,
-        )
-    if len(case.waves) == 1:
-        return None
-    repair = case.repaired_at(one_place(case.tree, exchanged))
-    if repair is None or repair.place is None:
-        return None
-    return Finding(
+    count = len(case.sines_and_cosines)
+    if count > 0:
+        finding = Finding("sine_for_cosine", "Sine and cosine are exchanged in this entry.")
+        yield Rewritten(at_sines_and_cosines(case.tree, exchanged), finding)
+    if count > 1:
+        for tree, place in one_place(case.tree, exchanged):
+            yield Rewritten(tree, partial(_exchanged_at, place))
+
+
+def _exchanged_at(place: Node) -> tuple[Finding, ...]:
+    finding = Finding(
         "sine_for_cosine",
-        f"Sine and cosine are exchanged in one place of this entry.{repair.sign_too}",
-        f"{to_text(repair.place)} should be {to_text(exchanged(repair.place))}.",
+        "Sine and cosine are exchanged in one place of this entry.",
+        f"{to_text(place)} should be {to_text(exchanged(place))}.",
     )
+    return (finding,)
 
 
-def sum_of_cosines(case: WrongEntry) -> Finding | None:
+def sum_of_cosines(case: WrongEntry) -> Formulas:
     """The cosine of a sum was taken to be the sum of the cosines; the sine likewise."""
-    if len(case.waves) < 2:
-        return None
-    repair = case.repaired_by([sums_merged(case.tree)])
-    if repair is None:
-        return None
-    return Finding(
+    finding = Finding(
         "sum_of_cosines",
         "cos(a + b) is not cos(a) + cos(b), nor is sin(a + b) the sum of the sines: add up the "
-        f"angles first.{repair.sign_too}",
-        repair.correction,
+        "angles first.",
     )
+    if len(case.sines_and_cosines) > 1:
+        yield Rewritten(sums_merged(case.tree), finding)
 
 
-def product_for_sum_angle(case: WrongEntry) -> Finding | None:
+def product_for_sum_angle(case: WrongEntry) -> Formulas:
     """The shorthand c12 was read as c1 c2, s12 as s1 s2, in all places or for some joints."""
-    if len(case.waves) < 2:
-        return None
-    repair = case.repaired_by(_products_merged(case))
-    if repair is None:
-        return None
-    return Finding(
+    finding = Finding(
         "product_for_sum_angle",
         "The shorthand c12 is the cosine of the sum, cos(θ1 + θ2), and not the product of two "
-        f"cosines; s12 likewise.{repair.sign_too}",
-        repair.correction,
+        "cosines; s12 likewise.",
     )
+    if len(case.sines_and_cosines) > 1:
+        yield Rewritten(products_merged(case.tree), finding)
+        for joints in joints_multiplied(case.tree, sorted(case.turning))[:MAX_RUNS]:
+            yield Rewritten(products_merged(case.tree, joints), finding)
 
 
-def _products_merged(case: WrongEntry) -> Iterator[Node]:
-    runs = joints_multiplied(case.tree, sorted(case.turning))
-    yield products_merged(case.tree)
-    for joints in runs[:MAX_RUNS]:
-        yield products_merged(case.tree, joints)
-
-
-def relative_angle(case: WrongEntry) -> Finding | None:
+def relative_angle(case: WrongEntry) -> Formulas:
     """A joint angle was taken to be measured from the base, though it counts from the link before.
 
     So c2 stands where the sum of the angles belongs, c12.
     """
-    if not case.waves:
-        return None
-    repair = case.repaired_by(
-        at_waves(case.tree, summed_from(first, case.turning)) for first in sorted(case.turning)[:-1]
-    )
-    if repair is None:
-        return None
-    return Finding(
+    finding = Finding(
         "relative_angle",
         "A joint angle counts from the link before, so the direction of a link further out takes "
-        f"the sum of the angles up to it.{repair.sign_too}",
-        repair.correction,
+        "the sum of the angles up to it.",
     )
+    for first in sorted(case.turning)[:-1] if case.sines_and_cosines else ():
+        summed = summed_from(first, case.turning)
+        yield Rewritten(at_sines_and_cosines(case.tree, summed), finding)
 
 
-def term_sign(case: WrongEntry) -> Finding | None:
+def term_sign(case: WrongEntry) -> Formulas:
     """One term of a sum has the wrong sign."""
-    repair = case.repaired_at(_signs_changed(case.tree), negated_too=False)
-    if repair is None:
-        return None
-    return Finding(
-        "term_sign",
-        "One term in this entry has the wrong sign.",
-        repair.correction,
-    )
+    finding = Finding("term_sign", "One term in this entry has the wrong sign.")
+    for change in (other_operator, first_term_negated):
+        for tree, _ in one_place(case.tree, change):
+            yield Rewritten(tree, finding, signed=True)
 
 
-def _signs_changed(tree: Node) -> Iterator[tuple[Node, Node]]:
-    yield from one_place(tree, other_operator)
-    yield from one_place(tree, first_term_negated)
-
-
-MISCONCEPTIONS: tuple[Callable[[WrongEntry], Finding | None], ...] = (
-    undefined,
+CHECKS = (undefined,)
+MISCONCEPTIONS = (
     sign,
     degrees_as_radians,
     radians_as_degrees,
@@ -190,16 +153,12 @@ MISCONCEPTIONS: tuple[Callable[[WrongEntry], Finding | None], ...] = (
 )
 
 
-def diagnose(case: WrongEntry, *, patient: bool = True) -> Finding:
-    """What to say about a wrong entry: the first misconception that explains it.
-
-    Without patience the formula is not taken apart.
-    """
-    for misconception in MISCONCEPTIONS if patient and case.can_be_repaired else (undefined, sign):
-        finding = misconception(case)
-        if finding is not None:
-            return finding
-    return differs(case, "This entry is not right; work it out again from the factors.")
+def diagnose(case: WrongEntry, *, take_apart: bool = True) -> Finding:
+    """The finding on a wrong entry; its formula is rewritten only if ``take_apart`` allows."""
+    misconceptions = MISCONCEPTIONS if take_apart and case.can_be_repaired else (sign,)
+    return diagnosed(case, misconceptions, CHECKS) or differs(
+        case, "This entry is not right; work it out again from the factors."
+    )
 
 
 def diagnose_entries(
@@ -208,7 +167,7 @@ def diagnose_entries(
     """The finding on each wrong entry; once ``work_budget`` is used up, formulas stay whole."""
     findings: dict[tuple[int, int], Finding] = {}
     for place, entry in wrong.items():
-        findings[place] = diagnose(entry, patient=work_budget > 0)
+        findings[place] = diagnose(entry, take_apart=work_budget > 0)
         explained = findings[place].code != UNEXPLAINED
         work_budget -= entry.size * (COST_IF_EXPLAINED if explained else 1.0)
     return findings

@@ -1,91 +1,63 @@
-"""Slips in the coordinates of a point, taken together.
+"""Slips in the coordinates of a point, taken together."""
 
-Each function is one misconception that the student may have held. It returns what to say where the
-coordinates without that misconception are right, else None.
-"""
-
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import permutations
 
 import numpy as np
 
-from service.grading.comparison import EXACT, Match, matches
-from service.grading.diagnosis.link_products import alternatives
-from service.grading.diagnosis.matrix_case import Chain
+from service.grading.comparison import EXACT
+from service.grading.diagnosis.link_products import Chain, named, other_poses
+from service.grading.diagnosis.wrong_value import Hypotheses, WrongNumbers
 from service.grading.feedback import Finding
-from service.kinematics.transforms import Numbers
+from service.grading.misconception import Written, diagnosed
 
 
-@dataclass(frozen=True, slots=True)
-class WrongPosition:
-    """Coordinates ``(n, SAMPLES)`` of the ``axes`` 0, 1, 2, as handed in and as expected.
+@dataclass(frozen=True)
+class WrongPosition(WrongNumbers):
+    """Wrong coordinates ``(n, SAMPLES)`` of a point, along the ``axes`` 0, 1, 2.
 
     ``chains`` holds the links that lead to the point, where it is the end of a chain.
     """
 
-    actual: Numbers
-    expected: Numbers
     axes: tuple[int, ...]
-    scale: float
     chains: tuple[Chain, ...] = ()
 
-    def is_what_was_written(self, other: Numbers) -> bool:
-        """Whether the coordinates handed in are ``other``, and those expected are not."""
-        written, right = (
-            (matches(one, other, self.scale) >= Match.ROUNDED).all()
-            for one in (self.actual, self.expected)
-        )
-        return bool(written and not right)
 
-
-def exchanged_coordinates(case: WrongPosition) -> Finding | None:
+def exchanged_coordinates(case: WrongPosition) -> Hypotheses:
     """The coordinates are right, but stand in the wrong places."""
+    names = ", ".join("xyz"[axis] for axis in case.axes)
+    finding = Finding(
+        "exchanged_coordinates",
+        f"These coordinates stand in each other's places: the order is {names}.",
+    )
     for order in permutations(range(len(case.axes))):
-        if case.is_what_was_written(case.expected[list(order)]):
-            names = ", ".join("xyz"[axis] for axis in case.axes)
-            return Finding(
-                "exchanged_coordinates",
-                f"These coordinates stand in each other's places: the order is {names}.",
-            )
-    return None
+        yield Written(case.expected[list(order)], finding)
 
 
-def reversed_position(case: WrongPosition) -> Finding | None:
+def reversed_position(case: WrongPosition) -> Hypotheses:
     """The vector was taken from the point to the origin."""
-    if not case.is_what_was_written(-case.expected):
-        return None
-    return Finding(
+    finding = Finding(
         "reversed_position",
         "Every coordinate has the wrong sign: the vector leads from the origin of the first frame "
         "to the point.",
     )
+    yield Written(-case.expected, finding)
 
 
-def other_pose(case: WrongPosition) -> Finding | None:
+def other_pose(case: WrongPosition) -> Hypotheses:
     """The position was taken from another pose of the chain.
 
-    A constant one, such as the origin itself, is no sign of where it came from.
+    A constant position, such as the origin itself, does not show where it was taken from.
     """
-    for alternative in alternatives(case.chains):
-        position = np.moveaxis(alternative.pose, 0, -1)[list(case.axes), 3]
-        if np.ptp(position, axis=-1).max() > EXACT and case.is_what_was_written(position):
-            look = f"This position comes from {alternative.what}. {alternative.hint}"
-            return Finding(alternative.code, look, alternative.correction)
-    return None
+    for pose in other_poses(case.chains):
+        position = np.moveaxis(pose.answer, 0, -1)[list(case.axes), 3]
+        if np.ptp(position, axis=-1).max() > EXACT:
+            yield Written(position, named(pose, "This position comes from"))
 
 
-MISCONCEPTIONS: tuple[Callable[[WrongPosition], Finding | None], ...] = (
-    exchanged_coordinates,
-    reversed_position,
-    other_pose,
-)
+MISCONCEPTIONS = (exchanged_coordinates, reversed_position, other_pose)
 
 
 def explain_position(case: WrongPosition) -> Finding | None:
-    """The first misconception that explains the coordinates together."""
-    for misconception in MISCONCEPTIONS:
-        finding = misconception(case)
-        if finding is not None:
-            return finding
-    return None
+    """The finding that explains the coordinates together."""
+    return diagnosed(case, MISCONCEPTIONS)

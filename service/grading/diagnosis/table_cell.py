@@ -1,36 +1,26 @@
-"""Slips in a single table cell.
+"""Slips in a single table cell."""
 
-Each function is one misconception that the student may have held. It returns what to say where the
-misconception explains the cell exactly, else None. The first that explains it is told.
-"""
-
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
 from service.expressions import Expression
-from service.grading.comparison import ROUNDED, Match, difference
-from service.grading.diagnosis.wrong_value import WrongCell, differs, undefined
+from service.grading.comparison import ROUNDED, Match
+from service.grading.diagnosis.wrong_value import Hypotheses, WrongCell, differs, undefined
 from service.grading.feedback import Finding
 from service.grading.formula_text import sum_text
 from service.grading.joint_motion import coefficients
 from service.grading.judging.table import JudgedRow, Judgement, column_scales
+from service.grading.misconception import Repaired, Written, diagnosed
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE, HandedInRow
 from service.kinematics.chain import COLUMNS
-from service.kinematics.transforms import Numbers
 
-AXES = {
-    "a": "along x",
-    "alpha": "about x",
-    "d": "along z",
-    "theta": "about z",
-}
 SUM_COUNTS = (
     "The axis is parallel to its neighbour, so it is the sum of the offsets along it that counts."
 )
-SYMBOLS = {"a": "a", "alpha": "α", "d": "d", "theta": "θ"}
+
+# --- checks of the joint variables in the cell
 
 
 def joint_variable_missing(case: WrongCell) -> Finding | None:
@@ -39,9 +29,8 @@ def joint_variable_missing(case: WrongCell) -> Finding | None:
         case.joint is None
         or not any(case.expected_coefficients)
         or case.actual_coefficients is None
+        or any(case.actual_coefficients)
     ):
-        return None
-    if any(case.actual_coefficients):
         return None
     return Finding(
         "joint_variable_missing",
@@ -59,7 +48,7 @@ def joint_variable_sign(case: WrongCell) -> Finding | None:
     return Finding(
         "joint_variable_sign",
         f"The joint variable has the wrong sign: look which way z points on this joint's axis, and "
-        f"turn or slide {AXES[case.column]} by the right-hand rule.",
+        f"turn or slide {case.measured} by the right-hand rule.",
         case.correction,
     )
 
@@ -72,9 +61,9 @@ def joint_variable_index(case: WrongCell) -> Finding | None:
         or case.actual_coefficients is None
     ):
         return None
-    own = case.joints.index(case.joint)
+    place = case.joints.index(case.joint)
     counts = case.actual_coefficients
-    if counts[own] or sum(map(abs, counts)) != 1:
+    if counts[place] or sum(map(abs, counts)) != 1:
         return None
     other = case.joints[next(i for i, count in enumerate(counts) if count)]
     return Finding(
@@ -89,9 +78,9 @@ def joint_variable_doubled(case: WrongCell) -> Finding | None:
     """The joint variable was counted more than once."""
     if case.joint is None or case.actual_coefficients is None:
         return None
-    own = case.joints.index(case.joint)
-    count = case.actual_coefficients[own]
-    if not case.expected_coefficients[own] or abs(count) < 2 or _others(case, own):
+    place = case.joints.index(case.joint)
+    count = case.actual_coefficients[place]
+    if not case.expected_coefficients[place] or abs(count) < 2 or _others(case, place):
         return None
     return Finding(
         "joint_variable_doubled",
@@ -104,13 +93,13 @@ def joint_variable_column(case: WrongCell) -> Finding | None:
     """The joint variable was put in the column that stays constant for this kind of joint."""
     if case.joint is None or any(case.expected_coefficients) or case.actual_coefficients is None:
         return None
-    own = case.joints.index(case.joint)
-    if not case.actual_coefficients[own] or _others(case, own):
+    place = case.joints.index(case.joint)
+    if not case.actual_coefficients[place] or _others(case, place):
         return None
     kind = "slides, so its variable is d" if case.joint.prismatic else "turns, so its variable is θ"
     return Finding(
         "joint_variable_column",
-        f"Joint {case.joint.index} {kind}; {SYMBOLS[case.column]} is constant here.",
+        f"Joint {case.joint.index} {kind}; {case.symbol} is constant here.",
         case.correction,
     )
 
@@ -130,128 +119,117 @@ def joint_variable_extra(case: WrongCell) -> Finding | None:
         return None
     return Finding(
         "joint_variable_extra",
-        f"{' and '.join(extra)} must not be in this cell: it does not change "
-        f"{SYMBOLS[case.column]} of this row.",
+        f"{' and '.join(extra)} must not be in this cell: it does not change {case.symbol} of this "
+        "row.",
         case.correction,
     )
 
 
-def sign(case: WrongCell) -> Finding | None:
+def _others(case: WrongCell, place: int) -> bool:
+    """Whether the cell contains a variable of another joint than that at ``place``."""
+    counts = case.actual_coefficients or ()
+    return any(count for i, count in enumerate(counts) if i != place)
+
+
+def _moves(case: WrongCell) -> str:
+    return "slides along z" if case.joint and case.joint.prismatic else "turns about z"
+
+
+# --- misconceptions about the constant, where the joint variables are right
+
+
+def sign(case: WrongCell) -> Hypotheses:
     """The size is right, the direction is not."""
-    if not case.same_motion:
-        return None
-    actual, expected = case.constants
-    if not case.equal(actual, -expected):
-        return None
-    what = "turn" if case.angle else "distance"
-    return Finding(
+    finding = Finding(
         "sign",
-        f"The sign of {SYMBOLS[case.column]} is wrong: measure the {what} {AXES[case.column]}, "
-        f"positive in the direction of that axis.",
+        f"The sign of {case.symbol} is wrong: measure the {'turn' if case.angle else 'distance'} "
+        f"{case.measured}, positive in the direction of that axis.",
         case.correction,
     )
+    yield Written(-case.constants[1], finding)
 
 
-def distance_left_out(case: WrongCell) -> Finding | None:
+def distance_left_out(case: WrongCell) -> Hypotheses:
     """A distance between the frames was overlooked."""
-    if case.angle or not case.same_motion:
-        return None
-    actual, expected = case.constants
-    if not case.equal(actual, 0 * actual) or case.equal(expected, 0 * expected):
-        return None
-    beside = " beside the joint variable" if any(case.expected_coefficients) else ""
-    return Finding(
+    finding = Finding(
         "distance_left_out",
-        f"A distance is left out of {SYMBOLS[case.column]}{beside}: these two frames are apart "
-        f"{AXES[case.column]}.",
+        f"A distance is left out of {case.symbol}{_beside(case)}: these two frames are apart "
+        f"{case.measured}.",
         case.correction,
     )
+    if not case.angle:
+        yield Written(0 * case.actual, finding)
 
 
-def distance_extra(case: WrongCell) -> Finding | None:
+def distance_extra(case: WrongCell) -> Hypotheses:
     """A distance was put where there is none: into the wrong cell, or counted twice."""
-    if case.angle or not case.same_motion:
-        return None
-    actual, expected = case.constants
-    if not case.equal(expected, 0 * expected) or case.equal(actual, 0 * actual):
-        return None
-    beside = " beside the joint variable" if any(case.expected_coefficients) else ""
-    return Finding(
+    finding = Finding(
         "distance_extra",
-        f"There is no distance {AXES[case.column]} here{beside}: look along which axis of which "
+        f"There is no distance {case.measured} here{_beside(case)}: look along which axis of which "
         f"frame it is measured.",
         case.correction,
     )
+    if not case.angle:
+        yield Repaired(0 * case.actual, finding)
 
 
-def degrees_as_radians(case: WrongCell) -> Finding | None:
-    """A number meant in degrees was handed in where radians are read."""
-    if not case.angle or not case.same_motion:
-        return None
-    actual, expected = case.constants
-    meant = np.radians(actual)
-    turned = case.equal(meant, -expected)
-    if not (case.equal(meant, expected) or turned):
-        return None
-    return Finding(
-        "degrees_as_radians",
-        "This number was read in radians, but it fits in degrees: write the unit (90deg or "
-        f"90°), or write it with pi.{' Its sign is wrong, too.' if turned else ''}",
-        case.correction,
+def _beside(case: WrongCell) -> str:
+    return " beside the joint variable" if any(case.expected_coefficients) else ""
+
+
+def degrees_as_radians(case: WrongCell) -> Hypotheses:
+    """A number in degrees was handed in where radians are read."""
+    hint = (
+        "This number was read in radians, but it fits in degrees: write the unit (90deg or 90°), "
+        "or write it with pi."
     )
+    if case.angle:
+        in_degrees = np.radians(case.constants[0])
+        for value, also in ((-in_degrees, " Its sign is wrong, too."), (in_degrees, "")):
+            yield Repaired(value, Finding("degrees_as_radians", hint + also, case.correction))
 
 
-def radians_as_degrees(case: WrongCell) -> Finding | None:
-    """A number meant in radians was handed in where degrees are read."""
-    if not case.angle or not case.same_motion:
-        return None
-    actual, expected = case.constants
-    if not case.equal(np.degrees(actual), expected):
-        return None
-    return Finding(
+def radians_as_degrees(case: WrongCell) -> Hypotheses:
+    """A number in radians was handed in where degrees are read."""
+    finding = Finding(
         "radians_as_degrees",
         "This number was read in degrees, but it fits in radians: write it with pi, or in degrees.",
         case.correction,
     )
+    if case.angle:
+        yield Repaired(np.degrees(case.constants[0]), finding)
 
 
-def quarter_turn(case: WrongCell) -> Finding | None:
+def quarter_turn(case: WrongCell) -> Hypotheses:
     """A turn by 90° was left out, added, or made the wrong way from a quarter to three quarters."""
-    if not case.angle or not case.same_motion:
-        return None
-    actual, expected = case.constants
-    if not any(_is_off_by(turn, actual, expected) for turn in (np.pi / 2, -np.pi / 2)):
-        return None
-    return Finding(
+    finding = Finding(
         "quarter_turn",
-        f"{SYMBOLS[case.column]} is off by a quarter turn (90°): compare the two axes that it is "
-        f"measured between, in the home configuration.",
+        f"{case.symbol} is off by a quarter turn (90°): compare the two axes that it is measured "
+        f"between, in the home configuration.",
         case.correction,
     )
+    for turn in (np.pi / 2, -np.pi / 2):
+        yield from _off_by(turn, case, finding)
 
 
-def half_turn(case: WrongCell) -> Finding | None:
+def half_turn(case: WrongCell) -> Hypotheses:
     """An axis was taken to point the opposite way."""
-    if not case.angle or not case.same_motion:
-        return None
-    actual, expected = case.constants
-    if not _is_off_by(np.pi, actual, expected):
-        return None
-    return Finding(
+    finding = Finding(
         "half_turn",
-        f"{SYMBOLS[case.column]} is off by half a turn (180°): check which way the axes point that "
-        f"it is measured between.",
+        f"{case.symbol} is off by half a turn (180°): check which way the axes point that it is "
+        f"measured between.",
         case.correction,
     )
+    yield from _off_by(np.pi, case, finding)
 
 
-def _is_off_by(turn: float, actual: Numbers, expected: Numbers) -> bool:
-    """Whether an angle is expected so much further on; the turn itself may have been rounded."""
-    off = difference(actual + turn, expected, angle=True)
-    return bool(np.abs(off).max() < ROUNDED * np.pi)
+def _off_by(turn: float, case: WrongCell, finding: Finding) -> Hypotheses:
+    """The angle with another turn, which may itself have been rounded."""
+    if case.angle:
+        yield Written(case.constants[1] + turn, finding, tolerance=ROUNDED * np.pi)
 
 
-MISCONCEPTIONS: tuple[Callable[[WrongCell], Finding | None], ...] = (
+CHECKS = (
     undefined,
     joint_variable_missing,
     joint_variable_sign,
@@ -259,6 +237,8 @@ MISCONCEPTIONS: tuple[Callable[[WrongCell], Finding | None], ...] = (
     joint_variable_doubled,
     joint_variable_column,
     joint_variable_extra,
+)
+MISCONCEPTIONS = (
     sign,
     distance_left_out,
     distance_extra,
@@ -270,11 +250,22 @@ MISCONCEPTIONS: tuple[Callable[[WrongCell], Finding | None], ...] = (
 
 
 def diagnose(case: WrongCell) -> Finding:
-    """What to say about a wrong cell: the first misconception that explains it."""
-    finding = _first(case)
+    """The finding on a wrong cell."""
+    finding = diagnosed(case, MISCONCEPTIONS, CHECKS) or differs(
+        case,
+        f"{case.symbol} is not right here: measure the {'angle' if case.angle else 'distance'} "
+        f"{case.measured} again.{_too_large(case)}",
+    )
     if case.column == "d" and case.shared and case.same_motion:
         return replace(finding, hint=f"{finding.hint} {SUM_COUNTS}")
     return finding
+
+
+def _too_large(case: WrongCell) -> str:
+    """A hint where a number is far too large for radians."""
+    if not case.angle or not case.same_motion or np.abs(case.constants[0]).max() < 3 * np.pi:
+        return ""
+    return " Its number was read in radians: write the unit (90deg or 90°) if degrees were meant."
 
 
 def diagnose_cells(judgement: Judgement, grading: Grading) -> dict[tuple[int, int], Finding]:
@@ -314,32 +305,3 @@ def diagnose_cells(judgement: Judgement, grading: Grading) -> dict[tuple[int, in
             )
         )
     return slips
-
-
-def _first(case: WrongCell) -> Finding:
-    for misconception in MISCONCEPTIONS:
-        finding = misconception(case)
-        if finding is not None:
-            return finding
-    return differs(
-        case,
-        f"{SYMBOLS[case.column]} is not right here: measure the "
-        f"{'angle' if case.angle else 'distance'} {AXES[case.column]} again.{_bare(case)}",
-    )
-
-
-def _bare(case: WrongCell) -> str:
-    """A hint where a number is far too large for radians."""
-    if not case.angle or not case.same_motion or np.abs(case.constants[0]).max() < 3 * np.pi:
-        return ""
-    return " Its number was read in radians: write the unit (90deg or 90°) if degrees were meant."
-
-
-def _others(case: WrongCell, own: int) -> bool:
-    """Whether the cell contains a variable of another joint."""
-    counts = case.actual_coefficients or ()
-    return any(count for i, count in enumerate(counts) if i != own)
-
-
-def _moves(case: WrongCell) -> str:
-    return "slides along z" if case.joint and case.joint.prismatic else "turns about z"

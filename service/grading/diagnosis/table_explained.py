@@ -1,4 +1,4 @@
-"""What is to be said of a wrong table as a whole."""
+"""The findings on a wrong table as a whole."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,18 +9,18 @@ from numpy.typing import NDArray
 from service.catalogue import DhTableSpec
 from service.grading.comparison import Match, difference
 from service.grading.diagnosis.table_freedom import lost_freedom
-from service.grading.diagnosis.whole_table import (
-    TOLERANCE,
-    Explanation,
-    WrittenTable,
-    explanations,
-    written_table,
-)
+from service.grading.diagnosis.whole_table import WrongTable, explaining
 from service.grading.feedback import Finding
 from service.grading.judging.own_frames.few_cells import frames_from_reference
 from service.grading.judging.own_frames.reference import reference_values
 from service.grading.judging.own_frames.row_roles import Role
 from service.grading.judging.own_frames.validity import valid_tables
+from service.grading.judging.own_frames.written_table import (
+    TOLERANCE,
+    RepairedTable,
+    WrittenTable,
+    written_table,
+)
 from service.grading.judging.own_frames.wrong_convention_or_unit import in_convention
 from service.grading.judging.table import Judgement, departures_of, freedom_of, judged_against
 from service.grading.part import Grading
@@ -36,11 +36,11 @@ SAME = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
-class _Meant:
-    """What a table was meant to be: ``(rows, 4, SAMPLES)``, None where that takes other rows.
+class _Intended:
+    """The table without the slips: ``(rows, 4, SAMPLES)``, None where that takes other rows.
 
-    ``changed`` are the cells in which that differs from what was handed in, ``(rows, 4)``;
-    ``departures`` is what its frames cost.
+    ``changed`` are the cells in which it differs from the student's, ``(rows, 4)``; ``departures``
+    is the cost of its frames.
     """
 
     findings: tuple[Finding, ...]
@@ -58,83 +58,87 @@ def explained(
     *,
     combine: bool,
 ) -> tuple[tuple[Finding, ...], Judgement]:
-    """What explains the whole of a wrong table at once, and the judgement that goes with it.
+    """The findings that explain the whole of a wrong table, and the judgement that agrees.
 
-    An explanation must not contradict what is said of the cells. So it stands if its cells are
-    those that were found wrong; or else if it takes the table nearer to the reference's frames than
-    the judgement did: then the cells are judged by it.
+    An explanation must not contradict the findings on single cells. So it stands if its cells are
+    those that were found wrong; or else if its table lies nearer to the reference's frames than the
+    judgement's: then the cells are judged by that table.
     """
     values = values_of([role.row for role in roles if role.row is not None])
     if len(values) < len(roles) or not np.isfinite(values).all():
         return (), judgement
-    table, found = _explanations(part, roles, convention, values, grading, combine=combine)
-    meant = [_meant(explanation, table, roles, grading) for explanation in found]
+    case = _wrong_table(part, roles, convention, values, grading)
+    intended = [
+        _intended(repaired, case.written, roles, grading)
+        for repaired in explaining(case, combine=combine)
+    ]
     wrong = judgement.matches < Match.ROUNDED
-    agreeing = [each for each in meant if each.table is None or np.array_equal(each.changed, wrong)]
+    agreeing = [
+        each for each in intended if each.table is None or np.array_equal(each.changed, wrong)
+    ]
     if agreeing:
-        return _told(agreeing), judgement
-    nearer = min(meant, key=lambda each: each.departures, default=None)
-    if nearer is None or nearer.table is None or nearer.departures >= judgement.departures:
+        return _findings(agreeing), judgement
+    nearest = min(intended, key=lambda each: each.departures, default=None)
+    if nearest is None or nearest.table is None or nearest.departures >= judgement.departures:
         return (), judgement
-    return _told([nearer]), judged_against(nearer.table, roles, convention, grading)
+    return _findings([nearest]), judged_against(nearest.table, roles, convention, grading)
 
 
-def _explanations(
+def _wrong_table(
     part: DhTableSpec,
     roles: tuple[Role, ...],
     convention: Convention,
     values: Table,
     grading: Grading,
-    *,
-    combine: bool,
-) -> tuple[WrittenTable, list[Explanation]]:
-    """The table taken apart, and the misconceptions that explain it."""
-    robot, samples = grading.exercise.robot, grading.samples
-    reference = robot.tables.get(convention)
-    own = None if reference is None else reference_values(reference, samples)
-    table = written_table(values, convention, own, robot.joints, samples)
+) -> WrongTable:
+    exercise, samples = grading.exercise, grading.samples
+    table = exercise.robot.tables.get(convention)
+    reference = None if table is None else reference_values(table, samples)
+    written = written_table(values, convention, reference, exercise.robot.joints, samples)
     freedom, subset = freedom_of(part), samples.subset(FEW)
 
     def valid(tables: Numbers, convention: Convention) -> NDArray[np.bool_]:
-        return valid_tables(tables, roles, convention, freedom, grading.exercise, subset, TOLERANCE)
+        at_subset = samples.subset_of(tables, FEW)
+        return valid_tables(at_subset, roles, convention, freedom, exercise, subset, TOLERANCE)
 
-    return table, explanations(table.subset(FEW), valid, combine=combine)
-
-
-def _meant(
-    explanation: Explanation, table: WrittenTable, roles: tuple[Role, ...], grading: Grading
-) -> _Meant:
-    meant = in_convention(explanation.repaired(table), table.convention)
-    if meant is None:
-        nothing = np.zeros(table.values.shape[:2], np.bool_)
-        return _Meant(explanation.findings, None, nothing, np.inf)
-    off = np.abs(difference(meant, table.values, IS_ANGLE[:, None])).max(axis=-1)
-    apart = frames_from_reference(meant, roles, table.convention, grading)
-    return _Meant(explanation.findings, meant, off > SAME, departures_of(apart, grading))
+    return WrongTable(written, valid)
 
 
-def _told(meant: Sequence[_Meant]) -> tuple[Finding, ...]:
-    """Of several explanations with one code the first."""
-    told: dict[str, Finding] = {}
-    for each in meant:
+def _intended(
+    repaired: RepairedTable, written: WrittenTable, roles: tuple[Role, ...], grading: Grading
+) -> _Intended:
+    table = in_convention(repaired.answer, written.convention)
+    if table is None:
+        nothing = np.zeros(written.values.shape[:2], np.bool_)
+        return _Intended(repaired.findings, None, nothing, np.inf)
+    error = np.abs(difference(table, written.values, IS_ANGLE[:, None])).max(axis=-1)
+    frames = frames_from_reference(table, roles, written.convention, grading)
+    departures = departures_of(frames, grading)
+    return _Intended(repaired.findings, table, error > SAME, departures)
+
+
+def _findings(intended: Sequence[_Intended]) -> tuple[Finding, ...]:
+    """The first finding of each code."""
+    by_code: dict[str, Finding] = {}
+    for each in intended:
         for finding in each.findings:
-            told.setdefault(finding.code, finding)
-    if "other_convention" in told:
-        # To be one row off is the same thing seen from the other side.
-        told.pop("link_columns_shifted", None)
-    return tuple(told.values())
+            by_code.setdefault(finding.code, finding)
+    if "other_convention" in by_code:
+        # Columns one row off are the same slip seen from the other side.
+        by_code.pop("link_columns_shifted", None)
+    return tuple(by_code.values())
 
 
 def freedom_lost(
     roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> tuple[Finding, ...]:
-    """Joints of the written table that share an axis or have no effect."""
-    held = [role for role in roles if role.row is not None]
+    """The findings on joints of the student's table that share an axis or have no effect."""
+    present = [role for role in roles if role.row is not None]
     joints = grading.exercise.robot.joints
-    where = [next((i for i, role in enumerate(held) if role.joint is j), None) for j in joints]
+    where = [next((i for i, role in enumerate(present) if role.joint is j), None) for j in joints]
     if None in where:
         return ()
-    values = values_of([role.row for role in held if role.row])
+    values = values_of([role.row for role in present if role.row])
     found = lost_freedom(values, where, convention, grading.exercise, grading.samples)
-    # A joint without variable is told of in its own cell.
+    # A joint without variable has a finding in its own cell.
     return tuple(finding for finding in found if finding.severity is Severity.ERROR)

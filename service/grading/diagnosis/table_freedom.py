@@ -1,7 +1,8 @@
 """Tables whose joints have lost a degree of freedom that the robot has.
 
-Two joints that turn about one line, or slide along one direction, do the work of one; so does any
-other set of joint screws that depend on each other. What the reference shares is no loss.
+Two joints that turn about one line, or slide along one direction, move the arm as one joint does. A
+degree of freedom is lost wherever joint screws depend on each other that are independent in the
+reference.
 """
 
 from collections.abc import Sequence
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import Exercise, Joint
+from service.grading.diagnosis.wording import listed
 from service.grading.feedback import Finding
 from service.grading.joint_motion import changes
 from service.grading.report import Severity
@@ -32,13 +34,9 @@ FEW = 2
 
 @dataclass(frozen=True, slots=True)
 class _Arm:
-    """Joints with the rows that they have in a table, and their screws ``(samples, 6, joints)``.
-
-    Lengths are measured in the exercise's typical length.
-    """
+    """Joints and their screws ``(samples, 6, joints)``, in units of the typical length."""
 
     joints: tuple[Joint, ...]
-    rows: tuple[int, ...]
     screws: Screws
 
     def directions(self, i: int) -> NDArray[np.float64]:
@@ -53,79 +51,82 @@ def lost_freedom(
     exercise: Exercise,
     samples: Samples,
 ) -> tuple[Finding, ...]:
-    """The joints of a table that get in each other's way, or move nothing.
+    """The findings on joints that share an axis, depend on each other or move nothing.
 
-    ``values`` is the student's table ``(rows, 4, SAMPLES)`` in ``convention``, NaN where a cell
-    could not be read: then nothing can be said. ``joint_rows`` names the row of each of the robot's
-    joints; one without a row is left out.
+    ``values`` is the student's table ``(rows, 4, SAMPLES)`` in ``convention``; a table with NaN,
+    where a cell was not read, has no finding. ``joint_rows`` names the row of each of the robot's
+    joints; a joint without a row is left out.
     """
     table = samples.subset_of(values, FEW)
     if not np.isfinite(table).all():
         return ()
-    held = [(j, row) for j, row in enumerate(joint_rows) if row is not None]
-    idle = [j for j, row in held if np.abs(changes(table[row])).max() < SAME]
-    moving = [(j, row) for j, row in held if j not in idle]
-    still = (_without_effect([exercise.robot.joints[j] for j in idle]),) if idle else ()
+    present = [(j, row) for j, row in enumerate(joint_rows) if row is not None]
+    idle = [j for j, row in present if np.abs(changes(table[row])).max() < SAME]
+    moving = [(j, row) for j, row in present if j not in idle]
+    idle_finding = (_without_effect([exercise.robot.joints[j] for j in idle]),) if idle else ()
     if len(moving) < 2:
-        return still
+        return idle_finding
     written = _arm(table, convention, moving, exercise)
     if rank(written.screws) == len(moving):
-        return still
+        return idle_finding
     subset = samples.subset(FEW)
     reference = exercise.robot.tables[exercise.robot.convention]
-    own = reference.values(subset.values, subset.count)
-    intended = _arm(own, reference.convention, [(j, j) for j, _ in moving], exercise)
+    right = reference.values(subset.values, subset.count)
+    intended = _arm(right, reference.convention, [(j, j) for j, _ in moving], exercise)
     shared = _shared_axes(written, intended, convention)
-    # A joint that moves nothing may also leave lengths at 0 that would keep the others apart.
-    return (*still, *shared) if still or shared else _lost_rank(written, intended)
+    # Where a joint moves nothing, a length that keeps other joints apart may be 0 for that reason.
+    return (*idle_finding, *shared) or _lost_rank(written, intended)
 
 
 def _arm(
     table: Table, convention: Convention, rows: Sequence[tuple[int, int]], exercise: Exercise
 ) -> _Arm:
     joints = tuple(exercise.robot.joints[j] for j, _ in rows)
-    places = tuple(row for _, row in rows)
-    screws = space_jacobian(table, convention, places, [joint.prismatic for joint in joints])
-    screws[:, 3:] /= np.where([joint.prismatic for joint in joints], 1.0, exercise.length_scale)
-    return _Arm(joints, places, screws)
+    prismatic = [joint.prismatic for joint in joints]
+    screws = space_jacobian(table, convention, tuple(row for _, row in rows), prismatic)
+    screws[:, 3:] /= np.where(prismatic, 1.0, exercise.length_scale)
+    return _Arm(joints, screws)
 
 
 def _shared_axes(written: _Arm, intended: _Arm, convention: Convention) -> tuple[Finding, ...]:
-    """A message for each axis that joints share: they are one joint several times."""
+    """The finding on each axis that joints share, but do not share in the reference."""
     joined = np.triu(coincident(written.screws) & ~coincident(intended.screws))
-    found, told = [], set[int]()
+    findings, done = [], set[int]()
     for i, others in enumerate(joined):
         together = [i, *np.flatnonzero(others).tolist()]
-        if len(together) > 1 and not told.intersection(together):
-            told.update(together)
-            found.append(_one_axis(together, written, intended, convention))
-    return tuple(found)
+        if len(together) > 1 and not done.intersection(together):
+            done.update(together)
+            findings.append(_one_axis(together, written, intended, convention))
+    return tuple(findings)
 
 
 def _lost_rank(written: _Arm, intended: _Arm) -> tuple[Finding, ...]:
-    left = rank(written.screws)
-    possible = left if left == len(written.joints) else rank(intended.screws)
+    """The finding on joints of which one can do nothing that the others cannot do as well."""
+    left, possible = rank(written.screws), rank(intended.screws)
     if left >= possible:
         return ()
-    return (_fewer_ways(_names(written, dependent(written.screws)), left, possible),)
-
-
-def _names(arm: _Arm, involved: NDArray[np.bool_]) -> list[str]:
-    return [
-        str(joint.index) for joint, is_in in zip(arm.joints, involved, strict=True) if is_in
-    ] or [str(joint.index) for joint in arm.joints]
+    involved = dependent(written.screws)
+    if not involved.any():
+        involved = np.ones_like(involved)
+    names = [str(joint.index) for joint, yes in zip(written.joints, involved, strict=True) if yes]
+    finding = Finding(
+        "lost_freedom",
+        f"The axes of joints {listed(names)} lie so that the arm has only {left} degrees of "
+        f"freedom in place of {possible}: check a and α between these joints.",
+    )
+    return (finding,)
 
 
 def _one_axis(
     together: list[int], written: _Arm, intended: _Arm, convention: Convention
 ) -> Finding:
-    """Joints were given one axis."""
+    """Several joints were given one axis."""
     first, last = together[0], together[-1]
     if written.joints[first].prismatic:
         motion = "slide along one and the same direction"
     else:
         motion = "turn about one and the same line"
-    named = _listed([str(written.joints[k].index) for k in together])
+    named = listed([str(written.joints[k].index) for k in together])
     between = _rows_between(first, last, written, convention)
     if len(together) > 2:
         return Finding(
@@ -143,7 +144,7 @@ def _one_axis(
 
 
 def _lie(one: NDArray[np.float64], other: NDArray[np.float64]) -> tuple[bool, str]:
-    """Whether two axes ``(samples, 3)`` are parallel throughout, and how they lie, in words."""
+    """Whether two axes ``(samples, 3)`` are parallel throughout, and in words how they lie."""
     if np.abs(np.cross(one, other)).max() < SAME:
         return True, "parallel, but apart"
     cosines = np.abs(np.sum(one * other, axis=-1))
@@ -154,40 +155,27 @@ def _lie(one: NDArray[np.float64], other: NDArray[np.float64]) -> tuple[bool, st
 
 
 def _rows_between(i: int, j: int, written: _Arm, convention: Convention) -> str:
-    """The rows whose a and α lead from the one joint's axis to the other's.
+    """The rows whose a and α lead from the axis of joint ``i`` to that of joint ``j``.
 
-    In a standard table they begin with the first joint's own row; in a modified one they end with
-    the second's.
+    They begin with the row of joint ``i`` in a standard table, and end with the row of joint ``j``
+    in a modified one.
     """
     joints = (
         written.joints[i:j] if convention is Convention.STANDARD else written.joints[i + 1 : j + 1]
     )
     labels = [str(joint.index) for joint in joints]
-    return f"row {labels[0]}" if len(labels) == 1 else f"rows {_listed(labels)}"
+    return f"row {labels[0]}" if len(labels) == 1 else f"rows {listed(labels)}"
 
 
 def _without_effect(joints: Sequence[Joint]) -> Finding:
-    """A joint was left out of the table's formulas."""
+    """Joints were left out of the table's formulas."""
     names = [str(joint.index) for joint in joints]
-    variables = _listed([joint.variable for joint in joints])
+    variables = listed([joint.variable for joint in joints])
     is_one = len(names) == 1
     return Finding(
         "lost_freedom",
-        f"{'Joint' if is_one else 'Joints'} {_listed(names)} {'moves' if is_one else 'move'} "
+        f"{'Joint' if is_one else 'Joints'} {listed(names)} {'moves' if is_one else 'move'} "
         f"nothing: {'its row contains' if is_one else 'their rows contain'} no joint variable.",
         f"Where {variables} {'changes' if is_one else 'change'}, the arm moves.",
         severity=Severity.WARNING,
     )
-
-
-def _fewer_ways(names: list[str], left: int, possible: int) -> Finding:
-    """Joints were placed so that one of them can do nothing that the others cannot do as well."""
-    return Finding(
-        "lost_freedom",
-        f"The axes of joints {_listed(names)} lie so that the arm has only {left} degrees of "
-        f"freedom in place of {possible}: check a and α between these joints.",
-    )
-
-
-def _listed(words: Sequence[str]) -> str:
-    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)

@@ -6,7 +6,6 @@ from numpy.typing import NDArray
 from service.grading.diagnosis.angle import diagnose_angle
 from service.grading.diagnosis.formula_repair import WrongEntry
 from service.grading.diagnosis.matrix_entry import diagnose
-from service.grading.diagnosis.wrong_value import WrongValue
 from service.grading.feedback import Finding
 from service.grading.judging.value_list import ComparedValues
 from service.grading.part import Grading
@@ -25,7 +24,7 @@ def slips_of(
         if expression is None:
             continue
         angle = student.quantities[i] == "angle"
-        value = WrongValue(
+        case = WrongEntry(
             expression=expression,
             actual=student.values[i],
             expected=compared.expected[i],
@@ -33,19 +32,7 @@ def slips_of(
             samples=grading.samples,
             scale=float(scales[i]),
             angle=angle,
+            turning=grading.exercise.vocabulary.turning,
         )
-        slips[i, 0] = diagnose_angle(value) if angle else diagnose(_as_entry(value, grading))
+        slips[i, 0] = diagnose_angle(case) if angle else diagnose(case)
     return slips
-
-
-def _as_entry(value: WrongValue, grading: Grading) -> WrongEntry:
-    return WrongEntry(
-        expression=value.expression,
-        actual=value.actual,
-        expected=value.expected,
-        expected_text=value.expected_text,
-        samples=value.samples,
-        scale=value.scale,
-        angle=False,
-        turning=grading.exercise.vocabulary.turning,
-    )

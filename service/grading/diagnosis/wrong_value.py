@@ -1,24 +1,33 @@
-"""A wrong cell or entry with everything that its diagnosis may look at."""
+"""A wrong value, a wrong table cell and a wrong array of numbers, with all that explains them."""
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from service.catalogue import Joint
 from service.expressions import Expression
-from service.grading.comparison import same
+from service.grading.comparison import Match, difference, matches, same
+from service.grading.diagnosis.wording import MEASURED, SYMBOLS
 from service.grading.feedback import Finding
+from service.grading.misconception import AnyHypothesis, Hypothesis, Index, Repaired, Written
 from service.grading.samples import Samples
+from service.kinematics.chain import COLUMNS
 from service.kinematics.transforms import Numbers
+
+Mask = NDArray[np.bool_]
+Hypotheses = Iterator[Hypothesis[Numbers]]
 
 
 @dataclass(frozen=True)
 class WrongValue:
-    """Something handed in whose value is not the expected one.
+    """A value that was handed in and is not the expected one.
 
-    ``actual`` and ``expected`` are ``(SAMPLES,)``, angles in radians. ``expected_text`` is what
-    would be right, as the student would write it, or empty where it is not known as a formula.
+    ``actual`` and ``expected`` are ``(SAMPLES,)``, angles in radians. ``expected_text`` is the
+    right answer as the student would write it, or empty where it is not known as a formula.
     """
 
     expression: Expression
@@ -34,17 +43,37 @@ class WrongValue:
         """The sentence that gives the answer away."""
         return f"It should be {self.expected_text}." if self.expected_text else ""
 
+    @property
+    def constants(self) -> tuple[Numbers, Numbers]:
+        """The actual and the expected value, as hypotheses are compared with them."""
+        return self.actual, self.expected
+
     def equal(self, one: Numbers, other: Numbers) -> bool:
         """Whether two values of this quantity are the same."""
         return same(one, other, self.scale, self.angle)
+
+    def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterator[AnyHypothesis]:
+        """Those hypotheses that explain the value, each compared when it is asked for."""
+        return filter(self._is_explained_by, hypotheses)
+
+    def _is_explained_by(self, hypothesis: Hypothesis[Any]) -> bool:
+        actual, expected = self.constants
+        answer = hypothesis.answer
+        if isinstance(hypothesis, Repaired):
+            return self.equal(answer, expected) and not self.equal(answer, actual)
+        if isinstance(hypothesis, Written) and hypothesis.tolerance is not None:
+            error = difference(actual, answer, self.angle)
+            return bool(np.abs(error).max() <= hypothesis.tolerance)
+        # As plain numbers: of −180° for 180° the sign is said to be wrong.
+        return self.equal(actual, answer) and not same(expected, answer, self.scale)
 
 
 @dataclass(frozen=True)
 class WrongCell(WrongValue):
     """A wrong table cell. ``joint`` is the row's joint, or None in a fixed row.
 
-    The coefficients say how often each of ``joints`` is contained in what was written, None if not
-    linearly, and in what was expected. ``shared`` says that the joint's axis has a parallel
+    The coefficients say how often each of ``joints`` is contained in the student's cell, None if
+    not linearly, and in the expected one. ``shared`` says that the joint's axis has a parallel
     neighbour, so that offsets along it add up.
     """
 
@@ -56,19 +85,68 @@ class WrongCell(WrongValue):
     shared: bool = False
 
     @property
+    def symbol(self) -> str:
+        """The parameter that the cell holds: a, α, d or θ."""
+        return SYMBOLS[COLUMNS.index(self.column)]
+
+    @property
+    def measured(self) -> str:
+        """How that parameter is measured: along or about x or z."""
+        return MEASURED[COLUMNS.index(self.column)]
+
+    @property
     def same_motion(self) -> bool:
-        """Whether the cell moves with the joints as expected, so that only its constant is off."""
+        """Whether the cell moves with the joints as expected, so that only its constant differs."""
         return self.actual_coefficients == self.expected_coefficients
 
     @cached_property
     def constants(self) -> tuple[Numbers, Numbers]:
-        """Actual and expected value without the joint variables that they share."""
+        """The actual and the expected value without the joint variables that they share."""
         motion = sum(
             count * self.samples.values[joint.variable]
             for count, joint in zip(self.expected_coefficients, self.joints, strict=True)
             if count
         )
         return self.actual - motion, self.expected - motion
+
+    def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterator[AnyHypothesis]:
+        """Those hypotheses that explain the constant; none if the cell moves otherwise."""
+        return super().explained_by(hypotheses if self.same_motion else ())
+
+
+@dataclass(frozen=True)
+class WrongNumbers:
+    """Numbers that were handed in and are not the expected ones, ``(..., SAMPLES)`` each.
+
+    ``scale`` ``(...)`` is the size that each number is measured against.
+    """
+
+    actual: Numbers
+    expected: Numbers
+    scale: ArrayLike
+    angle: ClassVar[ArrayLike] = False
+
+    def agree(self, one: Numbers, other: Numbers, entries: Index = ...) -> Mask:
+        """Where ``one`` is ``other`` in these entries, exactly or rounded: ``(...)``."""
+        scale = np.asarray(self.scale)[entries]
+        return np.asarray(matches(one, other, scale, self.angle) >= Match.ROUNDED)
+
+    def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> list[AnyHypothesis]:
+        """Those hypotheses that explain the numbers, all compared at once.
+
+        All of them are about the same entries.
+        """
+        tried = list(hypotheses)
+        if not tried:
+            return []
+        entries = tried[0].entries
+        answers = np.array([hypothesis.answer for hypothesis in tried])
+        inner = tuple(range(1, answers.ndim - 1))
+        explains = self.agree(self.actual[entries], answers, entries).all(axis=inner)
+        if not explains.any():
+            return []
+        explains &= ~self.agree(self.expected[entries], answers, entries).all(axis=inner)
+        return [tried[i] for i in np.flatnonzero(explains)]
 
 
 # The code of a wrong value that no known misconception explains.
@@ -91,9 +169,9 @@ def undefined(case: WrongValue) -> Finding | None:
     )
 
 
-def differs(case: WrongValue, look: str) -> Finding:
-    """No misconception that is known explains the value: ``look``, and one counterexample."""
+def differs(case: WrongValue, hint: str) -> Finding:
+    """``hint`` and one counterexample, for a value that no known misconception explains."""
     at = case.samples.at(0, case.expression.symbols)
     return Finding(
-        UNEXPLAINED, look, case.correction, values={**at, "yours": float(f"{case.actual[0]:.4g}")}
+        UNEXPLAINED, hint, case.correction, values={**at, "yours": float(f"{case.actual[0]:.4g}")}
     )

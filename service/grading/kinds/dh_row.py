@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from service.catalogue import DhRowSpec
 from service.expressions import Expression
 from service.grading.comparison import Match, matches
-from service.grading.diagnosis.dh_row import RowCase, explain_row, has_a_row, violated
+from service.grading.diagnosis.dh_row import WrongRow, explain_row, has_a_row, violated
 from service.grading.diagnosis.table_cell import diagnose
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, WrongCell
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
@@ -85,7 +85,7 @@ def _against_the_row(
     found = matches(written.values, expected, scale, IS_ANGLE[:, None], rounded=written.rounded)
     explained: Finding | None = None
     if (found < Match.ROUNDED).any() and np.isfinite(written.values).all():
-        case = RowCase(written.values, transform, part.convention, length_scale)
+        case = WrongRow(written.values, expected, scale, transform, part.convention)
         explained = explain_row(case)
     slips = {
         i: _slip(i, expression, written.values[i], expected[i], grading)

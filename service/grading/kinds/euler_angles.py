@@ -4,21 +4,16 @@ Every triple of the same rotation is right. Where the triple is wrong, it is hel
 nearest of those that are right, so that a single slip costs a single angle.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import EulerAnglesSpec
 from service.expressions import Kind
-from service.expressions.tree import Call
 from service.grading.comparison import EXACT, ROUNDED, Match, difference, matches
-from service.grading.diagnosis.angle import (
-    ARCTANGENTS,
-    AnglesExplained,
-    WrongAngles,
-    diagnose_angle,
-    explain_angles,
-)
-from service.grading.diagnosis.formula_rewriting import nodes
+from service.grading.diagnosis.angle import diagnose_angle, has_arctangent
+from service.grading.diagnosis.euler_triple import RepairedTriple, WrongTriple, explain_triple
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, WrongValue
 from service.grading.feedback import Finding
 from service.grading.formula_text import formula_text
@@ -63,8 +58,8 @@ def judge(part: EulerAnglesSpec, answer: StudentValues, grading: Grading) -> Jud
     if is_singular(turns, rotation, fixed=fixed).all():
         findings = (SINGULAR,)
     if (found < Match.ROUNDED).any() and np.isfinite(angles).all():
-        case = WrongAngles(angles, rotation, turns, fixed, _arctangents(answer.entries))
-        found, slips, explained = _explained(found, explain_angles(case))
+        case = WrongTriple(angles, rotation, turns, fixed, _arctangents(answer.entries))
+        found, slips, explained = _explained(found, explain_triple(case))
         findings += explained
     slips = {**_slips(answer, expected, found, grading), **slips}
     if findings and findings[-1] is not SINGULAR:
@@ -133,30 +128,23 @@ def _singular_triple(angles: Numbers, one: Numbers, rotation: Matrices, sequence
     return np.stack([first, one[:, 1], last], axis=-1)
 
 
-def _arctangents(entries: list[Entry]) -> tuple[bool, bool, bool]:
-    one, two, three = (
-        entry.expression is not None
-        and any(
-            isinstance(node, Call) and node.function in ARCTANGENTS
-            for node in nodes(entry.expression.tree)
-        )
-        for entry in entries
-    )
-    return one, two, three
+def _arctangents(entries: Sequence[Entry]) -> list[bool]:
+    expressions = [entry.expression for entry in entries]
+    return [each is not None and has_arctangent(each.tree) for each in expressions]
 
 
 def _explained(
-    found: NDArray[np.int_], explained: AnglesExplained | None
+    found: NDArray[np.int_], explained: RepairedTriple | None
 ) -> tuple[NDArray[np.int_], dict[tuple[int, int], Finding], tuple[Finding, ...]]:
     """The matches, the slips of single angles and the findings on all three together."""
     if explained is None:
         return found, {}, ()
-    if explained.blamed is None:
-        return found, {}, (explained.finding,)
-    blamed = explained.blamed
-    matched = np.where(blamed, int(Match.DIFFERENT), int(Match.EXACT))
-    slips = {(int(i), 0): explained.finding for i in np.flatnonzero(blamed)}
-    return matched, slips, ()
+    slipped = explained.entries
+    if not isinstance(slipped, np.ndarray):
+        return found, {}, explained.findings
+    [finding] = explained.findings
+    matched = np.where(slipped, int(Match.DIFFERENT), int(Match.EXACT))
+    return matched, {(int(i), 0): finding for i in np.flatnonzero(slipped)}, ()
 
 
 def _slips(

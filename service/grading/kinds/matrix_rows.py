@@ -7,7 +7,8 @@ import numpy as np
 
 from service.grading.comparison import Match
 from service.grading.diagnosis.formula_repair import WrongEntry
-from service.grading.diagnosis.matrix_case import Chain, Explanation, MatrixCase
+from service.grading.diagnosis.link_products import Chain
+from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
 from service.grading.diagnosis.matrix_entry import WORK_BUDGET, diagnose_entries
 from service.grading.diagnosis.whole_matrix import check_yourself, explain, unexplained
 from service.grading.judging.matrix import ExpectedMatrix, constant_text

@@ -5,7 +5,7 @@ import numpy as np
 from service.catalogue import PositionSpec, Robot
 from service.expressions import Kind
 from service.grading.comparison import Match
-from service.grading.diagnosis.matrix_case import chains_of
+from service.grading.diagnosis.link_products import chains_of
 from service.grading.diagnosis.position import WrongPosition, explain_position
 from service.grading.diagnosis.value_list import slips_of
 from service.grading.feedback import Finding

@@ -2,7 +2,8 @@
 
 from service.catalogue import Robot, RotationSpec
 from service.catalogue.answers import ROTATION
-from service.grading.diagnosis.matrix_case import Chain, Explanation, MatrixCase, chains_of
+from service.grading.diagnosis.link_products import Chain, chains_of
+from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
 from service.grading.diagnosis.rotation_steps import Step, explain_steps
 from service.grading.judging.expected import (
     as_entries,

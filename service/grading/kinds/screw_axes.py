@@ -124,8 +124,12 @@ def _expected(part: ScrewAxesSpec, grading: Grading) -> ExpectedScrews:
 
 def _matches(student: StudentMatrix, expected: Numbers, grading: Grading) -> NDArray[np.int_]:
     """The Match of each number, ``(joints, 6)``."""
-    scale = np.repeat([1.0, grading.exercise.length_scale], 3)
-    return matches(student.values, expected, scale, rounded=student.rounded)
+    return matches(student.values, expected, _scale(grading), rounded=student.rounded)
+
+
+def _scale(grading: Grading) -> Numbers:
+    """The size that each number of an axis is measured against, ``(6,)``."""
+    return np.repeat([1.0, grading.exercise.length_scale], 3)
 
 
 def _explained(
@@ -140,7 +144,7 @@ def _explained(
     explained: dict[int, Finding] = {}
     for i in np.flatnonzero(wrong.any(axis=1)).tolist():
         elsewhere = None if expected.elsewhere is None else expected.elsewhere[i]
-        case = WrongScrew(actual[i], axes[i], elsewhere, part.frame, grading.exercise.length_scale)
+        case = WrongScrew(actual[i], axes[i], _scale(grading), elsewhere, part.frame)
         finding = explain_screw(case)
         if finding is not None:
             explained[i] = finding

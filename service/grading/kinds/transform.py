@@ -5,7 +5,8 @@ import numpy as np
 from service.catalogue import Robot, TransformSpec
 from service.catalogue.answers import HOMOGENEOUS
 from service.grading.diagnosis.exponentials import explain_product
-from service.grading.diagnosis.matrix_case import Chain, Explanation, MatrixCase, chains_of
+from service.grading.diagnosis.link_products import Chain, chains_of
+from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
 from service.grading.follow_through import stands_still
 from service.grading.judging.expected import as_entries, asked_pose, formula_values, is_whole_chain
 from service.grading.judging.matrix import ExpectedMatrix

@@ -1,16 +1,15 @@
-"""Each misconception about the row of a transform: a case it explains, and one it leaves alone."""
-
-from collections.abc import Callable
+"""Misconceptions about the DH row of a transform, and the conditions that it has one."""
 
 import numpy as np
 import pytest
 
 from service.grading.diagnosis import dh_row
-from service.grading.diagnosis.dh_row import MISCONCEPTIONS, RowCase, explain_row, violated
-from service.grading.feedback import Finding
+from service.grading.diagnosis.dh_row import WrongRow, explain_row, violated
 from service.grading.samples import SAMPLES
 from service.kinematics.dh import Convention, link_transforms
+from service.kinematics.dh_row import row
 from service.kinematics.transforms import Matrices, Numbers, rot_x, rot_y, trans
+from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
 
 RNG = np.random.default_rng(10)
 A, ALPHA, D, THETA = ROW = RNG.uniform(0.3, 1.2, (4, SAMPLES))
@@ -22,30 +21,33 @@ def link(convention: Convention, *cells: Numbers) -> Matrices:
     return link_transforms(convention, *cells)
 
 
-def case(written: list[Numbers], transform: Matrices, convention: Convention = STANDARD) -> RowCase:
-    return RowCase(np.array(written), transform, convention, 0.7)
+def case(
+    written: list[Numbers], transform: Matrices, convention: Convention = STANDARD
+) -> WrongRow:
+    scale = np.array([0.7, 1.0, 0.7, 1.0])
+    return WrongRow(np.array(written), row(transform, convention), scale, transform, convention)
 
 
 FULL = link(STANDARD, *ROW)
 # Without a twist and an offset both conventions have a row, and so has the inverse.
 FLAT = link(STANDARD, A, ZERO, ZERO, THETA)
+# After half a turn both conventions have a row, each its own.
+HALF_TURN = np.full(SAMPLES, np.pi)
+TURNED = link(STANDARD, A, ALPHA, ZERO, HALF_TURN)
 SCREW_ALONG_Z = link(STANDARD, ZERO, ZERO, D, THETA)
 
-Misconception = Callable[[RowCase], Finding | None]
-PAIRS: list[tuple[Misconception, RowCase, RowCase, str]] = [
-    (
+PAIRS = [
+    Pair(
         dh_row.exchanged_parameters,
         case([D, ALPHA, A, THETA], FULL),
         case([D, ALPHA, A, -THETA], FULL),
-        "exchanged_parameters",
     ),
-    (
+    Pair(
         dh_row.other_convention,
-        case([A, ALPHA, ZERO, ZERO], link(MODIFIED, A, ALPHA, ZERO, ZERO)),
-        case([A, -ALPHA, ZERO, ZERO], link(MODIFIED, A, ALPHA, ZERO, ZERO)),
-        "other_convention",
+        case([-A, -ALPHA, ZERO, HALF_TURN], TURNED),
+        case([-A, ALPHA, ZERO, HALF_TURN], TURNED),
     ),
-    (
+    Pair(
         dh_row.inverse_row,
         case([ZERO, ZERO, -D, -THETA], SCREW_ALONG_Z),
         case([-A, ZERO, ZERO, -THETA], FLAT),
@@ -54,18 +56,9 @@ PAIRS: list[tuple[Misconception, RowCase, RowCase, str]] = [
 ]
 
 
-@pytest.mark.parametrize(("misconception", "explained", "left", "code"), PAIRS)
-def test_a_misconception(
-    misconception: Misconception, explained: RowCase, left: RowCase, code: str
-) -> None:
-    finding = misconception(explained)
-    assert finding is not None
-    assert finding.code == code
-    assert misconception(left) is None
-
-
-def test_every_misconception_is_tested_and_tried() -> None:
-    assert {pair[0] for pair in PAIRS} == set(MISCONCEPTIONS)
+@each_pair(PAIRS)
+def test_a_misconception(pair: Pair) -> None:
+    assert_explains_one_case_alone(pair)
 
 
 def test_a_right_row_is_left_alone() -> None:

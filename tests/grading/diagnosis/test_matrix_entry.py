@@ -1,77 +1,71 @@
-"""Misconceptions about single matrix entries: what each explains, and what it leaves alone."""
+"""Misconceptions about a single matrix entry."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 import pytest
 
-from service.catalogue import Exercise
-from service.expressions import read
+from service.expressions import Symbol, Vocabulary, read
 from service.grading.diagnosis import matrix_entry
 from service.grading.diagnosis.formula_repair import WrongEntry
-from service.grading.feedback import Finding
+from service.grading.diagnosis.wrong_value import undefined
+from service.grading.misconception import Hypothesis, explanation
 from service.grading.reading.entry import AngleUnit
-from service.grading.samples import SAMPLES, draw
+from service.grading.samples import SAMPLES, Samples
+from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
 
-Misconception = Callable[[WrongEntry], Finding | None]
+Misconception = Callable[[WrongEntry], Iterator[Hypothesis[Any]]]
 
-ARM = """
-title = "Arm of four turning joints"
-source = "Made for this test."
-statement = "An arm."
+RNG = np.random.default_rng(4)
+ANGLES = [Symbol(f"q{i}", "angle", joint=i) for i in range(1, 5)]
+LENGTHS = [Symbol(f"l{i}", "length") for i in range(1, 4)]
+WORDS = Vocabulary([*ANGLES, *LENGTHS])
+SAMPLE = Samples(
+    {angle.name: RNG.uniform(-3, 3, SAMPLES) for angle in ANGLES}
+    | {length.name: RNG.uniform(0.3, 0.9, SAMPLES) for length in LENGTHS}
+)
 
-[robot]
-structure = "RRRR"
-convention = "standard"
-joints = ["q1", "q2", "q3", "q4"]
-table = [
-    ["l1", "90deg", "0", "q1"],
-    ["l2", "0", "0", "q2"],
-    ["l3", "0", "0", "q3"],
-    ["0", "0", "0", "q4"],
+
+def wrong(written: str, expected: str, unit: AngleUnit = "radians") -> WrongEntry:
+    """The written entry and the right one."""
+    expression = read(written, WORDS, angle_unit=unit)
+    actual, right = (
+        np.array(np.broadcast_to(text.evaluate(SAMPLE.values), SAMPLES))
+        for text in (expression, read(expected, WORDS))
+    )
+    return WrongEntry(
+        expression=expression,
+        actual=actual,
+        expected=right,
+        expected_text="",
+        samples=SAMPLE,
+        scale=1.0,
+        angle=False,
+        turning=WORDS.turning,
+    )
+
+
+PAIRS = [
+    Pair(undefined, wrong("1/0", "c12"), wrong("c1", "c12")),
+    Pair(matrix_entry.sign, wrong("-c12", "c12"), wrong("-c12", "s12")),
+    Pair(matrix_entry.degrees_as_radians, wrong("sin(q1 + 90)", "c1"), wrong("90*c1", "c1")),
+    Pair(
+        matrix_entry.radians_as_degrees,
+        wrong("cos(q1 + 1.5708)", "-s1", "degrees"),
+        wrong("cos(q1 + 1.5708)", "-s1"),
+    ),
+    Pair(matrix_entry.sine_for_cosine, wrong("s12", "c12"), wrong("tan(q1)", "c1")),
+    Pair(matrix_entry.sum_of_cosines, wrong("c1 + c2", "c12"), wrong("c1 + s2", "c12")),
+    Pair(matrix_entry.product_for_sum_angle, wrong("c1*c2", "c12"), wrong("c1*s2", "c12")),
+    Pair(matrix_entry.relative_angle, wrong("c2", "c12"), wrong("c1", "c12")),
+    Pair(matrix_entry.term_sign, wrong("l1 - l2*c1", "l1 + l2*c1"), wrong("l1 - l2", "l3")),
 ]
 
-[symbols]
-l1 = { kind = "length", description = "link 1" }
-l2 = { kind = "length", description = "link 2" }
-l3 = { kind = "length", description = "link 3" }
 
-[[parts]]
-id = "pose"
-kind = "transform"
-title = "Pose"
-prompt = "Give the pose."
-points = 1
-"""
-
-Case = Callable[..., WrongEntry]
-
-
-@pytest.fixture
-def wrong(make_exercise: Callable[[str], Exercise]) -> Case:
-    """A wrong entry: what was written, what would be right."""
-    exercise = make_exercise(ARM)
-    samples = draw(exercise, "entries")
-
-    def case(written: str, expected: str, degrees: bool = False) -> WrongEntry:
-        unit: AngleUnit = "degrees" if degrees else "radians"
-        texts = [read(written, exercise.vocabulary, angle_unit=unit)]
-        texts.append(read(expected, exercise.vocabulary))
-        actual, right = (
-            np.array(np.broadcast_to(text.evaluate(samples.values), SAMPLES)) for text in texts
-        )
-        return WrongEntry(
-            expression=texts[0],
-            actual=actual,
-            expected=right,
-            expected_text="",
-            samples=samples,
-            scale=1.0,
-            angle=False,
-            turning=exercise.vocabulary.turning,
-        )
-
-    return case
+@each_pair(PAIRS)
+def test_a_misconception(pair: Pair) -> None:
+    assert_explains_one_case_alone(pair)
 
 
 EXPLAINED: list[tuple[Misconception, str, str, str]] = [
@@ -123,19 +117,15 @@ EXPLAINED: list[tuple[Misconception, str, str, str]] = [
 
 @pytest.mark.parametrize(("misconception", "written", "expected", "correction"), EXPLAINED)
 def test_a_misconception_explains_its_entry(
-    misconception: Misconception, written: str, expected: str, correction: str, wrong: Case
+    misconception: Misconception, written: str, expected: str, correction: str
 ) -> None:
     case = wrong(written, expected)
-    finding = misconception(case)
-    assert finding is not None
+    found = explanation(case, (misconception,))
+    assert found is not None
+    [finding] = found.findings
     assert finding.code == misconception.__name__
     assert correction in finding.correction
     assert matrix_entry.diagnose(case) == finding
-
-
-def test_degrees_where_radians_were_meant(wrong: Case) -> None:
-    finding = matrix_entry.diagnose(wrong("cos(q1 + 1.5708)", "-s1", degrees=True))
-    assert finding.code == "radians_as_degrees"
 
 
 LEFT_ALONE: list[tuple[Misconception, str, str]] = [
@@ -161,33 +151,33 @@ LEFT_ALONE: list[tuple[Misconception, str, str]] = [
 
 @pytest.mark.parametrize(("misconception", "written", "expected"), LEFT_ALONE)
 def test_a_misconception_leaves_other_entries_alone(
-    misconception: Misconception, written: str, expected: str, wrong: Case
+    misconception: Misconception, written: str, expected: str
 ) -> None:
-    assert misconception(wrong(written, expected)) is None
+    assert explanation(wrong(written, expected), (misconception,)) is None
 
 
 @pytest.mark.parametrize("misconception", matrix_entry.MISCONCEPTIONS)
-def test_what_changes_nothing_explains_nothing(misconception: Misconception, wrong: Case) -> None:
+def test_a_misconception_that_changes_nothing_explains_nothing(
+    misconception: Misconception,
+) -> None:
     """An answer within rounding of the right one, but not allowed to be."""
     case = wrong("l1*c1*c2 + cos(0) + s1*s2/1000000", "l1*c1*c2 + cos(0)")
-    finding = misconception(case)
-    assert finding is None
+    assert explanation(case, (misconception,)) is None
 
 
 @pytest.mark.parametrize(
     "written",
     ["1/(q1 - q1) + c1 + c2", "sqrt(-1)*s1", "sqrt(-abs(q1)) + c1*c2", "10^400*c1", "asin(2 + c1)"],
 )
-def test_an_entry_without_a_value_is_not_taken_apart(written: str, wrong: Case) -> None:
-    finding = matrix_entry.diagnose(wrong(written, "c12"))
-    assert finding.code == "undefined"
+def test_an_entry_without_a_value_is_not_taken_apart(written: str) -> None:
+    assert matrix_entry.diagnose(wrong(written, "c12")).code == "undefined"
 
 
-def test_a_repair_that_has_no_value_is_none(wrong: Case) -> None:
+def test_a_repair_that_has_no_value_is_none() -> None:
     assert matrix_entry.diagnose(wrong("c1/(s2 + l1) + c2/c1", "c12")).code == "value"
 
 
-def test_long_formulas_are_only_compared(wrong: Case) -> None:
+def test_long_formulas_are_only_compared() -> None:
     padding = "".join(f" + 0*c{i % 4 + 1}" for i in range(30))
     assert matrix_entry.diagnose(wrong(f"s1{padding}", "c1")).code == "value"
     assert matrix_entry.diagnose(wrong(f"-c1{padding}", "c1")).code == "sign"
@@ -195,7 +185,7 @@ def test_long_formulas_are_only_compared(wrong: Case) -> None:
     assert matrix_entry.diagnose(wrong(f"s1{short[: short.rindex('+')]}", "c1")).code != "value"
 
 
-def test_without_patience_a_formula_is_only_compared(wrong: Case) -> None:
-    case = wrong("s1", "c1")
-    assert matrix_entry.diagnose(case, patient=False).code == "value"
-    assert matrix_entry.diagnose(wrong("-c1", "c1"), patient=False).code == "sign"
+def test_without_work_budget_a_formula_is_only_compared() -> None:
+    wrong_entries = {(0, 0): wrong("s1", "c1"), (0, 1): wrong("-c1", "c1")}
+    findings = matrix_entry.diagnose_entries(wrong_entries, work_budget=0)
+    assert [finding.code for finding in findings.values()] == ["value", "sign"]

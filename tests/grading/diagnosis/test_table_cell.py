@@ -1,6 +1,4 @@
-"""Each misconception about a table cell: one cell that it explains, one that it leaves alone."""
-
-from collections.abc import Callable
+"""Misconceptions about a table cell."""
 
 import numpy as np
 import pytest
@@ -8,11 +6,11 @@ import pytest
 from service.catalogue import Joint
 from service.expressions import Symbol, Vocabulary, read
 from service.grading.diagnosis import table_cell
-from service.grading.diagnosis.table_cell import MISCONCEPTIONS, diagnose
+from service.grading.diagnosis.table_cell import diagnose
 from service.grading.diagnosis.wrong_value import WrongCell, undefined
-from service.grading.feedback import Finding
 from service.grading.joint_motion import coefficients
 from service.grading.samples import HALF, SAMPLES, Samples
+from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
 
 RNG = np.random.default_rng(5)
 JOINTS = (Joint(1, "q1", False), Joint(2, "q2", False), Joint(3, "d3", True))
@@ -22,13 +20,9 @@ SAMPLE = Samples(VALUES)
 KINDS = {"q1": "angle", "q2": "angle", "d3": "length", "a1": "length", "a2": "length"}
 WORDS = Vocabulary([Symbol(name, kind) for name, kind in KINDS.items()])  # type: ignore[arg-type]
 
-# The column, the number of the row's joint, what was written there and what is right.
-Cell = tuple[str, int, str, str]
-Misconception = Callable[[WrongCell], Finding | None]
 
-
-def wrong(cell: Cell) -> WrongCell:
-    column, number, written, right = cell
+def wrong(column: str, number: int, written: str, right: str) -> WrongCell:
+    """A cell of the row of a joint: its column, the joint's number, the written and right cell."""
     angle = column in ("alpha", "theta")
     quantity = "angle" if angle else "length"
     expression = read(written, WORDS, quantity=quantity)  # type: ignore[arg-type]
@@ -54,57 +48,73 @@ def wrong(cell: Cell) -> WrongCell:
     )
 
 
-PAIRS: list[tuple[Misconception, Cell, Cell]] = [
-    (undefined, ("d", 1, "a1/0", "a1"), ("d", 1, "a2", "a1")),
-    (
-        table_cell.joint_variable_missing,
-        ("theta", 1, "pi/2", "q1 + pi/2"),
-        ("theta", 1, "q2", "q1"),
-    ),
-    (table_cell.joint_variable_sign, ("d", 3, "-d3", "d3"), ("d", 3, "d3 + a1", "d3")),
-    (table_cell.joint_variable_index, ("theta", 1, "q2", "q1"), ("theta", 1, "q1 + q2", "q1")),
-    (table_cell.joint_variable_doubled, ("theta", 2, "2*q2", "q2"), ("theta", 2, "-q2", "q2")),
-    (table_cell.joint_variable_column, ("alpha", 1, "q1", "0"), ("alpha", 1, "q2", "0")),
-    (table_cell.joint_variable_extra, ("theta", 1, "q1 + q2", "q1"), ("theta", 1, "-q1", "q1")),
-    (table_cell.sign, ("a", 1, "-a1", "a1"), ("a", 1, "-a2", "a1")),
-    (table_cell.distance_left_out, ("d", 1, "0", "a1"), ("d", 1, "a2", "a1")),
-    (table_cell.distance_extra, ("d", 3, "d3 + a1", "d3"), ("a", 3, "a1", "a2")),
-    (table_cell.degrees_as_radians, ("alpha", 1, "90", "pi/2"), ("alpha", 1, "91", "pi/2")),
-    (table_cell.radians_as_degrees, ("alpha", 1, "pi*pi/360", "pi/2"), ("alpha", 1, "0", "pi/2")),
-    (table_cell.quarter_turn, ("theta", 1, "q1", "q1 + pi/2"), ("theta", 1, "q1 + pi", "q1")),
-    (table_cell.half_turn, ("theta", 1, "q1 + pi", "q1"), ("theta", 1, "q1 + pi/2", "q1")),
+PAIRS = [
+    Pair(function, wrong(*explained), wrong(*left_alone))
+    for function, explained, left_alone in (
+        (undefined, ("d", 1, "a1/0", "a1"), ("d", 1, "a2", "a1")),
+        (
+            table_cell.joint_variable_missing,
+            ("theta", 1, "pi/2", "q1 + pi/2"),
+            ("theta", 1, "q2", "q1"),
+        ),
+        (table_cell.joint_variable_sign, ("d", 3, "-d3", "d3"), ("d", 3, "d3 + a1", "d3")),
+        (
+            table_cell.joint_variable_index,
+            ("theta", 1, "q2", "q1"),
+            ("theta", 1, "q1 + q2", "q1"),
+        ),
+        (
+            table_cell.joint_variable_doubled,
+            ("theta", 2, "2*q2", "q2"),
+            ("theta", 2, "-q2", "q2"),
+        ),
+        (table_cell.joint_variable_column, ("alpha", 1, "q1", "0"), ("alpha", 1, "q2", "0")),
+        (
+            table_cell.joint_variable_extra,
+            ("theta", 1, "q1 + q2", "q1"),
+            ("theta", 1, "-q1", "q1"),
+        ),
+        (table_cell.sign, ("a", 1, "-a1", "a1"), ("a", 1, "-a2", "a1")),
+        (table_cell.distance_left_out, ("d", 1, "0", "a1"), ("d", 1, "a2", "a1")),
+        (table_cell.distance_extra, ("d", 3, "d3 + a1", "d3"), ("a", 3, "a1", "a2")),
+        (
+            table_cell.degrees_as_radians,
+            ("alpha", 1, "90", "pi/2"),
+            ("alpha", 1, "91", "pi/2"),
+        ),
+        (
+            table_cell.radians_as_degrees,
+            ("alpha", 1, "pi*pi/360", "pi/2"),
+            ("alpha", 1, "0", "pi/2"),
+        ),
+        (
+            table_cell.quarter_turn,
+            ("theta", 1, "q1", "q1 + pi/2"),
+            ("theta", 1, "q1 + pi", "q1"),
+        ),
+        (
+            table_cell.half_turn,
+            ("theta", 1, "q1 + pi", "q1"),
+            ("theta", 1, "q1 + pi/2", "q1"),
+        ),
+    )
 ]
 
 
-@pytest.mark.parametrize(
-    ("misconception", "explained", "left"), PAIRS, ids=lambda p: getattr(p, "__name__", "")
-)
-def test_a_misconception_about_a_cell(
-    misconception: Misconception, explained: Cell, left: Cell
-) -> None:
-    finding = misconception(wrong(explained))
-    assert finding is not None
-    assert finding.code == misconception.__name__
+@each_pair(PAIRS)
+def test_a_misconception(pair: Pair) -> None:
+    finding = assert_explains_one_case_alone(pair)
     assert "should be" not in finding.hint  # the answer is in the correction alone
-    assert finding.correction == f"It should be {explained[3]}."
-    assert misconception(wrong(left)) is None
+    assert finding.correction == f"It should be {pair.explained.expected_text}."
 
 
-@pytest.mark.parametrize(
-    ("misconception", "explained", "_"), PAIRS, ids=lambda p: getattr(p, "__name__", "")
-)
-def test_it_is_the_first_that_explains_its_cell(
-    misconception: Misconception, explained: Cell, _: Cell
-) -> None:
-    assert diagnose(wrong(explained)).code == misconception.__name__
-
-
-def test_every_misconception_about_a_cell_is_tested_and_tried() -> None:
-    assert [pair[0] for pair in PAIRS] == list(MISCONCEPTIONS)
+@each_pair(PAIRS)
+def test_it_is_the_first_that_explains_its_cell(pair: Pair) -> None:
+    assert diagnose(pair.explained).code == pair.function.__name__
 
 
 def test_what_no_misconception_explains_shows_a_counterexample() -> None:
-    finding = diagnose(wrong(("a", 1, "a1 + 0.3", "a1")))
+    finding = diagnose(wrong("a", 1, "a1 + 0.3", "a1"))
     assert finding.code == "value"
     assert finding.values is not None
     assert finding.values["yours"] == pytest.approx(float(VALUES["a1"][0]) + 0.3, rel=1e-3)

@@ -1,4 +1,4 @@
-"""Each misconception that a student may hold of a table is put into every robot and must be named.
+"""Each misconception about a table is put into every robot and must be named in the report.
 
 Whether the table is wrong at all is decided by independent forward kinematics; a misconception that
 does not change the mechanism cannot be seen and is left out.
@@ -160,7 +160,7 @@ def row_missing(robot: Robot, rows: Rows) -> Iterator[Rows]:
 
 # The misconception, and the codes that name it. Some slips are two things at once: −90° for 90° is
 # a sign and half a turn, and to mirror every α of a wrist is to reverse its joint 5.
-BELIEFS: tuple[tuple[Slip, set[str]], ...] = (
+SLIPS: tuple[tuple[Slip, set[str]], ...] = (
     (wrong_sign, {"sign", "half_turn"}),
     (quarter_turn, {"quarter_turn"}),
     (half_turn, {"half_turn", "sign"}),
@@ -181,7 +181,7 @@ BELIEFS: tuple[tuple[Slip, set[str]], ...] = (
 
 
 @pytest.mark.parametrize(
-    ("misconception", "names"), BELIEFS, ids=lambda x: getattr(x, "__name__", "")
+    ("misconception", "names"), SLIPS, ids=lambda x: getattr(x, "__name__", "")
 )
 def test_a_misconception_is_named_in_every_robot_that_it_changes(
     misconception: Slip, names: set[str], figure: Callable[[str], None]

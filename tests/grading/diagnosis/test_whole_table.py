@@ -1,29 +1,22 @@
-"""Each misconception about a whole table: one table that it explains, one that it leaves alone.
+"""Misconceptions about a whole table.
 
-What a misconception is tried on is the Stanford arm of Spong, Hutchinson and Vidyasagar, with d1
+They are tried on the Stanford arm of Spong, Hutchinson and Vidyasagar, with d1
 and a2 added so that every column holds something. A table is right if its pose is, multiplied out
 here.
 """
 
-from collections.abc import Callable
-
 import numpy as np
-import pytest
 from numpy.typing import NDArray
 
 from service.catalogue import Joint
 from service.grading.diagnosis import whole_table
-from service.grading.diagnosis.whole_table import (
-    MISCONCEPTIONS,
-    Misconception,
-    WrittenTable,
-    explanations,
-    written_table,
-)
+from service.grading.diagnosis.whole_table import MISCONCEPTIONS, WrongTable, explaining
+from service.grading.judging.own_frames import written_table
 from service.grading.samples import HALF, SAMPLES, Samples
 from service.kinematics.chain import ALPHA, THETA, A, D, Table
 from service.kinematics.dh import Convention
 from tests.frame_choice.kinematics import screw_x, screw_z
+from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
 
 RNG = np.random.default_rng(6)
 JOINTS = tuple(Joint(i + 1, f"q{i + 1}", i == 2) for i in range(6))
@@ -55,8 +48,10 @@ def valid(candidates: NDArray[np.float64], convention: Convention) -> NDArray[np
     return np.array([np.abs(pose(t, convention) - wanted).max() < 1e-6 for t in candidates])
 
 
-def written(table: Table) -> WrittenTable:
-    return written_table(table, Convention.STANDARD, right(), JOINTS, SAMPLE)
+def wrong(table: Table) -> WrongTable:
+    """The table where ``right()`` would be right."""
+    written = written_table.written_table(table, Convention.STANDARD, right(), JOINTS, SAMPLE)
+    return WrongTable(written, valid)
 
 
 def in_modified_rows(table: Table) -> Table:
@@ -82,14 +77,14 @@ def with_rows(table: Table, i: int, j: int) -> Table:
 
 
 def with_angles(table: Table, factor: float) -> Table:
-    motion = written(right()).motion
+    motion = wrong(right()).written.motion
     constants = table - motion
     constants[:, [ALPHA, THETA]] *= factor
     return constants + motion
 
 
 def with_sign(table: Table, column: int) -> Table:
-    motion = written(right()).motion
+    motion = wrong(right()).written.motion
     constants = table - motion
     constants[:, column] *= -1
     return constants + motion
@@ -100,83 +95,72 @@ def with_cell(table: Table, row: int, column: int, value: float) -> Table:
     return table
 
 
-Change = Callable[[Table], Table]
-PAIRS: list[tuple[Misconception, Change, Change]] = [
-    (whole_table.other_convention, in_modified_rows, lambda t: with_rows(t, 0, 1)),
-    (
-        whole_table.degrees_as_radians,
-        lambda t: with_angles(t, 180 / np.pi),
-        lambda t: with_angles(t, 2.0),
-    ),
-    (
-        whole_table.radians_as_degrees,
-        lambda t: with_angles(t, np.pi / 180),
-        lambda t: with_angles(t, 0.5),
-    ),
-    (whole_table.link_columns_shifted, twists_too_late, lambda t: with_cell(t, 0, ALPHA, QUARTER)),
-    (whole_table.column_sign, lambda t: with_sign(t, ALPHA), lambda t: with_cell(t, 0, ALPHA, 0.3)),
-    (
-        whole_table.columns_swapped,
-        lambda t: with_columns(t, A, D, 1),
-        lambda t: with_cell(t, 1, A, 0.0),
-    ),
-    (
-        whole_table.row_order,
-        lambda t: with_rows(t, 3, 4),
-        lambda t: with_cell(t, 3, ALPHA, QUARTER),
-    ),
+PAIRS = [
+    Pair(function, wrong(explained), wrong(left_alone), source=lambda case: case.written)
+    for function, explained, left_alone in (
+        (
+            written_table.other_convention,
+            in_modified_rows(right()),
+            with_rows(right(), 0, 1),
+        ),
+        (
+            written_table.degrees_as_radians,
+            with_angles(right(), 180 / np.pi),
+            with_angles(right(), 2.0),
+        ),
+        (
+            written_table.radians_as_degrees,
+            with_angles(right(), np.pi / 180),
+            with_angles(right(), 0.5),
+        ),
+        (
+            whole_table.link_columns_shifted,
+            twists_too_late(right()),
+            with_cell(right(), 0, ALPHA, QUARTER),
+        ),
+        (
+            whole_table.column_sign,
+            with_sign(right(), ALPHA),
+            with_cell(right(), 0, ALPHA, 0.3),
+        ),
+        (
+            whole_table.columns_swapped,
+            with_columns(right(), A, D, 1),
+            with_cell(right(), 1, A, 0.0),
+        ),
+        (
+            whole_table.row_order,
+            with_rows(right(), 3, 4),
+            with_cell(right(), 3, ALPHA, QUARTER),
+        ),
+    )
 ]
-IDS = [misconception.__name__ for misconception, _, _ in PAIRS]
 
 
-def repairs(misconception: Misconception, table: Table) -> list[str]:
-    """The codes of what the misconception offers, where that makes the table right."""
-    offered = list(misconception(written(table)))
-    return [
-        repair.finding().code
-        for repair in offered
-        if valid(repair.table.values[None], repair.table.convention)[0]
-    ]
+@each_pair(PAIRS)
+def test_a_misconception(pair: Pair) -> None:
+    for case in (pair.explained, pair.left_alone):
+        assert not valid(case.written.values[None], Convention.STANDARD)[0]
+    assert_explains_one_case_alone(pair)
 
 
-@pytest.mark.parametrize(("misconception", "explained", "left"), PAIRS, ids=IDS)
-def test_a_misconception_about_a_table(
-    misconception: Misconception, explained: Change, left: Change
-) -> None:
-    for change in (explained, left):
-        assert not valid(change(right())[None], Convention.STANDARD)[0]
-    assert set(repairs(misconception, explained(right()))) == {misconception.__name__}
-    assert repairs(misconception, left(right())) == []
+@each_pair(PAIRS)
+def test_its_finding_is_told(pair: Pair) -> None:
+    assert pair.function.__name__ in codes(pair.explained, combine=True)
 
 
-@pytest.mark.parametrize(("misconception", "explained", "_"), PAIRS, ids=IDS)
-def test_it_is_what_is_told(misconception: Misconception, explained: Change, _: Change) -> None:
-    assert misconception.__name__ in told(explained(right()), combine=True)
+def test_the_order_of_the_misconceptions() -> None:
+    assert [pair.function for pair in PAIRS] == list(MISCONCEPTIONS)
 
 
 def test_two_misconceptions_at_once() -> None:
-    both = in_modified_rows(with_angles(right(), 180 / np.pi))
-    assert told(both, combine=True) == ["other_convention", "degrees_as_radians"]
-    assert told(both, combine=False) == []
+    both = wrong(in_modified_rows(with_angles(right(), 180 / np.pi)))
+    assert codes(both, combine=True) == ["other_convention", "degrees_as_radians"]
+    assert codes(both, combine=False) == []
+    [found] = explaining(both, combine=True)
+    assert valid(found.answer.values[None], found.answer.convention)[0]
 
 
-def test_an_explanation_repairs_the_table_at_other_samples() -> None:
-    table = written(in_modified_rows(with_angles(right(), 180 / np.pi)))
-    [found] = explanations(table.subset(3), valid_subset, combine=True)
-    repaired = found.repaired(table)
-    assert valid(repaired.values[None], repaired.convention)[0]
-
-
-def valid_subset(candidates: NDArray[np.float64], convention: Convention) -> NDArray[np.bool_]:
-    wanted = SAMPLE.subset_of(np.moveaxis(pose(right(), Convention.STANDARD), 0, -1), 3)
-    reached = [np.moveaxis(pose(table, convention), 0, -1) for table in candidates]
-    return np.array([np.abs(each - wanted).max() < 1e-6 for each in reached])
-
-
-def told(table: Table, *, combine: bool) -> list[str]:
-    found = explanations(written(table), valid, combine=combine)
-    return [finding.code for explanation in found for finding in explanation.findings]
-
-
-def test_every_misconception_about_a_table_is_tested_and_tried() -> None:
-    assert [pair[0] for pair in PAIRS] == list(MISCONCEPTIONS)
+def codes(case: WrongTable, *, combine: bool) -> list[str]:
+    found = explaining(case, combine=combine)
+    return [finding.code for repaired in found for finding in repaired.findings]

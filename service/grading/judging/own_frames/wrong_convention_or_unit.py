@@ -6,11 +6,17 @@ each cell should be: nothing has to be guessed from which cells agree with some 
 
 import numpy as np
 
-from service.grading.diagnosis.whole_table import BASIC, TOLERANCE, WrittenTable, written_table
 from service.grading.judging.own_frames.few_cells import FrameReading, frames_from_reference
 from service.grading.judging.own_frames.frame_freedom import Freedom
 from service.grading.judging.own_frames.row_roles import Role
 from service.grading.judging.own_frames.validity import valid_tables
+from service.grading.judging.own_frames.written_table import (
+    MISCONCEPTIONS,
+    TOLERANCE,
+    WrittenTable,
+    written_table,
+)
+from service.grading.misconception import hypotheses_of
 from service.grading.part import Grading
 from service.kinematics.chain import Table, modified_rows, standard_rows
 from service.kinematics.dh import Convention
@@ -28,17 +34,16 @@ def read_as_meant(
         return None
     exercise, samples = grading.exercise, grading.samples
     handed_in = written_table(values, convention, None, exercise.robot.joints, samples)
-    for misconception in BASIC:
-        for repair in misconception(handed_in):
-            table = repair.table
-            valid = valid_tables(
-                table.values[None], roles, table.convention, freedom, exercise, samples, TOLERANCE
-            )
-            meant = in_convention(table, convention) if valid[0] else None
-            if meant is not None:
-                apart = frames_from_reference(meant, roles, convention, grading)
-                wrong = int(np.count_nonzero(np.abs(meant - values).max(axis=-1) > SAME))
-                return FrameReading(roles, meant, apart, WRONG_CELL * max(1, wrong))
+    for repaired in hypotheses_of(handed_in, MISCONCEPTIONS):
+        table = repaired.answer
+        valid = valid_tables(
+            table.values[None], roles, table.convention, freedom, exercise, samples, TOLERANCE
+        )
+        meant = in_convention(table, convention) if valid[0] else None
+        if meant is not None:
+            apart = frames_from_reference(meant, roles, convention, grading)
+            wrong = int(np.count_nonzero(np.abs(meant - values).max(axis=-1) > SAME))
+            return FrameReading(roles, meant, apart, WRONG_CELL * max(1, wrong))
     return None
 
 

@@ -1,0 +1,115 @@
+"""The student's table taken apart, and the misconceptions that make most of its cells wrong."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from service.catalogue import Joint
+from service.grading.feedback import Finding
+from service.grading.joint_motion import joint_counts
+from service.grading.misconception import Repaired
+from service.grading.reading.table import IS_ANGLE
+from service.grading.samples import Samples
+from service.kinematics.chain import Table
+from service.kinematics.dh import Convention
+
+# Four figures are lost when rounded angles are multiplied out over a whole arm.
+TOLERANCE = 1e-2
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenTable:
+    """A student's table ``(rows, 4, samples)``, angles in radians, every cell with a value.
+
+    Its values are the sum of ``constants`` and ``motion``, the part of the joint variables.
+    ``reference`` is the reference's table where it has as many rows.
+    """
+
+    constants: Table
+    motion: Table
+    convention: Convention
+    reference: Table | None = None
+
+    @property
+    def values(self) -> Table:
+        """The table as it was handed in."""
+        return self.constants + self.motion
+
+    def subset(self, count: int) -> "WrittenTable":
+        """The same table at a subset of its samples."""
+        constants, motion = (
+            Samples.subset_of(cells, count) for cells in (self.constants, self.motion)
+        )
+        reference = None if self.reference is None else Samples.subset_of(self.reference, count)
+        return WrittenTable(constants, motion, self.convention, reference)
+
+    def changed(self, constants: Table, motion: Table | None = None) -> "WrittenTable":
+        """The same table with other constants, or with other joint variables too."""
+        moves = self.motion if motion is None else motion
+        return WrittenTable(constants, moves, self.convention, self.reference)
+
+
+RepairedTable = Repaired[WrittenTable]
+
+
+def written_table(
+    values: Table,
+    convention: Convention,
+    reference: Table | None,
+    joints: tuple[Joint, ...],
+    samples: Samples,
+) -> WrittenTable:
+    """The table with the part of the joint variables in each cell found out."""
+    cells = values.reshape(-1, values.shape[-1])
+    counts, _ = joint_counts(cells, joints, samples, np.tile(IS_ANGLE, len(values)))
+    motion = counts @ np.array([samples.values[joint.variable] for joint in joints])
+    motion = motion.reshape(values.shape)
+    same_size = reference is not None and len(reference) == len(values)
+    return WrittenTable(values - motion, motion, convention, reference if same_size else None)
+
+
+def other_convention(table: WrittenTable) -> Iterator[RepairedTable]:
+    """The table was set up by the rules of the other convention."""
+    names = {Convention.STANDARD: "standard (distal)", Convention.MODIFIED: "modified (proximal)"}
+    used = next(each for each in Convention if each is not table.convention)
+    asked = names[table.convention]
+    finding = Finding(
+        "other_convention",
+        f"This is a right table in the {names[used]} convention, but it was read in the {asked} "
+        f"one: look which link's a and α belong in row i.",
+        f"In the {asked} convention a and α move by one row.",
+    )
+    yield Repaired(replace(table, convention=used), finding)
+
+
+def degrees_as_radians(table: WrittenTable) -> Iterator[RepairedTable]:
+    """All angles were written in degrees, where radians are read."""
+    finding = Finding(
+        "degrees_as_radians",
+        "The angles were read in radians, but they fit in degrees: write the unit (90deg or 90°), "
+        "use pi, or hand the table in with the angle unit degrees.",
+    )
+    if np.abs(table.constants[:, IS_ANGLE]).max() > 2 * np.pi:
+        yield Repaired(_rescaled(table, np.pi / 180), finding)
+
+
+def radians_as_degrees(table: WrittenTable) -> Iterator[RepairedTable]:
+    """All angles were written in radians, where degrees are read."""
+    finding = Finding(
+        "radians_as_degrees",
+        "The angles were read in degrees, but they fit in radians: use pi, or hand the table in "
+        "with the angle unit radians.",
+    )
+    if np.abs(table.constants[:, IS_ANGLE]).max() <= np.radians(2 * np.pi):
+        yield Repaired(_rescaled(table, 180 / np.pi), finding)
+
+
+def _rescaled(table: WrittenTable, factor: float) -> WrittenTable:
+    constants = table.constants.copy()
+    constants[:, IS_ANGLE] *= factor
+    return table.changed(constants)
+
+
+# A student may hold one of these and make another slip, or hold two of them at once.
+MISCONCEPTIONS = (other_convention, degrees_as_radians, radians_as_degrees)

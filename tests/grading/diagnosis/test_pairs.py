@@ -1,0 +1,52 @@
+"""Each misconception and each check is listed in its file and has its pair of test cases."""
+
+import inspect
+from collections.abc import Iterator
+from importlib import import_module
+from pkgutil import iter_modules
+from types import ModuleType
+from typing import Any, get_args, get_origin, get_type_hints
+
+import pytest
+
+from service.grading import diagnosis
+from service.grading.judging.own_frames import written_table
+from service.grading.misconception import Hypothesis
+
+NAMES = [each.name for each in iter_modules(diagnosis.__path__)]
+FILES = [*(import_module(f"{diagnosis.__name__}.{name}") for name in NAMES), written_table]
+
+
+def listed(file: ModuleType) -> list[Any]:
+    """The misconceptions and checks that a file lists."""
+    return [*getattr(file, "MISCONCEPTIONS", ()), *getattr(file, "CHECKS", ())]
+
+
+def yields_hypotheses(function: Any) -> bool:
+    """Whether the function is annotated as a misconception."""
+    returned = get_type_hints(function).get("return")
+    [kind] = get_args(returned) if get_origin(returned) is Iterator else [None]
+    origin = get_origin(kind) or kind
+    return isinstance(origin, type) and issubclass(origin, Hypothesis)
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: file.__name__)
+def test_every_misconception_is_listed(file: ModuleType) -> None:
+    functions = inspect.getmembers(file, inspect.isfunction)
+    misconceptions = {
+        name
+        for name, function in functions
+        if function.__module__ == file.__name__
+        and not name.startswith("_")
+        and yields_hypotheses(function)
+    }
+    assert misconceptions <= {function.__name__ for function in listed(file)}
+
+
+@pytest.mark.parametrize(
+    "file", [file for file in FILES if listed(file)], ids=lambda file: file.__name__
+)
+def test_every_misconception_has_its_pair(file: ModuleType) -> None:
+    name = file.__name__.rpartition(".")[2]
+    tests = import_module(f"{__package__}.test_{'whole_table' if file is written_table else name}")
+    assert {pair.function for pair in tests.PAIRS} >= set(listed(file))

@@ -1,0 +1,65 @@
+"""Misconceptions about a rotation that is made of turns."""
+
+from functools import reduce
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from service.grading.diagnosis import rotation_steps
+from service.grading.diagnosis.matrix_case import MatrixCase
+from service.grading.diagnosis.rotation_steps import Step
+from service.kinematics.transforms import Numbers
+from tests.grading.diagnosis.example_chain import COUNT, wrong_matrix
+from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+
+ANGLES = np.random.default_rng(12).uniform(0.2, 1.4, (3, COUNT))
+
+
+def turn(axis: str, angles: Numbers) -> Numbers:
+    """The turns by ``angles`` about "x", "y" or "z", ``(COUNT, 3, 3)``."""
+    return np.asarray(Rotation.from_euler(axis, angles[:, None]).as_matrix())
+
+
+X, Y, Z = (turn(axis, angles) for axis, angles in zip("xyz", ANGLES, strict=True))
+# About the fixed x axis, the fixed y axis and the moving z axis: Y X Z.
+STEPS = [Step("X", X, fixed=True), Step("Y", Y, fixed=True), Step("Z", Z, fixed=False)]
+
+
+def wrong(*factors: Numbers) -> MatrixCase:
+    """The product of the factors where Y X Z would be right."""
+    return wrong_matrix(reduce(np.matmul, factors), Y @ X @ Z)
+
+
+def steps(_case: MatrixCase) -> list[Step]:
+    return STEPS
+
+
+PAIRS = [
+    Pair(
+        rotation_steps.fixed_for_moving,
+        wrong(X, Y, Z),
+        wrong(Y, Z, X),
+        "fixed_for_moving_axes",
+        steps,
+    ),
+    Pair(
+        rotation_steps.turned_back,
+        wrong(Y, turn("x", -ANGLES[0]), Z),
+        wrong(Y, turn("x", -2 * ANGLES[0]), Z),
+        "turn_sign",
+        steps,
+    ),
+    Pair(
+        rotation_steps.about_another_axis,
+        wrong(Y, turn("z", ANGLES[0]), Z),
+        wrong(Y, turn("z", ANGLES[1]), Z),
+        "turn_axis",
+        steps,
+    ),
+    Pair(rotation_steps.left_out, wrong(Y, Z), wrong(Z, Y), "missing_turn", steps),
+]
+
+
+@each_pair(PAIRS)
+def test_a_misconception(pair: Pair) -> None:
+    assert_explains_one_case_alone(pair)

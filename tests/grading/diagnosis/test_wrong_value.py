@@ -1,0 +1,68 @@
+"""Hypotheses that explain numbers, and hypotheses that would change nothing."""
+
+import numpy as np
+
+from service.expressions import Vocabulary, read
+from service.grading.diagnosis.wrong_value import WrongNumbers, WrongValue
+from service.grading.feedback import Finding
+from service.grading.misconception import Hypothesis, Repaired, Written
+from service.grading.samples import SAMPLES, Samples
+from service.kinematics.transforms import Numbers
+
+FINDING = Finding("code", "Hint.")
+ONES = np.ones(SAMPLES)
+
+
+def explains(
+    hypothesis: Hypothesis[Numbers], actual: float, expected: float, *, angle: bool = False
+) -> bool:
+    case = WrongValue(
+        expression=read(0, Vocabulary([])),
+        actual=actual * ONES,
+        expected=expected * ONES,
+        expected_text="",
+        samples=Samples({}),
+        scale=1.0,
+        angle=angle,
+    )
+    return list(case.explained_by([hypothesis])) == [hypothesis]
+
+
+def test_what_the_student_would_have_written() -> None:
+    written = Written(2 * ONES, FINDING)
+    assert explains(written, actual=2, expected=1)
+    assert not explains(written, actual=3, expected=1)
+    assert not explains(written, actual=2, expected=2)
+    assert explains(written, actual=2 + 2 * np.pi, expected=1, angle=True)
+
+
+def test_the_repaired_answer() -> None:
+    repaired = Repaired(2 * ONES, FINDING)
+    assert explains(repaired, actual=1, expected=2)
+    assert not explains(repaired, actual=1, expected=3)
+    assert not explains(repaired, actual=2, expected=2)
+
+
+def test_a_tolerance_of_its_own() -> None:
+    assert explains(Written(2 * ONES, FINDING, tolerance=0.2), actual=2.1, expected=1)
+    assert not explains(Written(2 * ONES, FINDING, tolerance=0.05), actual=2.1, expected=1)
+
+
+def test_many_numbers_at_once() -> None:
+    case = WrongNumbers(
+        actual=np.array([ONES, 2 * ONES]), expected=np.array([ONES, 3 * ONES]), scale=1.0
+    )
+    right, written = (Written(np.array([ONES, n * ONES]), FINDING) for n in (3, 2))
+    assert case.explained_by([right, written, right]) == [written]
+    assert case.explained_by([]) == []
+
+
+def test_some_entries_alone() -> None:
+    case = WrongNumbers(
+        actual=np.array([[ONES, 2 * ONES]]),
+        expected=np.array([[ONES, 3 * ONES]]),
+        scale=np.ones((1, 2)),
+    )
+    second = (slice(0, 1), slice(1, 2))
+    written = Written(np.array([[2 * ONES]]), FINDING, second)
+    assert case.explained_by([written]) == [written]
