@@ -1,6 +1,6 @@
 """Answer kind ``link_transforms``: the matrices A_1 … A_n that a table's rows stand for."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.entry import Entry
 from service.grading.reading.matrix import StudentMatrix, read_matrix
 from service.grading.reading.table import HandedInRow
-from service.grading.report import CellReport, Feedback, RowReport
+from service.grading.report import Feedback, RowReport
 from service.grading.samples import SAMPLES, Samples
 from service.kinematics.chain import links, products
 from service.kinematics.dh import link_transforms
@@ -82,9 +82,10 @@ def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> J
             part.points / len(labels),
             grading,
             work_budget=WORK_BUDGET / len(labels),
+            name=f"A{label}",
         )
-        rows.extend(_named(row, label) for row in judged.rows)
-        messages.extend(_placed(message, label) for message in judged.feedback)
+        rows.extend(judged.rows)
+        messages.extend(judged.feedback)
     return Judged(
         tuple(rows),
         tuple(messages),
@@ -141,19 +142,3 @@ def _wrong_shape(labels: tuple[str, ...]) -> Finding:
         f"with 4 rows of 4 entries."
     )
     return reading_error("wrong_shape", message)
-
-
-def _named(row: RowReport, link: str) -> RowReport:
-    label = f"A{link}.{row.label}"
-    cells = tuple(
-        CellReport(cell.label, cell.verdict, tuple(replace(m, row=label) for m in cell.feedback))
-        for cell in row.cells
-    )
-    messages = tuple(replace(message, row=label) for message in row.feedback)
-    return replace(row, label=label, cells=cells, feedback=messages)
-
-
-def _placed(message: Feedback, link: str) -> Feedback:
-    """A message on a whole matrix, with the matrix it is about."""
-    row = f"A{link}.{message.row}" if message.row else f"A{link}"
-    return replace(message, row=row, message=f"A{link}: {message.message}")

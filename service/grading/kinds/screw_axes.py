@@ -100,7 +100,7 @@ def _as_rows(answer: object, count: int) -> object:
 
 
 def _count(part: ScrewAxesSpec, grading: Grading) -> int:
-    """How many axes are asked for."""
+    """The number of axes asked for."""
     return len(part.expected or grading.exercise.joints)
 
 
@@ -136,7 +136,7 @@ def _explained(
     part: ScrewAxesSpec,
     grading: Grading,
 ) -> dict[int, Finding]:
-    """What explains the whole of a wrong axis, by its place."""
+    """The finding that explains the whole of a wrong axis, by its place."""
     explained: dict[int, Finding] = {}
     for i in np.flatnonzero(wrong.any(axis=1)).tolist():
         elsewhere = None if expected.elsewhere is None else expected.elsewhere[i]

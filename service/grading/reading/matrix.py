@@ -35,7 +35,7 @@ class StudentMatrix:
 
     @property
     def rounded(self) -> list[list[bool]]:
-        """Which entries may be off by what rounding does."""
+        """Which entries may have been rounded."""
         return [[entry.may_be_rounded for entry in row] for row in self.entries]
 
     def values_at(self, samples: Samples) -> Numbers:
@@ -46,8 +46,8 @@ class StudentMatrix:
 def read_matrix(answer: object, quantities: Quantities, reader: Reader) -> StudentMatrix:
     """The matrix in a nested list or a pasted text, with one entry for each quantity.
 
-    Rows that were left off at the end are missing; a row of the wrong length is unreadable, because
-    nobody can say which entry is which. Raises UnreadableAnswerError where there are no rows at
+    Rows that were left off at the end are missing. A row of the wrong length is unreadable: nobody
+    can say which entry is which. Raises UnreadableAnswerError where there are no rows at
     all, or too many.
     """
     entries = _entries(answer, quantities, reader)

@@ -9,7 +9,7 @@ from service.grids import Cell, GridError
 
 
 def from_grid_error(error: GridError) -> Finding:
-    """Why a pasted text is no table or matrix; its codes are those of an answer of wrong shape."""
+    """The finding that a pasted text is no table or matrix."""
     code = "wrong_shape" if error.code == "no_grid" else error.code
     return Finding(code, error.message, span=error.span, reading=True)
 

@@ -24,7 +24,7 @@ ColumnOrder = tuple[int | None, Header]
 class PastedRow:
     """The cells of one row in the order a, α, d, θ.
 
-    Where nobody can say which is which there is a ``problem``, and each cell is the whole row.
+    A row of the wrong length has a ``problem``, and each of its cells is the whole row.
     """
 
     cells: tuple[Cell, ...]
@@ -94,7 +94,7 @@ def table_entry(cell: Cell, column: str, header: Header, reader: Reader) -> Entr
 
 
 def _found_headers(row: Sequence[Cell], reader: Reader) -> list[Header | None] | None:
-    """What each cell of the first row says as a header; None where the row holds values.
+    """The header in each cell of the first row; None where the row holds values.
 
     A name such as ``a`` may be a header or a declared length: the row's other cells decide.
     """

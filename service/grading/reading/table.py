@@ -1,4 +1,4 @@
-"""Reading a handed-in DH table, and finding out which of its rows is which."""
+"""A DH table as handed in, JSON or pasted text -> its rows and their numbers."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -55,7 +55,7 @@ class HandedInRow:
 
     @property
     def rounded(self) -> list[bool]:
-        """Which cells may be off by what rounding does."""
+        """Which cells may have been rounded."""
         return [entry.may_be_rounded for entry in self.entries]
 
     def values_at(self, samples: Samples) -> Table:
@@ -80,7 +80,7 @@ class HandedInTable:
 def read_table(answer: object, reader: Reader) -> HandedInTable:
     """The table in a JSON answer ``{"rows": [{"a", "alpha", "d", "theta"} …], "convention"?}``.
 
-    It may have other shapes that mean the same (``table_shapes``), and it, or its rows, may be
+    It may have other shapes that mean the same (``table_json``), and it, or its rows, may be
     pasted text.
 
     Raises UnreadableAnswerError where the answer has no rows at all; a row or cell that cannot be
@@ -163,7 +163,7 @@ def _entries(row: object, reader: Reader) -> tuple[Entry, ...]:
         return (MISSING,) * len(COLUMNS)
     if not isinstance(row, Mapping):
         return (unreadable(_NO_ROW),) * len(COLUMNS)
-    # A value under a name that is not understood must not pass for one that is not there.
+    # A value under an unknown name must not pass for a missing one.
     stray = not row.keys() <= QUANTITIES.keys()
     return tuple(
         unreadable(_NO_ROW)
