@@ -9,7 +9,7 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading.grade import KINDS
-from tests.grading.submitting import full_marks, handed_in, part
+from tests.grading.support.submitting import full_marks, handed_in, part
 
 PAGE = (Path(__file__).parents[2] / "docs" / "answer-kinds.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```json (\S+)\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)

@@ -8,7 +8,7 @@ import pytest
 from service.expressions import LIMITS, ExpressionError, read
 from tests.expressions.corpus_files import ROBOT
 
-PAGE = (Path(__file__).parent.parent / "docs" / "expressions.md").read_text("utf-8")
+PAGE = (Path(__file__).parents[2] / "docs" / "expressions.md").read_text("utf-8")
 _COLUMN = re.compile(r"(?<!\\)\|")
 
 

@@ -9,7 +9,7 @@ import pytest
 from service.catalogue import Exercise
 from service.grading.reading.column_headers import read_header
 from service.grids import GRID_LIMITS, GridError, read_grid
-from tests.grading.submitting import full_marks, handed_in, part
+from tests.grading.support.submitting import full_marks, handed_in, part
 
 PAGE = (Path(__file__).parents[2] / "docs" / "pasting.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(

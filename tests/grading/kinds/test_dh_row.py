@@ -1,16 +1,15 @@
 """The row of a transform, or that it has none."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import pytest
 
 from service.catalogue import Exercise
 from service.grading import Verdict
-from tests.grading.exercise_texts import graded, one_part, told
-from tests.grading.submitting import full_marks, handed_in, not_correct, part
+from tests.grading.support.exercise_texts import Make, all_codes, graded, one_part
+from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
 
-Make = Callable[[str], Exercise]
 Cells = dict[str, Any]
 
 FIRST: Cells = {"a": "l", "alpha": "-90deg", "d": "h", "theta": "phi"}
@@ -87,7 +86,7 @@ def test_a_wrong_cell_costs_itself(
     report = part(handed_in(conditions, {"fourth": FOURTH | cells}), "fourth")
     assert {cell for _, cell in not_correct(report)} == blamed
     assert report.points == pytest.approx(4 - len(blamed))
-    assert codes <= told(report) <= codes | {"sign", "quarter_turn"}
+    assert codes <= all_codes(report) <= codes | {"sign", "quarter_turn"}
 
 
 @pytest.mark.parametrize(
@@ -116,7 +115,7 @@ def test_none_with_a_row_contradicts_itself(
 ) -> None:
     report = part(handed_in(conditions, {part_id: answer}), part_id)
     assert (report.verdict, report.points) == (Verdict.UNREADABLE, 0)
-    assert told(report) == {"contradiction"}
+    assert all_codes(report) == {"contradiction"}
 
 
 @pytest.mark.parametrize(
@@ -124,7 +123,7 @@ def test_none_with_a_row_contradicts_itself(
 )
 def test_text_that_is_no_row_is_told_what_a_row_is(text: str, conditions: Exercise) -> None:
     report = part(handed_in(conditions, {"fourth": text}), "fourth")
-    assert (report.verdict, told(report)) == (Verdict.UNREADABLE, {"wrong_shape"})
+    assert (report.verdict, all_codes(report)) == (Verdict.UNREADABLE, {"wrong_shape"})
     [message] = report.feedback
     assert "one row" in message.message
     assert "none" in message.message
@@ -148,7 +147,7 @@ def test_the_modified_convention(make_exercise: Make) -> None:
     exercise = make_exercise(MODIFIED)
     row = {"a": "l", "alpha": "-pi/2", "d": "k", "theta": "phi"}
     assert full_marks(graded(exercise, row))
-    assert told(graded(exercise, "none")) == {"dh_row_exists"}
+    assert all_codes(graded(exercise, "none")) == {"dh_row_exists"}
 
 
 def test_the_row_of_the_other_convention(make_exercise: Make) -> None:
@@ -162,4 +161,4 @@ def test_the_row_of_the_other_convention(make_exercise: Make) -> None:
     )
     assert full_marks(graded(exercise, {"a": "l", "alpha": 0, "d": 0, "theta": "pi/2"}))
     inverse = {"a": "-l", "alpha": 0, "d": 0, "theta": "-pi/2"}
-    assert told(graded(exercise, inverse)) >= {"sign"}
+    assert all_codes(graded(exercise, inverse)) >= {"sign"}

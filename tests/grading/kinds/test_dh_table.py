@@ -7,8 +7,8 @@ import pytest
 from service.catalogue import Exercise
 from service.grading import PartReport
 from service.grading.reading.entry import REPAIRED
-from tests.grading.robots import EXACT, STANFORD
-from tests.grading.submitting import graded_table, handed_in, not_correct, part, table
+from tests.grading.support.robots import EXACT, STANFORD
+from tests.grading.support.submitting import graded_table, handed_in, not_correct, part, table
 
 Rows = list[tuple[str, str, str, str]]
 
@@ -130,8 +130,8 @@ def test_a_slip_of_the_whole_table_and_its_cells_agree(catalogue: Mapping[str, E
     report = graded_table(catalogue["stanford-arm"], SIGNS_TURNED)
     assert codes(report) == ["column_sign"]
     assert set(not_correct(report)) == {(row, "alpha") for row in "1245"}
-    told = [m.code for row in report.rows for cell in row.cells for m in cell.feedback]
-    assert told == ["column_sign"] * 4
+    found = [m.code for row in report.rows for cell in row.cells for m in cell.feedback]
+    assert found == ["column_sign"] * 4
 
 
 def test_two_half_turns_are_not_taken_for_a_slip_of_the_whole_table(
@@ -149,8 +149,8 @@ def test_repairs_are_looked_for_in_so_many_cells_and_no_more(
 ) -> None:
     rows = [[f"(tehta1 + {i}.{j}" for j in range(4)] for i in range(6)]
     report = part(handed_in(catalogue["stanford-arm"], {"table": table(rows)}), "table")
-    told = [m.message for row in report.rows for cell in row.cells for m in cell.feedback]
-    helped = ["Did you mean (theta1 + " in message for message in told]
+    messages = [m.message for row in report.rows for cell in row.cells for m in cell.feedback]
+    helped = ["Did you mean (theta1 + " in message for message in messages]
     assert helped == [True] * REPAIRED + [False] * (24 - REPAIRED)
 
 

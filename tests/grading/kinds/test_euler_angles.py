@@ -1,6 +1,6 @@
 """Three angles: every triple of the rotation is right; where it is wrong, few are blamed."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -13,10 +13,9 @@ from service.catalogue import Exercise
 from service.grading import FeedbackLevel, Verdict
 from service.grading.kinds.euler_angles import nearest_triple
 from service.kinematics.rotations import PROPER, SEQUENCES
-from tests.grading.exercise_texts import SPATIAL_RRR, graded, one_part, told
-from tests.grading.submitting import full_marks, handed_in, not_correct, part
+from tests.grading.support.exercise_texts import SPATIAL_RRR, Make, all_codes, graded, one_part
+from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
 
-Make = Callable[[str], Exercise]
 RPY = one_part("euler_angles", 'sequence = "RPY"', SPATIAL_RRR)
 
 
@@ -76,7 +75,7 @@ def test_the_erratum_in_the_shipped_exercise(catalogue: Mapping[str, Exercise]) 
     printed = handed_in(exercise, {"rpy": ["theta1", "theta2 + theta3", "90deg"]})
     assert full_marks(part(right, "rpy"))
     assert not_correct(part(printed, "rpy")) == {("2", "1"): Verdict.INCORRECT}
-    assert told(part(printed, "rpy")) == {"sign"}
+    assert all_codes(part(printed, "rpy")) == {"sign"}
 
 
 def test_a_hint_does_not_give_the_correction_away(spatial: Exercise) -> None:
@@ -109,7 +108,7 @@ def test_a_slip_costs_the_angles_that_it_spoils(name: str, spatial: Exercise) ->
     assert {row for row, _ in not_correct(report)} == blamed
     assert report.points == pytest.approx(6 - 2 * len(blamed))
     # A note of the reader's on the order of the arguments says no more than what is to be read.
-    assert told(report) - {"atan2_order"} == codes
+    assert all_codes(report) - {"atan2_order"} == codes
 
 
 def test_an_unreadable_angle_costs_itself_only(spatial: Exercise) -> None:
@@ -121,7 +120,7 @@ def test_an_unreadable_angle_costs_itself_only(spatial: Exercise) -> None:
 def test_another_shape_cannot_be_read(answer: object, spatial: Exercise) -> None:
     report = graded(spatial, answer)
     assert report.points == 0
-    assert told(report) <= {"wrong_shape", "wrong_type", "missing"}
+    assert all_codes(report) <= {"wrong_shape", "wrong_type", "missing"}
     assert report.verdict in (Verdict.UNREADABLE, Verdict.PARTIAL)
 
 
@@ -135,7 +134,7 @@ SINGULAR = one_part("euler_angles", 'sequence = "ZYZ"\nexpected = ["phi", "0", "
 def test_in_a_singular_configuration_the_sum_counts(answer: object, make_exercise: Make) -> None:
     report = graded(make_exercise(SINGULAR), answer)
     assert full_marks(report)
-    assert told(report) == {"singular_orientation"}
+    assert all_codes(report) == {"singular_orientation"}
 
 
 @pytest.mark.parametrize("answer", [["phi", "0", "0"], ["phi", "0", "-psi"], ["phi", "0.1", "psi"]])

@@ -1,116 +1,29 @@
-"""Link transforms under free frames, and marks that follow from an earlier answer."""
+"""Link transforms, in the frames of the reference and in those of the student's table."""
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable
 
 import pytest
 
 from service.catalogue import Exercise
-from service.grading import PartReport, Submission, Verdict, grade
-
-SCARA = """
-title = "SCARA"
-source = "SHV, pp. 91-93"
-statement = "As in the book."
-
-[robot]
-structure = "RRPR"
-convention = "standard"
-joints = ["theta1", "theta2", "d3", "theta4"]
-table = [
-    ["a1", "0", "0", "theta1"],
-    ["a2", "180deg", "0", "theta2"],
-    ["0", "0", "d3", "0"],
-    ["0", "0", "d4", "theta4"],
-]
-
-[symbols]
-a1 = { kind = "length", description = "link 1" }
-a2 = { kind = "length", description = "link 2" }
-d4 = { kind = "length", description = "tool" }
-
-[[parts]]
-id = "table"
-kind = "dh_table"
-title = "Table"
-points = 8
-convention = "standard"
-frames = "free"
-
-[[parts]]
-id = "links"
-kind = "link_transforms"
-title = "Link transforms"
-points = 8
-convention = "standard"
-frames = "free"
-follows = "table"
-
-[[parts]]
-id = "pose"
-kind = "transform"
-title = "Pose"
-points = 8
-follows = "links"
-
-[[parts]]
-id = "position"
-kind = "position"
-title = "Position"
-points = 3
-follows = "pose"
-"""
-
-Row = tuple[str, str, str, str]
-TABLE: list[Row] = [
-    ("a1", "0", "0", "q1"),
-    ("a2", "pi", "0", "q2"),
-    ("0", "0", "d3", "0"),
-    ("0", "0", "d4", "q4"),
-]
-# The printed form of A_i (SHV, eq. 3.10), filled in by hand.
-A1 = [["c1", "-s1", "0", "a1*c1"], ["s1", "c1", "0", "a1*s1"], ["0", "0", "1", "0"], list("0001")]
-A2 = [["c2", "s2", "0", "a2*c2"], ["s2", "-c2", "0", "a2*s2"], ["0", "0", "-1", "0"], list("0001")]
-A3 = [list("1000"), list("0100"), ["0", "0", "1", "d3"], list("0001")]
-A4 = [["c4", "-s4", "0", "0"], ["s4", "c4", "0", "0"], ["0", "0", "1", "d4"], list("0001")]
-LINKS = [A1, A2, A3, A4]
-IDENTITY = [list("1000"), list("0100"), list("0010"), list("0001")]
-
-
-def a2_with(length: str) -> list[list[str]]:
-    return [[cell.replace("a2", length) for cell in row] for row in A2]
-
-
-def pose_with(length: str) -> list[list[str]]:
-    turn = "q1 + q2 - q4"
-    return [
-        [f"cos({turn})", f"sin({turn})", "0", f"a1*c1 + {length}*c12"],
-        [f"sin({turn})", f"-cos({turn})", "0", f"a1*s1 + {length}*s12"],
-        ["0", "0", "-1", "-d3 - d4"],
-        list("0001"),
-    ]
-
-
-def table(rows: Sequence[Row]) -> dict[str, Any]:
-    return {"rows": [dict(zip(("a", "alpha", "d", "theta"), row, strict=True)) for row in rows]}
+from service.grading import Verdict
+from tests.grading.support.scara import (
+    A1,
+    A3,
+    A4,
+    IDENTITY,
+    LINKS,
+    SCARA,
+    TABLE,
+    a2_with,
+    graded,
+    table,
+    wrong_cells,
+)
 
 
 @pytest.fixture
 def scara(make_exercise: Callable[[str], Exercise]) -> Exercise:
     return make_exercise(SCARA)
-
-
-def graded(exercise: Exercise, **answers: object) -> dict[str, PartReport]:
-    return {part.part: part for part in grade(exercise, Submission(answers)).parts}
-
-
-def wrong_cells(part: PartReport) -> set[tuple[str, str]]:
-    return {
-        (row.label, cell.label)
-        for row in part.rows
-        for cell in row.cells
-        if cell.verdict is not Verdict.CORRECT
-    }
 
 
 def test_the_printed_link_transforms_are_right(scara: Exercise) -> None:
@@ -159,78 +72,3 @@ def test_what_is_no_list_of_matrices_is_unreadable(scara: Exercise, answer: obje
     part = graded(scara, links=answer)["links"]
     assert part.verdict is Verdict.UNREADABLE
     assert part.points == 0
-
-
-def test_matrices_that_follow_from_a_wrong_table_earn_their_points(scara: Exercise) -> None:
-    wrong = table([TABLE[0], ("a1", "pi", "0", "q2"), *TABLE[2:]])
-    links = [A1, a2_with("a1"), A3, A4]
-    position = ["a1*c1 + a1*c12", "a1*s1 + a1*s12", "-d3 - d4"]
-    parts = graded(scara, table=wrong, links=links, pose=pose_with("a1"), position=position)
-    assert parts["table"].points == 7.5
-    for name in ("links", "pose", "position"):
-        assert parts[name].points == parts[name].max_points, name
-        assert parts[name].follow_through, name
-        assert "follow_through" in [message.code for message in parts[name].feedback]
-
-
-def test_what_follows_may_skip_a_part_without_answer(scara: Exercise) -> None:
-    wrong = table([TABLE[0], ("a1", "pi", "0", "q2"), *TABLE[2:]])
-    parts = graded(scara, table=wrong, pose=pose_with("a1"))
-    assert parts["pose"].points == 8
-    assert parts["pose"].follow_through
-
-
-def test_what_is_right_does_not_follow(scara: Exercise) -> None:
-    wrong = table([TABLE[0], ("a1", "pi", "0", "q2"), *TABLE[2:]])
-    parts = graded(scara, table=wrong, links=LINKS, pose=pose_with("a2"))
-    assert [parts[name].points for name in ("links", "pose")] == [8, 8]
-    assert not any(part.follow_through for part in parts.values())
-
-
-def test_a_right_table_does_not_make_a_wrong_pose_right(scara: Exercise) -> None:
-    parts = graded(scara, table=table(TABLE), pose=pose_with("a1"))
-    assert parts["pose"].points == 7
-    assert not parts["pose"].follow_through
-
-
-def test_a_trivial_table_buys_nothing(scara: Exercise) -> None:
-    zero = table([("0", "0", "0", "0")] * 4)
-    parts = graded(scara, table=zero, links=[IDENTITY] * 4, pose=IDENTITY)
-    assert [parts[name].points for name in ("table", "links", "pose")] == [0, 0, 0]
-    assert not any(part.follow_through for part in parts.values())
-
-
-def test_a_poor_table_does_not_carry(scara: Exercise) -> None:
-    """Only the joint variables are right; with all else 0 the matrices are too easy."""
-    poor = table(
-        [("0", "1", "1", "q1"), ("0", "1", "1", "q2"), ("1", "1", "d3", "1"), ("1", "1", "1", "q4")]
-    )
-    parts = graded(scara, table=poor, pose=IDENTITY)
-    assert parts["table"].points < 4
-    assert not parts["pose"].follow_through
-
-
-def test_a_variable_without_effect_buys_nothing(scara: Exercise) -> None:
-    """0·q is no motion, whatever letters it holds."""
-    idle = "0*(q1 + q2 + d3 + q4)"
-    still = [[f"1 + {idle}", "0", "0", "0"], *IDENTITY[1:]]
-    parts = graded(scara, table=table([("0", "0", "0", idle)] * 4), links=[still] * 4, pose=still)
-    assert [parts[name].points for name in ("table", "links", "pose")] == [0, 0, 0]
-
-
-def test_a_chain_that_has_lost_a_freedom_does_not_carry(scara: Exercise) -> None:
-    """All twists and lengths ignored: one line, four joints, and a pose that anybody can write."""
-    bare = table(
-        [("0", "0", "0", "q1"), ("0", "0", "0", "q2"), ("0", "0", "d3", "0"), ("0", "0", "0", "q4")]
-    )
-    turn = "q1 + q2 + q4"
-    pose = [
-        [f"cos({turn})", f"-sin({turn})", "0", "0"],
-        [f"sin({turn})", f"cos({turn})", "0", "0"],
-        ["0", "0", "1", "d3"],
-        list("0001"),
-    ]
-    parts = graded(scara, table=bare, pose=pose)
-    assert parts["table"].points >= 4
-    assert not parts["pose"].follow_through
-    assert parts["pose"].points <= 4

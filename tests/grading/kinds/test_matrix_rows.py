@@ -6,8 +6,8 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import Verdict
-from tests.grading.robots import PLANAR_RRR
-from tests.grading.submitting import cell, codes, full_marks, graded_pose, not_correct, row
+from tests.grading.support.robots import PLANAR_RRR
+from tests.grading.support.submitting import cell, codes, full_marks, graded_pose, not_correct, row
 
 POSE = [
     ["c123", "-s123", "0", "l1 c1 + l2 c12 + l3 c123"],

@@ -1,6 +1,6 @@
 """Rotation matrices: of turns about fixed and moving axes, of a robot, and of their own entries."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import pytest
@@ -8,10 +8,9 @@ import sympy as sp
 
 from service.catalogue import Exercise
 from service.grading import Verdict
-from tests.grading.exercise_texts import SPATIAL_RRR, graded, one_part, told
-from tests.grading.submitting import full_marks, handed_in, not_correct, part
+from tests.grading.support.exercise_texts import SPATIAL_RRR, Make, all_codes, graded, one_part
+from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
 
-Make = Callable[[str], Exercise]
 phi, theta, psi = sp.symbols("phi theta psi")
 
 
@@ -42,7 +41,7 @@ def test_the_fundamental_rotations(axis: str, catalogue: Mapping[str, Exercise])
         handed_in(catalogue["fundamental-rotations"], {part_id: entries(turn(axis, -phi))}), part_id
     )
     assert back.verdict is Verdict.PARTIAL
-    assert told(back) == {"turn_sign"}
+    assert all_codes(back) == {"turn_sign"}
 
 
 @pytest.mark.parametrize("part_id", COMPOSITES)
@@ -70,7 +69,7 @@ def test_what_is_said_of_another_composite(
     report = part(handed_in(catalogue["composite-rotations"], answers), part_id)
     [message] = report.feedback
     assert (message.code, said in message.message) == (code, True)
-    assert told(report) == {code}
+    assert all_codes(report) == {code}
 
 
 def test_a_slip_in_one_entry_is_told_there(catalogue: Mapping[str, Exercise]) -> None:
@@ -78,7 +77,7 @@ def test_a_slip_in_one_entry_is_told_there(catalogue: Mapping[str, Exercise]) ->
     matrix[2][0] = f"-({matrix[2][0]})"
     report = part(handed_in(catalogue["composite-rotations"], {"fixed": matrix}), "fixed")
     assert not_correct(report) == {("3", "1"): Verdict.INCORRECT}
-    assert "sign" in told(report)
+    assert "sign" in all_codes(report)
 
 
 # Robotic Fundamentals (UMFM4X-15-M), Forward Kinematics, Example 3.
@@ -89,7 +88,7 @@ def test_the_rotation_of_a_robot(make_exercise: Make) -> None:
     exercise = make_exercise(one_part("rotation", "", SPATIAL_RRR))
     assert full_marks(graded(exercise, SPATIAL))
     transposed = [list(column) for column in zip(*SPATIAL, strict=True)]
-    assert told(graded(exercise, transposed)) == {"transposed_rotation"}
+    assert all_codes(graded(exercise, transposed)) == {"transposed_rotation"}
 
 
 def test_the_rotation_between_two_frames_of_a_robot(make_exercise: Make) -> None:

@@ -1,16 +1,15 @@
 """Screw axes: space and body, sliding joints, signs, and what a row is worth."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import pytest
 
 from service.catalogue import Exercise
 from service.grading import Verdict
-from tests.grading.exercise_texts import SPATIAL_RRR, graded, one_part, told
-from tests.grading.submitting import full_marks, handed_in, not_correct, part
+from tests.grading.support.exercise_texts import SPATIAL_RRR, Make, all_codes, graded, one_part
+from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
 
-Make = Callable[[str], Exercise]
 Screws = list[list[Any]]
 
 SPACE: Screws = [[0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 0, 0], [0, 0, 1, 0, "-L1", 0]]
@@ -97,7 +96,7 @@ def test_a_missing_joint_and_a_short_row(rpr: Exercise) -> None:
 def test_another_shape_cannot_be_read(answer: object, rpr: Exercise) -> None:
     report = part(handed_in(rpr, {"space-screws": answer}), "space-screws")
     assert (report.verdict, report.points) == (Verdict.UNREADABLE, 0)
-    assert told(report) == {"wrong_shape"}
+    assert all_codes(report) == {"wrong_shape"}
 
 
 FREE = one_part(
@@ -110,10 +109,10 @@ def test_where_directions_are_free_an_axis_may_be_reversed(make_exercise: Make) 
     exercise = make_exercise(FREE)
     report = graded(exercise, [[0, 0, -1, 0, "l", 0]])
     assert full_marks(report)
-    assert told(report) == {"own_direction"}
+    assert all_codes(report) == {"own_direction"}
     assert graded(exercise, [[0, 0, -1, 0, "-l", 0]]).verdict is Verdict.PARTIAL
     given = make_exercise(FREE.replace('directions = "free"\n', ""))
-    assert told(graded(given, [[0, 0, -1, 0, "l", 0]])) == {"axis_reversed"}
+    assert all_codes(graded(given, [[0, 0, -1, 0, "l", 0]])) == {"axis_reversed"}
 
 
 def test_one_axis_needs_no_list_around_it(make_exercise: Make) -> None:

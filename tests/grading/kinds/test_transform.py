@@ -1,6 +1,6 @@
 """Transforms other than the pose of the tool: given, inverse, at home, and by exponentials."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import pytest
@@ -8,10 +8,8 @@ import sympy as sp
 
 from service.catalogue import Exercise
 from service.grading import Verdict
-from tests.grading.exercise_texts import SPATIAL_RRR, graded, one_part, told
-from tests.grading.submitting import full_marks, handed_in, not_correct, part
-
-Make = Callable[[str], Exercise]
+from tests.grading.support.exercise_texts import SPATIAL_RRR, Make, all_codes, graded, one_part
+from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
 
 # robots.md, "Planar RPR by product of exponentials".
 RPR = [
@@ -72,7 +70,7 @@ def test_the_product_by_hand(rpr: Exercise) -> None:
 )
 def test_another_product_is_named(matrix: Any, code: str, rpr: Exercise) -> None:
     report = part(handed_in(rpr, {"pose": entries(matrix)}), "pose")
-    assert told(report) == {code}
+    assert all_codes(report) == {code}
     assert report.verdict is Verdict.PARTIAL
 
 
@@ -95,7 +93,7 @@ def test_a_transform_that_the_exercise_gives(catalogue: Mapping[str, Exercise]) 
         ["0", "0", "0", "1"],
     ]
     report = part(handed_in(exercise, {"about-z": not_inverted}), "about-z")
-    assert told(report) == {"inverse_transform"}
+    assert all_codes(report) == {"inverse_transform"}
 
 
 def test_the_inverse_of_a_robots_pose(make_exercise: Make) -> None:
@@ -110,6 +108,6 @@ def test_the_inverse_of_a_robots_pose(make_exercise: Make) -> None:
 def test_a_product_that_no_misconception_explains_is_told_entry_by_entry(rpr: Exercise) -> None:
     report = part(handed_in(rpr, {"pose": entries(E1 * E2 * about(three, l2) * M)}), "pose")
     assert set(not_correct(report)) == {("1", "4"), ("2", "4")}
-    assert told(report).isdisjoint(
+    assert all_codes(report).isdisjoint(
         {"home_on_wrong_side", "missing_home", "reversed_product", "moment_sign"}
     )

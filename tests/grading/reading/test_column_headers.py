@@ -1,9 +1,8 @@
-"""A corpus of header spellings, and of row labels."""
+"""A corpus of header spellings."""
 
 import pytest
 
 from service.grading.reading.column_headers import Header, read_header
-from service.grading.reading.row_labels import LAST, label_place
 
 SPELLINGS = {
     "a": [
@@ -121,19 +120,3 @@ def test_units_of_lengths(text: str, column: str, metres: float) -> None:
 )  # fmt: skip
 def test_what_is_no_header(text: str) -> None:
     assert read_header(text) is None
-
-
-@pytest.mark.parametrize(
-    ("text", "place"),
-    [
-        ("1", 1), ("12", 12), ("1.", 1), ("Link 1", 1), ("link1", 1), ("J3", 3), ("joint 3", 3),
-        ("{2}", 2), ("$2$", 2), ("A_2", 2), ("L_{2}", 2), ("0→1", 1), ("2 - 3", 3), ("0 -> 1", 1),
-        ("1 to 2", 2), ("①", 1),
-        ("e", LAST), ("E", LAST), ("ee", LAST), ("tool", LAST), ("TCP", LAST),
-        ("End effector", LAST), ("end-effector", LAST), ("n+1", LAST), ("$e$", LAST),
-        ("", None), ("arm", None), ("1→3", None), ("q1", None), ("-1", None), ("1" * 40, None),
-        ("100", None), ("pi", None), ("0.5", None), ("\ud800", None),
-    ],
-)  # fmt: skip
-def test_row_labels(text: str, place: int | None) -> None:
-    assert label_place(text) == place

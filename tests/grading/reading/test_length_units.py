@@ -10,7 +10,7 @@ from service.grading.reading.entry import AngleUnit, Reader
 from service.grading.reading.pasted import length_unit
 from service.grading.reading.table import HandedInTable, UnreadableTableError, read_table
 from service.grading.samples import draw
-from tests.grading.submitting import full_marks, handed_in, part
+from tests.grading.support.submitting import full_marks, handed_in, part
 
 ARM = """
 title = "An arm"

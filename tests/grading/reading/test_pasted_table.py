@@ -7,8 +7,8 @@ import pytest
 from service.catalogue import Exercise
 from service.grading import PartReport, Severity, Verdict
 from tests.expressions.grids.writers import FORMATS, TABLES
-from tests.grading.robots import ROBOTS, RRRP, Robot, in_pi, with_unit
-from tests.grading.submitting import cell, codes, full_marks, handed_in, not_correct, part
+from tests.grading.support.robots import ROBOTS, RRRP, Robot, in_pi, with_unit
+from tests.grading.support.submitting import cell, codes, full_marks, handed_in, not_correct, part
 
 HEADERS = ["i", "a", "alpha", "d", "theta"]
 SPELLINGS: dict[str, tuple[Callable[[int], str], list[str]]] = {
@@ -163,7 +163,7 @@ def test_a_column_of_no_dh_table_is_left_aside(
 
 
 @pytest.mark.parametrize(
-    ("labels", "told"),
+    ("labels", "notes"),
     [
         (["1", "2", "3", "4"], []),
         (["Link 1", "Link 2", "Link 3", "Link 4"], []),
@@ -173,12 +173,12 @@ def test_a_column_of_no_dh_table_is_left_aside(
         (["arm", "2", "3", "4"], ["row_labels"]),
     ],
 )
-def test_labels(labels: list[str], told: list[str], catalogue: Mapping[str, Exercise]) -> None:
+def test_labels(labels: list[str], notes: list[str], catalogue: Mapping[str, Exercise]) -> None:
     lines = [f"{label}, {line}" for label, line in zip(labels, RRRP_LINES, strict=True)]
     text = "\n".join(["joint, a, alpha, d, theta", *lines])
     report = pasted(catalogue[RRRP.exercise], text)
     assert full_marks(report)
-    assert infos(report) == told
+    assert infos(report) == notes
 
 
 def test_indices_hint_at_a_convention_and_decide_nothing(

@@ -6,8 +6,15 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import PartReport, Severity, Verdict
-from tests.grading.robots import EXACT, PLANAR_RRR, ROBOTS, STANFORD, Robot, Row
-from tests.grading.submitting import full_marks, graded_table, handed_in, not_correct, part, table
+from tests.grading.support.robots import EXACT, PLANAR_RRR, ROBOTS, STANFORD, Robot, Row
+from tests.grading.support.submitting import (
+    full_marks,
+    graded_table,
+    handed_in,
+    not_correct,
+    part,
+    table,
+)
 
 NOTHING: Row = ("0", "0", "0", "0")
 

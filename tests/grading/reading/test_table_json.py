@@ -6,7 +6,7 @@ import pytest
 
 from service.grading.reading import table_json
 from service.grading.reading.table_json import canonical_table
-from tests.grading.submitting import table
+from tests.grading.support.submitting import table
 
 # Craig, Introduction to Robotics, the planar two-link arm in the standard convention.
 ROWS: list[list[Any]] = [["l1", "0", "0", "q1"], ["l2", 0, "0", "q2"]]

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 from service.catalogue import Exercise
 from service.grading import PartReport
-from tests.grading.robots import AngleUnit
-from tests.grading.submitting import handed_in, part
+from tests.grading.support.robots import AngleUnit
+from tests.grading.support.submitting import handed_in, part
 
 Make = Callable[[str], Exercise]
 
@@ -50,7 +50,7 @@ def graded(exercise: Exercise, answer: object, angle_unit: AngleUnit = "radians"
     return part(handed_in(exercise, {"it": answer}, angle_unit), "it")
 
 
-def told(report: PartReport) -> set[str]:
+def all_codes(report: PartReport) -> set[str]:
     """All codes in the report, wherever they stand."""
     messages = [*report.feedback]
     for row in report.rows:

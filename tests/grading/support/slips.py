@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from service.grading import Verdict
-from tests.grading.robots import COLUMNS, EXACT, AngleUnit, Robot
+from tests.grading.support.robots import COLUMNS, EXACT, AngleUnit, Robot
 
 A, ALPHA, D, THETA = range(4)
 
@@ -29,9 +29,9 @@ class Slip:
 
 def slips(robot: Robot, i: int, j: int) -> Iterator[Slip]:
     """All slips in the cell of row ``i`` and column ``j``."""
-    own = robot.joints[i] if i < len(robot.joints) else None
+    variable = robot.joints[i] if i < len(robot.joints) else None
     cell = EXACT.rows(robot)[i][j]
-    for kind, text, code in _of_cell(robot, own, j, cell):
+    for kind, text, code in _of_cell(robot, variable, j, cell):
         yield Slip(robot, i, j, kind, text, code)
     unread = f"({cell}"
     yield Slip(robot, i, j, "unreadable", unread, "unbalanced_bracket", Verdict.UNREADABLE)
@@ -42,44 +42,44 @@ def slips(robot: Robot, i: int, j: int) -> Iterator[Slip]:
 
 
 def _of_cell(
-    robot: Robot, own: str | None, column: int, cell: str
+    robot: Robot, variable: str | None, column: int, cell: str
 ) -> Iterator[tuple[str, str, str]]:
-    nothing_there = column in (A, D) and cell in ("0", own)
-    off = "distance_extra" if nothing_there else "value"
-    yield "off by 0.05", f"{cell} + 0.05", off
-    yield "a little off", f"{cell} + 0.004", off
+    nothing_there = column in (A, D) and cell in ("0", variable)
+    code = "distance_extra" if nothing_there else "value"
+    yield "off by 0.05", f"{cell} + 0.05", code
+    yield "a little off", f"{cell} + 0.004", code
     yield "undefined", f"{cell} + 1/0", "undefined"
     yield "nowhere real", "sqrt(-1)", "undefined"
-    if cell == own:
-        yield from _of_joint_cell(robot, own, column)
+    if cell == variable:
+        yield from _of_joint_cell(robot, variable, column)
     else:
-        yield from _of_constant_cell(robot, own, column, cell)
+        yield from _of_constant_cell(robot, variable, column, cell)
 
 
-def _of_joint_cell(robot: Robot, own: str, column: int) -> Iterator[tuple[str, str, str]]:
-    other = next(name for name in robot.joints if name != own)
-    yield "sign", f"-{own}", "joint_variable_sign"
+def _of_joint_cell(robot: Robot, variable: str, column: int) -> Iterator[tuple[str, str, str]]:
+    other = next(name for name in robot.joints if name != variable)
+    yield "sign", f"-{variable}", "joint_variable_sign"
     yield "other joint", other, "joint_variable_index"
-    yield "doubled", f"2*{own}", "joint_variable_doubled"
+    yield "doubled", f"2*{variable}", "joint_variable_doubled"
     yield "missing", "0", "joint_variable_missing"
-    yield "another joint too", f"{own} + {other}", "joint_variable_extra"
-    yield "not linear", f"{own}^2", "value"
+    yield "another joint too", f"{variable} + {other}", "joint_variable_extra"
+    yield "not linear", f"{variable}^2", "value"
     if column == THETA:
-        yield "quarter turn", f"{own} + pi/2", "quarter_turn"
-        yield "quarter turn back", f"{own} - 90deg", "quarter_turn"
-        yield "half turn", f"{own} + pi", "half_turn"
+        yield "quarter turn", f"{variable} + pi/2", "quarter_turn"
+        yield "quarter turn back", f"{variable} - 90deg", "quarter_turn"
+        yield "half turn", f"{variable} + pi", "half_turn"
         yield "home position", "pi/2", "joint_variable_missing"
     else:
         yield "home position", robot.lengths[0], "joint_variable_missing"
-        yield "another length too", f"{own} + {robot.lengths[0]}", "distance_extra"
+        yield "another length too", f"{variable} + {robot.lengths[0]}", "distance_extra"
 
 
 def _of_constant_cell(
-    robot: Robot, own: str | None, column: int, cell: str
+    robot: Robot, variable: str | None, column: int, cell: str
 ) -> Iterator[tuple[str, str, str]]:
-    if own:
-        yield "joint variable", f"{cell} + {own}", "joint_variable_column"
-    stranger = robot.joints[1] if own == robot.joints[0] else robot.joints[0]
+    if variable:
+        yield "joint variable", f"{cell} + {variable}", "joint_variable_column"
+    stranger = robot.joints[1] if variable == robot.joints[0] else robot.joints[0]
     yield "other joint's variable", f"{cell} + {stranger}", "joint_variable_extra"
     if column in (A, D):
         yield from _of_length(robot, cell)

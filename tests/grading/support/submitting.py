@@ -15,7 +15,7 @@ from service.grading import (
     Verdict,
     grade,
 )
-from tests.grading.robots import COLUMNS, AngleUnit
+from tests.grading.support.robots import COLUMNS, AngleUnit
 
 
 def table(rows: Iterable[Sequence[object]]) -> dict[str, Any]:

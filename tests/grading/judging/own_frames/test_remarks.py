@@ -1,4 +1,4 @@
-"""What a student is told of frames that are valid but not the reference's."""
+"""The remarks on frames that are valid but not the reference's."""
 
 from collections.abc import Mapping
 
@@ -6,8 +6,8 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import Severity
-from tests.grading.robots import Row
-from tests.grading.submitting import full_marks, graded_table
+from tests.grading.support.robots import Row
+from tests.grading.support.submitting import full_marks, graded_table
 
 # Each table departs in one frame by one of the identities in docs/frame-choice.md; the frame that
 # it departs in is seen from the convention: row i holds d and θ of z_{i-1} in a standard table and
@@ -59,12 +59,12 @@ DEPARTURES: list[tuple[str, str, tuple[Row, ...]]] = [
 
 
 @pytest.mark.parametrize(
-    ("exercise", "told", "rows"), DEPARTURES, ids=[told for _, told, _ in DEPARTURES]
+    ("exercise", "remark", "rows"), DEPARTURES, ids=[message for _, message, _ in DEPARTURES]
 )
 def test_the_frame_that_departs_is_named_and_no_other(
-    exercise: str, told: str, rows: tuple[Row, ...], catalogue: Mapping[str, Exercise]
+    exercise: str, remark: str, rows: tuple[Row, ...], catalogue: Mapping[str, Exercise]
 ) -> None:
     report = graded_table(catalogue[exercise], rows)
     assert full_marks(report)
-    assert [message.message for message in report.feedback] == [told]
+    assert [message.message for message in report.feedback] == [remark]
     assert report.feedback[0].severity is Severity.INFO

@@ -10,7 +10,7 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import PartReport
-from tests.grading.submitting import graded_table, not_correct
+from tests.grading.support.submitting import graded_table, not_correct
 
 BLAMED: dict[str, tuple[tuple[str, str, str], str, str]] = {
     # d of rows 1 to 3; the row that is blamed; what is right there
