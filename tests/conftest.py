@@ -5,12 +5,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
 from service.catalogue import DhTableSpec, Exercise, load_catalogue, load_exercise, shipped_folder
 
 # How long one example takes says more about the machine than about the code.
-settings.register_profile("suite", deadline=None, max_examples=50)
+settings.register_profile(
+    "suite", deadline=None, max_examples=50, suppress_health_check=[HealthCheck.too_slow]
+)
 settings.load_profile("suite")
 
 FIGURE = "figure"
