@@ -31,8 +31,8 @@ install: $(dev) ## create .venv with everything for work on the project
 run: $(runtime) ## start the service on http://127.0.0.1:8000 (HOST=, PORT=)
 	$(python) -m service serve --host "$(HOST)" --port "$(PORT)"
 
-test: lint ## lint, type-check and test, with coverage
-	$(python) -m pytest --cov
+test: lint ## lint, type-check and test on every core, with coverage
+	$(python) -m pytest -n auto --dist worksteal --cov
 
 lint: $(dev) ## ruff and mypy, without the tests
 	$(python) -m ruff check .

@@ -8,7 +8,7 @@ import pytest
 from service.catalogue import CatalogueError, Exercise, Robot, ScrewRobot
 from service.kinematics.screws import product_in_space
 from service.kinematics.transforms import rot_z, trans
-from tests.grading.exercise_texts import ANGLES, HEAD, SPATIAL_RRR, one_part
+from tests.grading.support.exercise_texts import ANGLES, HEAD, SPATIAL_RRR, one_part
 
 Make = Callable[[str], Exercise]
 

@@ -1,4 +1,4 @@
-"""Finds the codes that the program may tell, by reading its source.
+"""Finds the codes of the messages that the program may give, by reading its source.
 
 A code is whatever is handed over as ``code``: to a class that has a field or an argument of that
 name (Finding, Note, ExpressionError …), or to a function that passes it on to one. It must be
@@ -19,7 +19,7 @@ Given = list[tuple[str, ast.expr]]
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class CodeUse:
     """A code, and the file and line where it is handed over."""
 
     code: str
@@ -42,13 +42,13 @@ def sources(folder: Path) -> dict[str, str]:
     }
 
 
-def codes_in(files: Mapping[str, str]) -> list[Told]:
+def codes_in(files: Mapping[str, str]) -> list[CodeUse]:
     """Every code that is handed over in these files. Raises HiddenCodeError."""
     trees = {file: ast.parse(text) for file, text in files.items()}
     classes = dict(found for tree in trees.values() for found in _classes(tree))
     functions = dict(found for tree in trees.values() for found in _functions(tree))
     constants = [given for tree in trees.values() for given in _given(tree.body)]
-    told: list[Told] = []
+    uses: list[CodeUse] = []
     for file, tree in trees.items():
         imported = _imported(tree)
         passing = {name: functions[name] for name in imported & functions.keys()}
@@ -59,8 +59,8 @@ def codes_in(files: Mapping[str, str]) -> list[Told]:
             value = _handed_over(call, carriers)
             if value is not None:
                 found = _texts(value, function, known, file)
-                told += [Told(text, file, call.lineno) for text in found]
-    return told
+                uses += [CodeUse(text, file, call.lineno) for text in found]
+    return uses
 
 
 def _classes(tree: ast.Module) -> Iterator[tuple[str, int]]:

@@ -8,8 +8,8 @@ import pytest
 from service.catalogue import Exercise, shipped_folder
 from service.expressions import read
 from service.solutions import PartSolution, Shown, Solution, solve
-from tests.grading.robots import AngleUnit
-from tests.grading.submitting import full_marks, handed_in
+from tests.grading.support.robots import AngleUnit
+from tests.grading.support.submitting import full_marks, handed_in
 
 IDS = sorted(file.stem for file in shipped_folder().glob("*.toml"))
 

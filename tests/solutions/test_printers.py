@@ -10,7 +10,7 @@ from service.catalogue import Exercise, shipped_folder
 from service.expressions import LIMITS, read
 from service.solutions import solve
 from service.solutions.algebra import Algebra
-from tests.grading.submitting import full_marks, handed_in
+from tests.grading.support.submitting import full_marks, handed_in
 
 IDS = sorted(file.stem for file in shipped_folder().glob("*.toml"))
 PRINTERS: Mapping[str, Callable[[sympy.Expr], str]] = {

@@ -8,10 +8,7 @@ from hypothesis import strategies as st
 
 from service.grids import GRID_LIMITS, Grid, GridError, read_grid
 from tests.expressions.grids.writers import FORMATS
-
-# Seconds of process time for one text. The budget of 50 ms is for the benchmarks and the long fuzz;
-# here, traced for coverage on any machine, only a stall is a failure.
-STALL = 1.0
+from tests.guards import STALL
 
 POSE = [
     ["c12", "-s12", "0", "a1*c1+a2*c12"],
