@@ -12,8 +12,8 @@ from typing import Self
 
 import numpy as np
 
+from service.kinematics.candidate_rows import PARALLEL, Place, Position, positions
 from service.kinematics.chain import THETA, A, D
-from service.kinematics.fit import PARALLEL, Place, Position, positions
 from service.kinematics.transforms import Matrices, Numbers
 
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from service.kinematics.candidate_rows import Place
 from service.kinematics.dh import standard_link
-from service.kinematics.fit import Place
 from service.kinematics.transforms import Matrices, Numbers, identity, inverse
 
 SAME = 1e-7

@@ -8,8 +8,8 @@ modified link transform is a standard one with all four numbers negated, so one 
 
 import numpy as np
 
+from service.kinematics.candidate_rows import to_frame
 from service.kinematics.dh import Convention
-from service.kinematics.fit import to_frame
 from service.kinematics.transforms import Matrices, Numbers, inverse
 
 

@@ -19,10 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.kinematics.base_freedom import BaseFreedom
+from service.kinematics.candidate_rows import Place, candidates, misses, positions
 from service.kinematics.chain import ALPHA, THETA, A, D
 from service.kinematics.chain_match import SAME, Nearest, Stop, WrittenRow, senses_of
 from service.kinematics.dh import standard_link
-from service.kinematics.fit import Place, candidates, misses, positions
 from service.kinematics.transforms import Matrices, Numbers, identity, inverse, rot_x
 
 BEAM = 8

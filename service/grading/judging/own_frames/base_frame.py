@@ -12,7 +12,7 @@ from service.grading.judging.own_frames.frame_freedom import Freedom
 from service.grading.judging.own_frames.reference import Mechanism, start_frames
 from service.grading.judging.own_frames.row_roles import Role
 from service.grading.samples import HALF
-from service.kinematics.base_fit import carry
+from service.kinematics.axis_alignment import carry
 from service.kinematics.chain import pose
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices, inverse

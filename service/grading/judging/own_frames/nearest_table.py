@@ -24,10 +24,10 @@ from service.grading.judging.own_frames.validity import stops_of
 from service.grading.judging.own_frames.wrong_convention_or_unit import read_as_meant
 from service.grading.part import Grading
 from service.grading.samples import Samples
+from service.kinematics.candidate_rows import PARALLEL
 from service.kinematics.chain import THETA, D, Table
 from service.kinematics.chain_match import Nearest, valid_as_it_stands
 from service.kinematics.dh import Convention, standard_link
-from service.kinematics.fit import PARALLEL
 from service.kinematics.frame_choice import NO_SUCH_CELL, WRONG_CELL, nearest_table
 from service.kinematics.transforms import Matrices, inverse
 

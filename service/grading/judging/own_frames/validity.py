@@ -18,10 +18,10 @@ from service.grading.judging.own_frames.reference import (
 from service.grading.judging.own_frames.row_roles import Role, motion_of
 from service.grading.reading.table import IS_ANGLE
 from service.grading.samples import Samples
+from service.kinematics.candidate_rows import Place
 from service.kinematics.chain import pose
 from service.kinematics.chain_match import Stop, followed
 from service.kinematics.dh import Convention
-from service.kinematics.fit import Place
 from service.kinematics.transforms import Matrices, Numbers
 
 

@@ -9,7 +9,7 @@ say) any one of them will do.
 import numpy as np
 from numpy.typing import NDArray
 
-from service.kinematics.fit import PARALLEL
+from service.kinematics.candidate_rows import PARALLEL
 from service.kinematics.transforms import Matrices, Numbers, identity
 
 
