@@ -1,13 +1,13 @@
-"""The DH row that leads from a frame to the next axis: every one that there is.
+"""The DH rows that lead from a frame to the next axis: every one that there is.
 
-A row moves by Rot_z(θ) Trans_z(d) Trans_x(a) Rot_x(α). Seen from the frame where it starts, the
-next place is a transform ``target``; what of it must be met depends on the place: a revolute axis
-is a line, a prismatic axis a direction, the tool a whole frame. Where the row is not determined by
-that, the value that was written (``own``) is as good as the reference's, and both are offered.
+A row moves by Rot_z(θ) Trans_z(d) Trans_x(a) Rot_x(α). Seen from the frame where the row starts,
+the next target is a transform. How much of it the row must meet depends on its kind: of a revolute
+axis the line, of a prismatic axis the direction, of the tool the whole frame. Where the geometry
+leaves a value open, the value that was written is as good as the reference's, and both are tried.
 
-Shapes: H hypotheses, K candidates for each, L samples. Rows are ``(..., 4, L)`` in the
-column order a, α, d, θ; angles in radians. Parallelism is judged by the norm of the cross product,
-which near 0 is the angle itself; a cosine near 1 would call axes parallel that are 4 mrad apart.
+Shapes: H hypotheses, K candidates for each, L samples. Targets are ``(H, L, 4, 4)``, rows
+``(..., 4, L)`` in the column order a, α, d, θ, the written row is ``(4, L)`` with NaN where there
+is no usable number; angles in radians.
 """
 
 from enum import Enum, IntEnum
@@ -15,14 +15,15 @@ from enum import Enum, IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from service.kinematics.chain import ALPHA, THETA, A, D
+from service.kinematics.tolerances import ALONG_NORMAL, PARALLEL
 from service.kinematics.transforms import Matrices, Numbers
 
-PARALLEL = 1e-7
-Z_SIGNS = np.array([1.0, 1.0, -1.0, -1.0])
-X_SIGNS = np.array([1.0, -1.0, 1.0, -1.0])
+_X_SIGNS = np.array([[1.0], [-1.0], [1.0], [-1.0]])
+_Z_SIGNS = np.array([[1.0], [1.0], [-1.0], [-1.0]])
 
 
-class Position(IntEnum):
+class AxisRelation(IntEnum):
     """How one axis lies to another."""
 
     SKEW = 0
@@ -30,8 +31,8 @@ class Position(IntEnum):
     COINCIDENT = 2
 
 
-class Place(Enum):
-    """What a row leads to, and so how much of it is fixed."""
+class TargetKind(Enum):
+    """What a row leads to, and so how much of the frame there is determined."""
 
     REVOLUTE = "a line that the next z axis lies on"
     PRISMATIC = "a direction of the next z axis"
@@ -40,31 +41,31 @@ class Place(Enum):
     OPEN = "an end-effector frame of the student's choice"
 
 
-def candidates(target: Matrices, own: Numbers, place: Place, length_scale: float) -> Numbers:
-    """Every row that leads to ``place``: ``(H, K, 4, L)``.
+def candidate_rows(
+    target: Matrices, written: Numbers, kind: TargetKind, length_scale: float
+) -> Numbers:
+    """Every row that leads to the target: ``(H, K, 4, L)``.
 
-    ``target`` is ``(H, L, 4, 4)``, of one class of position (skew, parallel, coincident) for all
-    H; ``own`` is the row as written, ``(4, L)``, NaN where there is nothing that could be used.
+    The z axes of all H targets must have one relation (skew, parallel, coincident) to z here.
     """
-    if place is Place.TOOL:
-        return to_frame(target)[:, None]
-    if place is Place.OPEN:
-        exact = to_frame(target)[:, None]
-        return np.where(np.isnan(own), exact, own)
-    position = Position(positions(target[:1], length_scale)[0])
-    if place is Place.PRISMATIC:
-        if position is Position.SKEW:
-            return _moved(_skew(target, own), own)
-        return _parallel_direction(target, own, position)
-    rows = _BY_POSITION[position](target, own)
-    if place is Place.FIXED and not np.isnan(own).any():
-        anywhere = np.broadcast_to(own, (len(target), 1, *own.shape))
-        rows = np.concatenate([anywhere, rows], axis=1)
+    if kind is TargetKind.TOOL:
+        return row_to_frame(target)[:, None]
+    if kind is TargetKind.OPEN:
+        return written_or(written, row_to_frame(target)[:, None])
+    relation = AxisRelation(axis_relations(target[:1], length_scale)[0])
+    if kind is TargetKind.PRISMATIC:
+        if relation is AxisRelation.SKEW:
+            return _with_open_lengths(_to_skew(target, written), written)
+        return _to_parallel_direction(target, written, relation)
+    rows = _TO_LINE[relation](target, written)
+    if kind is TargetKind.FIXED and not np.isnan(written).any():
+        as_written = np.broadcast_to(written, (len(target), 1, *written.shape))
+        rows = np.concatenate([as_written, rows], axis=1)
     return rows
 
 
-def positions(target: Matrices, length_scale: float) -> NDArray[np.int_]:
-    """The Position of each target's z axis to the z axis here: ``(H,)`` from ``(H, L, 4, 4)``."""
+def axis_relations(target: Matrices, length_scale: float) -> NDArray[np.int_]:
+    """The AxisRelation of each target's z axis to the z axis here: ``(H,)``."""
     sine = np.hypot(target[..., 0, 2], target[..., 1, 2])
     offset = np.hypot(target[..., 0, 3], target[..., 1, 3])
     parallel = np.all(sine < PARALLEL, axis=-1)
@@ -73,11 +74,11 @@ def positions(target: Matrices, length_scale: float) -> NDArray[np.int_]:
     return found
 
 
-def to_frame(target: Matrices) -> Numbers:
-    """The one row that can lead to a whole frame, ``(H, 4, L)`` from ``(H, L, 4, 4)``.
+def row_to_frame(target: Matrices) -> Numbers:
+    """The one row that can lead to a whole frame, ``(H, 4, L)``.
 
-    It gets there only if x of the frame is at right angles to z here and meets it (the two DH
-    conditions; Spong, Hutchinson, Vidyasagar, §3.2.1); ``misses`` tells.
+    It does so only if x of the frame is at right angles to z here and meets it (the two DH
+    conditions; Spong, Hutchinson, Vidyasagar, §3.2.1): see ``is_unreachable``.
     """
     theta = np.arctan2(target[..., 1, 0], target[..., 0, 0])
     alpha = np.arctan2(target[..., 2, 1], target[..., 2, 2])
@@ -85,130 +86,133 @@ def to_frame(target: Matrices) -> Numbers:
     return np.stack([a, alpha, target[..., 2, 3], theta], axis=1)
 
 
-def misses(target: Matrices, length_scale: float) -> NDArray[np.bool_]:
-    """Where no DH row leads to the frame ``target``: ``(H,)`` from ``(H, L, 4, 4)``."""
+def is_unreachable(target: Matrices, length_scale: float) -> NDArray[np.bool_]:
+    """Where no DH row leads to the whole frame: ``(H,)``."""
     x_along_z = np.abs(target[..., 2, 0]).max(axis=-1)
     norm = np.hypot(target[..., 0, 0], target[..., 1, 0])
     cross = target[..., 0, 0] * target[..., 1, 3] - target[..., 1, 0] * target[..., 0, 3]
-    beside = np.abs(cross / np.maximum(norm, PARALLEL)).max(axis=-1)
-    missed: NDArray[np.bool_] = (x_along_z > PARALLEL) | (beside > PARALLEL * length_scale)
-    return missed
+    distance = np.abs(cross / np.maximum(norm, PARALLEL)).max(axis=-1)
+    unreachable: NDArray[np.bool_] = (x_along_z > PARALLEL) | (distance > PARALLEL * length_scale)
+    return unreachable
 
 
-def _skew(target: Matrices, own: Numbers) -> Numbers:
+def written_or(written: Numbers, other: Numbers) -> Numbers:
+    """The written values, or the others where no usable number was written."""
+    return np.where(np.isnan(written), other, written)
+
+
+def _to_skew(target: Matrices, written: Numbers) -> Numbers:
     """Axes that are not parallel: x along the common normal, either way, and z either way."""
     ux, uy, uz = (target[..., i, 2] for i in range(3))
     px, py, pz = (target[..., i, 3] for i in range(3))
     sine = np.hypot(ux, uy)
     theta = np.arctan2(ux, -uy)
     a = (py * ux - px * uy) / sine
-    x_sign, z_sign = _signs(target, theta, a, own)
+    x_sign, z_sign = _signs(target, theta, a, written)
     alpha = np.arctan2(x_sign * z_sign * sine[:, None], z_sign * uz[:, None])
     d = pz - uz * (px * ux + py * uy) / sine**2
-    return _rows(x_sign * a[:, None], alpha, d[:, None], _turned(theta, x_sign))
+    return _rows(x_sign * a[:, None], alpha, d[:, None], _half_turned(theta, x_sign))
 
 
-def _signs(target: Matrices, theta: Numbers, a: Numbers, own: Numbers) -> tuple[Numbers, Numbers]:
-    """The ways that x and z may point: two arrays that broadcast to ``(H, K, L)``.
+def _to_parallel(target: Matrices, written: Numbers) -> Numbers:
+    """Parallel axes: x points from one to the other, and d is open."""
+    px, py, pz = (target[..., i, 3] for i in range(3))
+    theta, a = np.arctan2(py, px), np.hypot(px, py)
+    x_sign, z_sign = _signs(target, theta, a, written)
+    alpha = _parallel_twist(target, z_sign)
+    return np.concatenate(
+        [
+            _rows(x_sign * a[:, None], alpha, d[:, None], _half_turned(theta, x_sign))
+            for d in (written_or(written[D], pz), pz)
+        ],
+        axis=1,
+    )
+
+
+def _to_coincident(target: Matrices, written: Numbers) -> Numbers:
+    """One line: θ and d are open."""
+    pz = target[..., 2, 3]
+    x_angle = np.arctan2(target[..., 1, 0], target[..., 0, 0])
+    alpha = _parallel_twist(target, _Z_SIGNS)
+    theta = _half_turned(x_angle, _X_SIGNS * np.ones_like(alpha))
+    return np.concatenate(
+        [
+            _rows(np.zeros(1), alpha, d[:, None], angle)
+            for d in (written_or(written[D], pz), pz)
+            for angle in (written_or(written[THETA], theta), theta)
+        ],
+        axis=1,
+    )
+
+
+_TO_LINE = {
+    AxisRelation.SKEW: _to_skew,
+    AxisRelation.PARALLEL: _to_parallel,
+    AxisRelation.COINCIDENT: _to_coincident,
+}
+
+
+def _with_open_lengths(rows: Numbers, written: Numbers) -> Numbers:
+    """A direction that is not parallel to z here: the axis may lie anywhere, so a and d are open.
+
+    Each by itself is as written or as in ``rows``.
+    """
+    options = []
+    for columns in ((A, D), (A,), (D,), ()):
+        moved = rows.copy()
+        for column in columns:
+            moved[:, :, column] = written_or(written[column], rows[:, :, column])
+        options.append(moved)
+    return np.concatenate(options, axis=1)
+
+
+def _to_parallel_direction(target: Matrices, written: Numbers, relation: AxisRelation) -> Numbers:
+    """A direction that is parallel to z here: a, d and θ are open."""
+    on_line = _TO_LINE[relation](target, written)
+    as_written = np.empty((len(target), 2, 4, target.shape[1]))
+    as_written[:] = written_or(written, on_line[:, :1])
+    as_written[:, :, ALPHA] = _parallel_twist(target, np.array([[1.0], [-1.0]]))
+    with_reference_offset = as_written.copy()
+    with_reference_offset[:, :, D] = target[:, None, :, 2, 3]
+    with_written_length = on_line.copy()
+    with_written_length[:, :, A] = written_or(written[A], on_line[:, :, A])
+    return np.concatenate([as_written, with_reference_offset, with_written_length, on_line], axis=1)
+
+
+def _signs(
+    target: Matrices, theta: Numbers, a: Numbers, written: Numbers
+) -> tuple[Numbers, Numbers]:
+    """The ways that x and z may point: two arrays of signs that broadcast to ``(H, K, L)``.
 
     x lies along a normal at the angle ``theta`` ``(H, L)`` and goes the length ``a`` there, or
-    points the other way. Where ``a`` is a difference of link lengths it changes its sign from
-    sample to sample while x does not: so x is first taken the way of the reference's, and where the
-    axis was moved, also the way of what was written.
+    points the other way. Where ``a`` is a difference of link lengths, it changes its sign from
+    sample to sample while x does not. So x first takes the way of the reference's x, and where the
+    axis was moved, also the way that the written θ and a point.
     """
-    x_axis = np.arctan2(target[..., 1, 0], target[..., 0, 0])
-    along = np.cos(theta - x_axis)
-    ways = [np.where(np.abs(np.abs(along) - 1).max(axis=-1, keepdims=True) < 1e-6, along, 1.0)]
-    for written in (np.cos(theta - own[3]), a * own[0]):
-        pattern = np.sign(written * ways[0])
-        if not np.isnan(written).any() and np.ptp(pattern, axis=-1).any():
-            ways.append(written)
+    x_angle = np.arctan2(target[..., 1, 0], target[..., 0, 0])
+    along = np.cos(theta - x_angle)
+    is_along = np.abs(np.abs(along) - 1).max(axis=-1, keepdims=True) < ALONG_NORMAL
+    ways = [np.where(is_along, along, 1.0)]
+    for way in (np.cos(theta - written[THETA]), a * written[A]):
+        pattern = np.sign(way * ways[0])
+        if not np.isnan(way).any() and np.ptp(pattern, axis=-1).any():
+            ways.append(way)
     one_way = np.where(np.array(ways) < 0, -1.0, 1.0).swapaxes(0, 1)
     x_sign = np.concatenate([one_way, -one_way, one_way, -one_way], axis=1)
     z_sign = np.repeat([1.0, -1.0], 2 * len(ways))[:, None]
     return x_sign, z_sign
 
 
-def _turned(theta: Numbers, x_sign: Numbers) -> Numbers:
+def _half_turned(theta: Numbers, x_sign: Numbers) -> Numbers:
     """The angle of x: ``theta`` ``(H, L)``, or half a turn on, for each sign ``(H, K, L)``."""
     return theta[:, None] + np.where(x_sign < 0, np.pi, 0.0)
+
+
+def _parallel_twist(target: Matrices, z_sign: Numbers) -> Numbers:
+    """α between parallel axes, 0 or π, for each sign ``(K, 1)``: ``(H, K, L)``."""
+    return np.where(target[:, None, :, 2, 2] * z_sign > 0, 0.0, np.pi)
 
 
 def _rows(a: Numbers, alpha: Numbers, d: Numbers, theta: Numbers) -> Numbers:
     """Columns that broadcast to ``(H, K, L)`` as rows ``(H, K, 4, L)``."""
     return np.stack(np.broadcast_arrays(a, alpha, d, theta), axis=2)
-
-
-def _twist(target: Matrices, z_sign: Numbers) -> Numbers:
-    """α between parallel axes, 0 or π, for each sign: ``(H, K, L)``."""
-    return np.where(target[:, None, :, 2, 2] * z_sign > 0, 0.0, np.pi)
-
-
-def _or_reference(own: Numbers, reference: Numbers) -> Numbers:
-    """What was written, or the reference's value where nothing was."""
-    return np.where(np.isnan(own), reference, own)
-
-
-def _parallel(target: Matrices, own: Numbers) -> Numbers:
-    """Parallel axes: x points from one to the other, d is free (own d, or the reference's)."""
-    px, py, pz = (target[..., i, 3] for i in range(3))
-    theta, a = np.arctan2(py, px), np.hypot(px, py)
-    x_sign, z_sign = _signs(target, theta, a, own)
-    alpha = _twist(target, z_sign)
-    return np.concatenate(
-        [
-            _rows(x_sign * a[:, None], alpha, d[:, None], _turned(theta, x_sign))
-            for d in (_or_reference(own[2], pz), pz)
-        ],
-        axis=1,
-    )
-
-
-def _coincident(target: Matrices, own: Numbers) -> Numbers:
-    """One line: θ and d are both free."""
-    pz = target[..., 2, 3]
-    x_axis = np.arctan2(target[..., 1, 0], target[..., 0, 0])
-    alpha = _twist(target, Z_SIGNS[:, None])
-    theta = _turned(x_axis, X_SIGNS[:, None] * np.ones_like(alpha))
-    return np.concatenate(
-        [
-            _rows(np.zeros(1), alpha, d[:, None], angle)
-            for d in (_or_reference(own[2], pz), pz)
-            for angle in (_or_reference(own[3], theta), theta)
-        ],
-        axis=1,
-    )
-
-
-def _moved(rows: Numbers, own: Numbers) -> Numbers:
-    """A direction only: the axis may be moved anywhere, so a and d are free, each by itself."""
-    options = []
-    for keep_a in (False, True):
-        for keep_d in (False, True):
-            moved = rows.copy()
-            if not keep_a:
-                moved[:, :, 0] = _or_reference(own[0], rows[:, :, 0])
-            if not keep_d:
-                moved[:, :, 2] = _or_reference(own[2], rows[:, :, 2])
-            options.append(moved)
-    return np.concatenate(options, axis=1)
-
-
-def _parallel_direction(target: Matrices, own: Numbers, position: Position) -> Numbers:
-    """A direction parallel to z here: a, d and θ are all free."""
-    on_line = _BY_POSITION[position](target, own)
-    free = np.empty((len(target), 2, 4, target.shape[1]))
-    free[:] = _or_reference(own, on_line[:, :1])
-    free[:, :, 1] = _twist(target, np.array([[1.0], [-1.0]]))
-    with_own_length = on_line.copy()
-    with_own_length[:, :, 0] = _or_reference(own[0], on_line[:, :, 0])
-    with_reference_offset = free.copy()
-    with_reference_offset[:, :, 2] = target[:, None, :, 2, 3]
-    return np.concatenate([free, with_reference_offset, with_own_length, on_line], axis=1)
-
-
-_BY_POSITION = {
-    Position.SKEW: _skew,
-    Position.PARALLEL: _parallel,
-    Position.COINCIDENT: _coincident,
-}
