@@ -10,14 +10,16 @@ from dataclasses import replace
 import numpy as np
 
 from service.expressions import Expression
-from service.grading.comparison import ROUNDED, Match, difference
+from service.grading.comparison import Match, difference
 from service.grading.diagnosis.wrong_value import WrongCell, differs, undefined
 from service.grading.feedback import Finding
 from service.grading.formula_text import sum_text
 from service.grading.joint_motion import coefficients
-from service.grading.judging.table import JudgedRow, Judgement, column_scales
+from service.grading.judging.table import JudgedRow, Judgement
+from service.grading.judging.table_matches import column_scales
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE, HandedInRow
+from service.grading.tolerances import ROUNDED_VALUE
 from service.kinematics.chain import COLUMNS
 from service.kinematics.transforms import Numbers
 
@@ -248,7 +250,7 @@ def half_turn(case: WrongCell) -> Finding | None:
 def _is_off_by(turn: float, actual: Numbers, expected: Numbers) -> bool:
     """Whether an angle is expected so much further on; the turn itself may have been rounded."""
     off = difference(actual + turn, expected, angle=True)
-    return bool(np.abs(off).max() < ROUNDED * np.pi)
+    return bool(np.abs(off).max() < ROUNDED_VALUE * np.pi)
 
 
 MISCONCEPTIONS: tuple[Callable[[WrongCell], Finding | None], ...] = (

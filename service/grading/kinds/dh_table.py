@@ -9,8 +9,9 @@ from service.grading.diagnosis.table_cell import diagnose_cells
 from service.grading.diagnosis.table_explained import explained, freedom_lost
 from service.grading.feedback import Finding
 from service.grading.follow_through import stands_still
+from service.grading.judging.own_frames.best_roles import roles_in
 from service.grading.judging.report_rows import cell_report
-from service.grading.judging.table import JudgedRow, Judgement, judged_table, roles_in
+from service.grading.judging.table import JudgedRow, Judgement, judged_table
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.table import HandedInRow, HandedInTable, read_table, values_of
 from service.grading.report import CellReport, RowReport, Severity, Verdict, row_report

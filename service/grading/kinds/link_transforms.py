@@ -12,9 +12,8 @@ from service.grading.diagnosis.matrix_entry import WORK_BUDGET
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.follow_through import stands_still
 from service.grading.judging.matrix import ExpectedMatrix
-from service.grading.judging.own_frames.frame_freedom import Freedom
-from service.grading.judging.own_frames.row_roles import Role
-from service.grading.judging.table import nearest_reading
+from service.grading.judging.own_frames.best_roles import nearest_with_tool_row
+from service.grading.judging.own_frames.row_roles import FrameFreedom, Role
 from service.grading.kinds.matrix_rows import matrix_rows
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.entry import Entry
@@ -22,12 +21,11 @@ from service.grading.reading.matrix import StudentMatrix, read_matrix
 from service.grading.reading.table import HandedInRow
 from service.grading.report import Feedback, RowReport
 from service.grading.samples import SAMPLES, Samples
+from service.grading.tolerances import LINK_TRANSFORM
 from service.kinematics.chain import links, products
 from service.kinematics.dh import link_transforms
 from service.kinematics.dh_row import row as dh_row
 from service.kinematics.transforms import Matrices, Numbers
-
-SAME = 1e-6
 
 # A number that was worked out of a matrix stands for a cell that was read.
 _WORKED_OUT = Entry(read_expression(0, Vocabulary([])))
@@ -123,7 +121,7 @@ def _nearest_links(part: LinkTransformsSpec, answer: StudentLinks, grading: Grad
         Role(_row(matrix, part), joints[i] if i < len(joints) else None)
         for i, matrix in enumerate(answer.values)
     )
-    reading = nearest_reading(roles, part.convention, Freedom(), grading)
+    reading = nearest_with_tool_row(roles, part.convention, FrameFreedom(), grading)
     return links(reading.expected, part.convention)
 
 
@@ -131,7 +129,7 @@ def _row(matrix: Matrices, part: LinkTransformsSpec) -> HandedInRow | None:
     if np.isnan(matrix).any():
         return None
     row = dh_row(matrix, part.convention)
-    if np.abs(link_transforms(part.convention, *row) - matrix).max() > SAME:
+    if np.abs(link_transforms(part.convention, *row) - matrix).max() > LINK_TRANSFORM:
         return None
     return HandedInRow((_WORKED_OUT,) * 4, row)
 
