@@ -14,7 +14,7 @@ from service.expressions.evaluation.samples import Samples, compile_tree
 from service.expressions.limits import LIMITS
 from service.expressions.parsing.degrees import in_degrees, without_degree_functions
 from service.expressions.parsing.lexer import tokenise
-from service.expressions.parsing.parser import Table, UnexpectedTokenError
+from service.expressions.parsing.parser import parse
 from service.expressions.parsing.tree_builder import Builder
 from service.expressions.printing.latex import to_latex
 from service.expressions.printing.mathml import to_mathml
@@ -26,7 +26,6 @@ from service.expressions.vocabulary.symbols import Kind, Vocabulary
 
 AngleUnits = Literal["radians", "degrees"]
 
-_TABLE: Final = Table(Builder)
 _REMEMBERED: Final = 8192
 # Whoever grades asks for the tree soon after reading, if at all.
 _TREES: Final = 128
@@ -227,11 +226,7 @@ def _parsed(text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool) ->
     notes: list[Note] = []
     tokens = tokenise(text, characters, vocabulary, degrees=degrees, notes=notes)
     builder = Builder(text, notes, degrees=degrees)
-    try:
-        tree: Node = _TABLE.parse(tokens, builder)
-    except UnexpectedTokenError as unexpected:
-        at = unexpected.index
-        raise UnreadableError("grammar", tokens[at][2:], tokens=tokens, index=at) from None
+    tree = parse(tokens, builder)
     symbols = _shared(_measure(tree))
     if degrees:
         tree = in_degrees(tree, is_angle=is_angle, notes=notes)

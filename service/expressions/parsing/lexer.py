@@ -11,12 +11,16 @@ from service.expressions.parsing.brackets import WRAPPING, Brackets
 from service.expressions.parsing.indices import INDEX, Indexed, indexed, is_family
 from service.expressions.parsing.joint_markers import is_marker
 from service.expressions.parsing.notes import Remarks
-from service.expressions.parsing.parser import END, Token
 from service.expressions.parsing.words import RUN, Piece, split
 from service.expressions.tree import Binary, Call, Node, Number, Pi, Variable
 from service.expressions.unreadable import UnreadableError
 from service.expressions.vocabulary.functions import IN_DEGREES, MODULES, UNIT_FUNCTIONS
 from service.expressions.vocabulary.symbols import Symbol, Vocabulary
+
+# A token: its terminal, its value, and its [start, end) in the text as typed. The value is a node
+# for NUMBER and NAME, the name and its power for FUNCTION, the unit for UNIT, None for the others.
+Token = tuple[str, Any, int, int]
+END: Final = "$END"
 
 NUMBER: Final = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _TOKEN: Final = re.compile(
@@ -93,7 +97,7 @@ class _Lexer:
                     continue
                 # Most operators mean one thing only, and most places are their own.
                 a, b = (start, position) if in_place else self._span(start, position)
-                self.tokens.append((terminal, a, a, b))
+                self.tokens.append((terminal, None, a, b))
                 self.last = terminal
             elif group == 2:
                 self._number(found[2], start, position)
@@ -162,11 +166,11 @@ class _Lexer:
         elif text == "*" and self._is_marker(start, end):
             self.remarks.marker(span)
         elif text in _TERMINALS:
-            self._emit(_TERMINALS[text], span[0], *span)
+            self._emit(_TERMINALS[text], None, *span)
         elif text == "°":
-            self._emit("UNIT", ("deg", span[1]), *span)
+            self._emit("UNIT", "deg", *span)
         elif text == "√":
-            self._operand("ROOT", span[0], *span)
+            self._operand("ROOT", None, *span)
         else:
             self._other(text, start, span)
 
@@ -194,7 +198,7 @@ class _Lexer:
 
     def _close(self, bracket: str, span: Span) -> None:
         if self.brackets.close(bracket, span) != WRAPPING:
-            self._emit("RIGHT", span[1], *span)
+            self._emit("RIGHT", None, *span)
 
     def _is_wrapped(self, start: int) -> bool:
         r"""Tell whether braces hold nothing but round brackets: \sin{(q_1)}, as SymPy prints it."""
@@ -210,29 +214,29 @@ class _Lexer:
 
     def _open(self, bracket: str, span: Span) -> None:
         self.brackets.open(bracket, span, len(self.tokens))
-        self._operand("LEFT", span[0], *span)
+        self._operand("LEFT", None, *span)
 
     def _bar(self, span: Span) -> None:
         """Read |x|: a bar behind an operand closes, any other opens."""
         if self.last in _OPERAND_ENDS and self.brackets.in_bars():
             self.brackets.close("|", span)
-            self._emit("RIGHT", span[1], *span)
+            self._emit("RIGHT", None, *span)
         else:
-            self._operand("FUNCTION", ("abs", None, *span), *span)
+            self._operand("FUNCTION", ("abs", None), *span)
             self.brackets.open("|", span, len(self.tokens))
-            self._emit("LEFT", span[0], *span)
+            self._emit("LEFT", None, *span)
 
     def _open_fraction(self, start: int, span: Span) -> None:
         if self.last == "NUMBER" and (match := _NUMERIC_FRACTION.match(self.text, start)):
             whole = self._span(start, match.end())
             fraction = re.sub(rf"[{OPEN}{CLOSE}{{}}\s]", "", match.group())
             raise UnreadableError("mixed_number", whole, fraction=fraction)
-        self._operand("OPEN", span[0], *span)
+        self._operand("OPEN", None, *span)
         self.brackets.open(OPEN, span, len(self.tokens) - 1)
 
     def _close_fraction(self, span: Span) -> None:
         opener = self.brackets.close(CLOSE, span)
-        self._emit("CLOSE", span[1], *span)
+        self._emit("CLOSE", None, *span)
         if opener and self.tokens[opener - 1][0] == "FUNCTION":
             inside = {token[0] for token in self.tokens[opener:]}
             if inside <= {"OPEN", "CLOSE", "LEFT", "RIGHT", "NUMBER", "SLASH"}:
@@ -290,7 +294,7 @@ class _Lexer:
         if self.text.startswith("radians(", at):
             end = at + len("radians")
             a, b = self._span(at, end)
-            self._operand("FUNCTION", ("deg", None, a, b), a, b)
+            self._operand("FUNCTION", ("deg", None), a, b)
             return end
         return at
 
@@ -355,15 +359,15 @@ class _Lexer:
                 )
             power = int(exponent[exponent.lastindex or 0])
             end = exponent.end()
-        self._operand("FUNCTION", (name, power, a, b), a, b)
+        self._operand("FUNCTION", (name, power), a, b)
         return end
 
     def _unit(self, unit: str, start: int, end: int, a: int, b: int) -> None:
         opens = self.text[end : end + 1] == "("
         if self.last in _OPERAND_ENDS and not opens:
-            self._emit("UNIT", (unit, b), a, b)
+            self._emit("UNIT", unit, a, b)
         elif self.last not in _OPERAND_ENDS and opens and self.text[start:end] in UNIT_FUNCTIONS:
-            self._emit("FUNCTION", (unit, None, a, b), a, b)
+            self._emit("FUNCTION", (unit, None), a, b)
         else:
             raise UnreadableError("ambiguous_unit", (a, b), opens=opens)
 

@@ -1,17 +1,25 @@
 """What each rule of the grammar builds, and the notes on readings that others may not share.
 
-The methods carry the names that grammar.lark gives to its rules.
+The parser calls each method once the rule's operands are built.
 """
 
 from collections.abc import Iterator
-from typing import Any
 
 from service.expressions.errors import Note
-from service.expressions.tree import Binary, Call, Negation, Node, Number, Unit, Variable, children
+from service.expressions.parsing.lexer import Token
+from service.expressions.tree import (
+    AngleUnit,
+    Binary,
+    Call,
+    Negation,
+    Node,
+    Number,
+    Unit,
+    Variable,
+    children,
+)
 from service.expressions.unreadable import UnreadableError
 from service.expressions.vocabulary.functions import ARITY, INVERSE, OF_DEGREES
-
-FunctionToken = tuple[str, int | None, int, int]
 
 
 class Builder:
@@ -28,21 +36,21 @@ class Builder:
         self.barred: set[int] = set()
         self.degree_functions = False
 
-    def add(self, left: Node, _: int, right: Node) -> Node:
+    def add(self, left: Node, right: Node) -> Node:
         """Build left + right."""
         self._note_degrees(left, right)
         return Binary("+", left, right, left.start, right.end)
 
-    def subtract(self, left: Node, _: int, right: Node) -> Node:
+    def subtract(self, left: Node, right: Node) -> Node:
         """Build left - right."""
         self._note_degrees(left, right)
         return Binary("-", left, right, left.start, right.end)
 
-    def multiply(self, left: Node, _: int, right: Node) -> Node:
+    def multiply(self, left: Node, right: Node) -> Node:
         """Build left * right."""
         return Binary("*", left, right, left.start, right.end)
 
-    def divide(self, left: Node, _: int, right: Node) -> Node:
+    def divide(self, left: Node, right: Node) -> Node:
         """Build left / right, with a note on `sin q1/2`; nobody reads √2/2 in two ways."""
         if not (
             type(left) is Call and left.function == "sqrt" and type(left.arguments[0]) is Number
@@ -50,7 +58,7 @@ class Builder:
             self._note_bare(left)
         return Binary("/", left, right, left.start, right.end)
 
-    def join(self, left: Node, _: None, right: Node) -> Node:
+    def join(self, left: Node, right: Node) -> Node:
         """Build a product that is not written, with a note on `1/2q1`."""
         if type(left) is Binary and left.operator == "/" and self._is_open(left):
             self._note(
@@ -64,7 +72,7 @@ class Builder:
             self._note_bare(left)
         return Binary("*", left, right, left.start, right.end)
 
-    def tight(self, left: Node, _: None, right: Node) -> Node:
+    def tight(self, left: Node, right: Node) -> Node:
         """Build the product inside `sin 2q1`."""
         if self.source[right.start] == "(":
             self._note_argument(left.start, right.end)
@@ -85,9 +93,8 @@ class Builder:
             raise UnreadableError("raised_zero", (caret, exponent.end), power=True)
         return Binary("^", base, exponent, base.start, exponent.end)
 
-    def unit(self, operand: Node, unit: tuple[Any, int]) -> Node:
+    def unit(self, operand: Node, unit: AngleUnit, end: int) -> Node:
         """Build an operand with a unit, which must be a number."""
-        name, end = unit
         span = (operand.start, end)
         for node in _outside_calls(operand):
             if type(node) is Unit or (type(node) is Call and node.function in INVERSE):
@@ -97,31 +104,27 @@ class Builder:
                 raise UnreadableError(
                     "unit_on_variable", span, name=node.symbol.name, variable=place
                 )
-        return Unit(operand, name, *span)
+        return Unit(operand, unit, *span)
 
-    def group(self, left: int, inner: Node, right: int) -> Node:
+    def group(self, start: int, inner: Node, end: int) -> Node:
         """Build (inner); the brackets count to its place only."""
-        inner.start, inner.end = left, right
+        inner.start, inner.end = start, end
         self.grouped.add(id(inner))
         return inner
 
-    def fraction(self, left: int, inner: Node, right: int) -> Node:
+    def fraction(self, start: int, inner: Node, end: int) -> Node:
         r"""Build ½ or \frac{a}{b}."""
-        inner.start, inner.end = left, right
+        inner.start, inner.end = start, end
         self.barred.add(id(inner))
         return inner
-
-    def tight_fraction(self, left: int, inner: Node, right: int, _: None, operand: Node) -> Node:
-        """Build the product inside `sin ½q1`."""
-        return self.tight(self.fraction(left, inner, right), None, operand)
 
     def root(self, start: int, operand: Node) -> Node:
         """Build √operand."""
         return Call("sqrt", (operand,), start, operand.end)
 
-    def call(self, function: FunctionToken, _: int, arguments: list[Node], end: int) -> Node:
+    def call(self, function: Token, arguments: list[Node], end: int) -> Node:
         """Build a function of arguments in brackets."""
-        name, power, start, stop = function
+        _, (name, power), start, stop = function
         wanted = ARITY.get(name, 1)
         if len(arguments) != wanted:
             raise UnreadableError(
@@ -129,7 +132,7 @@ class Builder:
                 places=[(argument.start, argument.end) for argument in arguments],
             )  # fmt: skip
         if name == "deg" or name == "rad":
-            node = self.unit(arguments[0], (name, end))
+            node = self.unit(arguments[0], name, end)
             node.start = start
             return node
         if name == "atan2":
@@ -137,9 +140,9 @@ class Builder:
         self.degree_functions = self.degree_functions or name in OF_DEGREES
         return _powered(Call(name, tuple(arguments), start, end), power)
 
-    def bare_call(self, function: FunctionToken, argument: Node) -> Node:
+    def bare_call(self, function: Token, argument: Node) -> Node:
         """Build a function of one argument without brackets."""
-        name, power, start, stop = function
+        _, (name, power), start, stop = function
         if ARITY.get(name, 1) != 1 or name == "deg" or name == "rad":
             raise UnreadableError(
                 "arguments", (start, argument.end), name=name, function=(start, stop),
@@ -151,15 +154,6 @@ class Builder:
             self._note_argument(argument.start, argument.end)
         self.degree_functions = self.degree_functions or name in OF_DEGREES
         return _powered(Call(name, (argument,), start, argument.end), power)
-
-    def first_argument(self, argument: Node) -> list[Node]:
-        """Build a list of one argument."""
-        return [argument]
-
-    def next_argument(self, arguments: list[Node], _: int, argument: Node) -> list[Node]:
-        """Build the list with one more argument."""
-        arguments.append(argument)
-        return arguments
 
     def _may_be_degrees(self, base: Node) -> bool:
         """Tell whether `base` is made of numbers alone, and is not the ten of 3*10^0."""

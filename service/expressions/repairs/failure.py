@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from service.expressions.errors import ExpressionError, Span
-from service.expressions.parsing.parser import Token
+from service.expressions.parsing.lexer import Token
 from service.expressions.unreadable import UnreadableError
 from service.expressions.vocabulary.symbols import Vocabulary
 

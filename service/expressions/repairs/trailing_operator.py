@@ -1,7 +1,7 @@
 """A text that ends in an operator."""
 
 from service.expressions.errors import ExpressionError
-from service.expressions.parsing.parser import END
+from service.expressions.parsing.lexer import END
 from service.expressions.repairs.failure import Failure, halt, shown
 
 OPERATORS = frozenset({"PLUS", "MINUS", "STAR", "SLASH", "POWER", "ROOT"})

@@ -2,7 +2,7 @@
 
 from service.expressions.errors import ExpressionError, Span
 from service.expressions.parsing.brackets import PARTNERS
-from service.expressions.parsing.parser import END
+from service.expressions.parsing.lexer import END
 from service.expressions.repairs.failure import Failure, Halt, halt, place, shown
 
 _VALUES = frozenset({"NUMBER", "NAME", "RIGHT", "CLOSE", "UNIT", "LEFT"})
