@@ -3,8 +3,8 @@
 import re
 
 from service.expressions.errors import ExpressionError
-from service.expressions.nearest import nearest
 from service.expressions.repairs.failure import Failure, shown
+from service.expressions.repairs.nearest_name import nearest
 from service.expressions.vocabulary.symbols import Vocabulary, normal_form
 
 _INDEXED = re.compile(r"([^0-9]+)[0-9]+")

@@ -1,8 +1,8 @@
 """A known name with other capitals: L1 for l1."""
 
 from service.expressions.errors import ExpressionError
-from service.expressions.nearest import other_case
 from service.expressions.repairs.failure import Failure, shown
+from service.expressions.repairs.nearest_name import other_case
 
 
 def repair(failure: Failure) -> ExpressionError | None:

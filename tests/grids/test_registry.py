@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from service.grids import read_grid
-from tests.expressions.grids.writers import FORMATS, MATRICES, Rows
+from tests.grids.writers import FORMATS, MATRICES, Rows
 
 POSE = [
     ["c12", "-s12", "0", "a1*c1+a2*c12"],

@@ -7,7 +7,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from service.grids import GRID_LIMITS, Grid, GridError, read_grid
-from tests.expressions.grids.writers import FORMATS
+from tests.grids.writers import FORMATS
 
 # Seconds of process time for one text. The budget of 50 ms is for the benchmarks and the long fuzz;
 # here, traced for coverage on any machine, only a stall is a failure.
