@@ -5,9 +5,14 @@ from typing import Final
 from xml.sax.saxutils import escape
 
 from service.expressions.characters import greek
-from service.expressions.printing.latex import first_is_digit, is_power_of_ten
+from service.expressions.printing.brackets import (
+    ATOM,
+    POWER,
+    PRODUCT,
+    begins_with_digit,
+    needs_brackets,
+)
 from service.expressions.printing.symbol_names import stem_and_index
-from service.expressions.printing.text import ATOM, POWER, PRODUCT, level
 from service.expressions.tree import (
     Binary,
     Call,
@@ -71,9 +76,8 @@ def _binary(operator: Operator, left: Node, right: Node) -> str:
             return _mrow(f"<mo>−</mo><mfrac>{_row(left.operand)}{_row(right)}</mfrac>")
         return f"<mfrac>{_row(left)}{_row(right)}</mfrac>"
     if operator == "*":
-        times = "<mo>⋅</mo>" if first_is_digit(right) else _INVISIBLE_TIMES
-        first = _bracketed(left) if level(left) < PRODUCT else _row(left)
-        return _mrow(f"{first}{times}{_at(right, POWER)}")
+        times = "<mo>⋅</mo>" if begins_with_digit(right) else _INVISIBLE_TIMES
+        return _mrow(f"{_at(left, PRODUCT, first=True)}{times}{_at(right, POWER)}")
     return _mrow(f"{_row(left)}{_OPERATORS[operator]}{_at(right, PRODUCT)}")
 
 
@@ -131,24 +135,8 @@ def _call(function: str, arguments: list[str]) -> str:
     return _mrow(f"{name}{_APPLY}{_mrow(f'<mo>(</mo>{inside}<mo>)</mo>')}")
 
 
-def _at(node: Node, needed: int) -> str:
-    is_fraction = type(node) is Binary and node.operator == "/"
-    too_loose = needed == ATOM if is_fraction else level(node) < needed
-    unit_below_power = needed == ATOM and (type(node) is Unit or is_power_of_ten(node))
-    if too_loose or unit_below_power or _starts_signed(node):
-        return _bracketed(node)
-    return _row(node)
-
-
-def _bracketed(node: Node) -> str:
-    return _mrow(f"<mo>(</mo>{_row(node)}<mo>)</mo>")
-
-
-def _starts_signed(node: Node) -> bool:
-    match node:
-        case Negation():
-            return True
-        case Binary("+" | "-" | "*" | "/", left):
-            return _starts_signed(left)
-        case _:
-            return False
+def _at(node: Node, place: int, *, first: bool = False) -> str:
+    element = _row(node)
+    if not needs_brackets(node, element, place, first=first):
+        return element
+    return _mrow(f"<mo>(</mo>{element}<mo>)</mo>")

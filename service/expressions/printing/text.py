@@ -1,23 +1,12 @@
 """A tree -> normal text, which reads back to the same tree."""
 
-from typing import Final
-
+from service.expressions.printing.brackets import (
+    ATOM,
+    POWER,
+    PRODUCT,
+    needs_brackets,
+)
 from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, Unit, Variable
-
-# How tightly each form binds; a part that binds less than its place needs brackets.
-SUM, PRODUCT, SIGNED, POWER, ATOM = range(5)
-_LEVELS: Final = {"+": SUM, "-": SUM, "*": PRODUCT, "/": PRODUCT, "^": POWER}
-
-
-def level(node: Node) -> int:
-    """Return how tightly `node` binds."""
-    match node:
-        case Binary(operator):
-            return _LEVELS[operator]
-        case Negation():
-            return SIGNED
-        case _:
-            return ATOM
 
 
 def to_text(node: Node) -> str:
@@ -44,11 +33,10 @@ def to_text(node: Node) -> str:
         case Binary("+" | "-" as operator, left, right):
             return f"{to_text(left)} {operator} {_at(right, PRODUCT)}"
         case Binary(operator, left, right):
-            first = f"({to_text(left)})" if level(left) < PRODUCT else to_text(left)
-            return f"{first}{operator}{_at(right, POWER)}"
+            return f"{_at(left, PRODUCT, first=True)}{operator}{_at(right, POWER)}"
 
 
-def _at(node: Node, needed: int) -> str:
-    """Return `node` in a place that needs `needed`, where a sign must not come first."""
+def _at(node: Node, place: int, *, first: bool = False) -> str:
     text = to_text(node)
-    return f"({text})" if level(node) < needed or text.startswith("-") else text
+    brackets = needs_brackets(node, text, place, first=first, drawn=False)
+    return f"({text})" if brackets else text
