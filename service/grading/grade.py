@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from service.catalogue import Exercise, PartSpec
+from service.expressions import AngleUnit
 from service.grading.feedback import FeedbackLevel
 from service.grading.follow_through import (
     STANDS_STILL,
@@ -24,7 +25,7 @@ from service.grading.kinds.screw_axes import ScrewAxesKind
 from service.grading.kinds.transform import TransformKind
 from service.grading.kinds.vector import VectorKind
 from service.grading.part import AnswerKind, Grading, PartTerms
-from service.grading.reading.entry import MAX_CHARACTERS, AngleUnit, Reader
+from service.grading.reading.entry import MAX_CHARACTERS, Reader
 from service.grading.report import PartReport, Report, Verdict, rounded_points
 from service.grading.samples import draw
 

@@ -5,8 +5,9 @@ from collections.abc import Callable
 import pytest
 
 from service.catalogue import Exercise
+from service.expressions import AngleUnit
 from service.grading import Verdict
-from service.grading.reading.entry import AngleUnit, Reader
+from service.grading.reading.entry import Reader
 from service.grading.reading.pasted import length_unit
 from service.grading.reading.table import HandedInTable, UnreadableTableError, read_table
 from service.grading.samples import draw

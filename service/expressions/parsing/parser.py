@@ -28,10 +28,10 @@ on a list for its operand, so that no text comes near Python's recursion limit.
 from collections.abc import Callable, Sequence
 from functools import partial
 
+from service.expressions.errors import UnreadableError
 from service.expressions.parsing.lexer import END, Token
 from service.expressions.parsing.tree_builder import Builder
 from service.expressions.tree import Node
-from service.expressions.unreadable import UnreadableError
 
 # What is built of an operand that is still to be parsed: its sign, its power, its function.
 _Pending = list[Callable[[Node], Node]]

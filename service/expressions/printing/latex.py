@@ -18,8 +18,8 @@ from service.expressions.tree import (
     Number,
     Operator,
     Pi,
+    SymbolNode,
     Unit,
-    Variable,
 )
 
 _FUNCTIONS: Final = {
@@ -35,13 +35,13 @@ _FUNCTIONS: Final = {
 
 
 def to_latex(node: Node) -> str:
-    """Return `node` in LaTeX, for math mode."""
+    """``node`` in LaTeX, for math mode."""
     match node:
         case Number(literal=literal):
             return number(literal)
         case Pi():
             return r"\pi"
-        case Variable(symbol):
+        case SymbolNode(symbol):
             return symbol_latex(symbol)
         case Call(function, arguments):
             return _call(function, [to_latex(argument) for argument in arguments])
@@ -67,7 +67,7 @@ def _binary(operator: Operator, left: Node, right: Node) -> str:
 
 
 def number(literal: str) -> str:
-    r"""Return a number in LaTeX: 1e-3 -> 1 \cdot 10^{-3}."""
+    r"""A number in LaTeX: 1e-3 -> 1 \cdot 10^{-3}."""
     mantissa, _, exponent = literal.lower().partition("e")
     return rf"{mantissa} \cdot 10^{{{int(exponent)}}}" if exponent else mantissa
 

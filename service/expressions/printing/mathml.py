@@ -21,16 +21,16 @@ from service.expressions.tree import (
     Number,
     Operator,
     Pi,
+    SymbolNode,
     Unit,
-    Variable,
 )
 from service.expressions.vocabulary.symbols import Symbol
 
 _NAMES: Final = {"asin": "arcsin", "acos": "arccos", "atan": "arctan"}
 _OPERATORS: Final = {"+": "<mo>+</mo>", "-": "<mo>−</mo>"}
-# What a symbol's own LaTeX may be: a letter or a word, an index, and something raised.
+# The LaTeX that a symbol may declare: a letter or a word, an index, and something raised.
 _WORD: Final = r"\\(?:mathrm|text|mathit|operatorname)\{([^{}]*)\}"
-_DRESSED: Final = re.compile(_WORD)
+_IN_COMMAND: Final = re.compile(_WORD)
 _PART: Final = rf"(?:\\[A-Za-z]+|\{{(?:[^{{}}]|{_WORD})*\}}|[A-Za-z0-9*'])"
 _LATEX: Final = re.compile(
     rf"(?P<base>{_WORD}|\\?[A-Za-z]+)(?:_(?P<below>{_PART}))?"
@@ -42,18 +42,18 @@ _APPLY: Final = "<mo>&#x2061;</mo>"
 
 
 def to_mathml(node: Node) -> str:
-    """Return `node` as one <math> element."""
+    """``node`` as one ``<math>`` element."""
     return f'<math xmlns="http://www.w3.org/1998/Math/MathML">{_row(node)}</math>'
 
 
 def _row(node: Node) -> str:
-    """Return `node` as one element."""
+    """``node`` as one element."""
     match node:
         case Number(literal=literal):
             return _number(literal)
         case Pi():
             return "<mi>π</mi>"
-        case Variable(symbol):
+        case SymbolNode(symbol):
             return _variable(symbol)
         case Call(function, arguments):
             return _call(function, [_row(argument) for argument in arguments])
@@ -94,7 +94,7 @@ def _number(literal: str) -> str:
 
 
 def _variable(symbol: Symbol) -> str:
-    """Return a symbol as its LaTeX shows it: a letter with what stands below and above it."""
+    """A symbol as its LaTeX shows it: a letter with an index below and a mark above it."""
     match = None if symbol.latex is None else _LATEX.fullmatch(symbol.latex)
     if match is None:
         stem, index = stem_and_index(symbol.name)
@@ -116,12 +116,12 @@ def _unbraced(part: str) -> str:
 
 
 def _identifier(text: str) -> str:
-    """Return a letter, a word or an index, which LaTeX may have dressed in a command."""
-    dressed = _DRESSED.fullmatch(text)
-    plain = dressed[1] if dressed else text.removeprefix("\\")
+    """A letter, a word or an index, which may stand in a LaTeX command."""
+    in_command = _IN_COMMAND.fullmatch(text)
+    plain = in_command[1] if in_command else text.removeprefix("\\")
     plain = _STARS.get(plain, plain)
     tag = "mn" if plain.isdigit() else "mo" if plain in _STARS.values() else "mi"
-    upright = " mathvariant='normal'" if dressed and len(plain) == 1 and tag == "mi" else ""
+    upright = " mathvariant='normal'" if in_command and len(plain) == 1 and tag == "mi" else ""
     return f"<{tag}{upright}>{escape(greek.LETTERS.get(plain, plain))}</{tag}>"
 
 

@@ -6,23 +6,23 @@ from service.expressions.printing.brackets import (
     PRODUCT,
     needs_brackets,
 )
-from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, Unit, Variable
+from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
 
 
 def to_text(node: Node) -> str:
-    """Return `node` in normal text: canonical names, every product written."""
+    """``node`` in normal text: canonical names, every product written."""
     match node:
         case Number(literal=literal):
             return literal
         case Pi():
             return "pi"
-        case Variable(symbol):
+        case SymbolNode(symbol):
             return symbol.name
         case Call(function, arguments):
             return f"{function}({', '.join(map(to_text, arguments))})"
         case Unit(operand, unit):
             # A name and its unit would run together into one word.
-            gap = " " if isinstance(operand, Pi | Variable) else ""
+            gap = " " if isinstance(operand, Pi | SymbolNode) else ""
             return f"{_at(operand, ATOM)}{gap}{unit}"
         case Negation(operand):
             return f"-{_at(operand, POWER)}"

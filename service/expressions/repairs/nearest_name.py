@@ -1,4 +1,4 @@
-"""The known names that an unknown one was probably meant to be."""
+"""The known names that are nearest to an unknown one."""
 
 import difflib
 
@@ -8,14 +8,14 @@ from service.expressions.vocabulary.symbols import Vocabulary, normal_form
 
 # A longer run is no slip of one name, and comparing it would cost time.
 _LONGEST_SLIP = 24
-# Nobody means these by a name that is nearly theirs.
+# Rare names, which are never offered.
 _OF_DEGREES = frozenset({*OF_DEGREES, *IN_DEGREES, "deg2rad", "rad2deg"})
 
 
 def other_case(run: str, vocabulary: Vocabulary, called: bool) -> str | None:
-    """Return `run` with the capitals that the known names have, or None.
+    """``run`` with other capitals, where that is known, or None.
 
-    `called` tells that a bracket follows it.
+    ``called`` tells that a bracket follows.
     """
     if len(run) > _LONGEST_SLIP:
         return None
@@ -30,20 +30,20 @@ def other_case(run: str, vocabulary: Vocabulary, called: bool) -> str | None:
 
 
 def nearest(run: str, vocabulary: Vocabulary, called: bool) -> str | None:
-    """Return the known name that `run` was probably meant to be, or None."""
+    """The known name nearest to ``run``, or None."""
     plain = normal_form(run)
     if not 1 < len(plain) <= _LONGEST_SLIP:
-        # One letter is as near to pi as to exp: there is no telling.
+        # One letter is as near to pi as to exp.
         return None
     pool = set(SPELLINGS) - _OF_DEGREES if called else _names(vocabulary)
-    # Nor is a name near that leaves out most of what was written.
+    # A name of a very different length is not near.
     pool = {name for name in pool if abs(len(name) - len(plain)) <= max(1, len(plain) // 3)}
     close = difflib.get_close_matches(plain, sorted(pool), n=1, cutoff=0.6)
     return _as_declared(close[0], vocabulary) if close else None
 
 
 def _as_declared(name: str, vocabulary: Vocabulary) -> str:
-    """Return l_base for lbase; an alias, q1, stays what it is."""
+    """The canonical name l_base for lbase; an alias, q1, stays as it is."""
     symbol = vocabulary.by_name.get(name)
     return symbol.name if symbol is not None and normal_form(symbol.name) == name else name
 

@@ -3,12 +3,12 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal
 
 import numpy as np
 
 from service.expressions import (
     LIMITS,
+    AngleUnit,
     Expression,
     ExpressionError,
     Kind,
@@ -21,8 +21,6 @@ from service.grading.feedback import Finding
 from service.grading.report import Severity, Verdict
 from service.grading.samples import HALF, SAMPLES, Samples
 from service.kinematics.transforms import Numbers
-
-AngleUnit = Literal["radians", "degrees"]
 
 # Textbooks mark the joint variable so in every table; six notes about it would bury the others.
 EXPECTED_NOTES = frozenset({"joint_marker"})

@@ -13,7 +13,7 @@ from service.grading.reading.entry import Entry, Reader, unreadable
 from service.grading.reading.length_units import in_unit
 from service.grading.reading.row_labels import in_order, is_label
 from service.grading.report import Severity
-from service.grids import Cell, Grid, GridError, read_grid
+from service.grids import Grid, GridCell, GridError, read_grid
 from service.kinematics.chain import COLUMNS
 
 # Names for these columns, as they are written in a message.
@@ -29,7 +29,7 @@ class PastedRow:
     Where nobody can say which is which there is a ``problem``, and each cell is the whole row.
     """
 
-    cells: tuple[Cell, ...]
+    cells: tuple[GridCell, ...]
     problem: Finding | None = None
 
 
@@ -105,7 +105,9 @@ def entries_of(table: PastedTable, reader: Reader, unit: str | None) -> list[tup
     ]
 
 
-def table_entry(cell: Cell, column: str, header: Header, reader: Reader, unit: str | None) -> Entry:
+def table_entry(
+    cell: GridCell, column: str, header: Header, reader: Reader, unit: str | None
+) -> Entry:
     """One cell of a table, in the unit that its header names."""
     if header.angle_unit:
         reader = replace(reader, angle_unit=header.angle_unit)
@@ -115,7 +117,7 @@ def table_entry(cell: Cell, column: str, header: Header, reader: Reader, unit: s
     return placed(entry, cell)
 
 
-def _found_headers(row: Sequence[Cell], reader: Reader) -> list[Header | None] | None:
+def _found_headers(row: Sequence[GridCell], reader: Reader) -> list[Header | None] | None:
     """What each cell of the first row says as a header; None where the row holds values.
 
     A name such as ``a`` may be a header or a declared length: the row's other cells decide.
@@ -135,7 +137,7 @@ def _found_headers(row: Sequence[Cell], reader: Reader) -> list[Header | None] |
 
 
 def _columns_by_headers(
-    row: Sequence[Cell], found: Sequence[Header | None]
+    row: Sequence[GridCell], found: Sequence[Header | None]
 ) -> tuple[tuple[ColumnOrder, ...], int | None, tuple[Finding, ...]]:
     unknown = [cell for cell, header in zip(row, found, strict=True) if not header and cell.text]
     if unknown:
@@ -180,7 +182,7 @@ def _header(found: Sequence[Header | None], place: int) -> Header:
     return header
 
 
-def _check_unit(header: Header, column: str, cell: Cell) -> None:
+def _check_unit(header: Header, column: str, cell: GridCell) -> None:
     if not header.unit:
         return
     is_angle = QUANTITIES[column] == "angle"
@@ -193,7 +195,7 @@ def _check_unit(header: Header, column: str, cell: Cell) -> None:
         )
 
 
-def _left_aside(row: Sequence[Cell], found: Sequence[Header | None]) -> tuple[Finding, ...]:
+def _left_aside(row: Sequence[GridCell], found: Sequence[Header | None]) -> tuple[Finding, ...]:
     return tuple(
         _info("column_left_aside", f"The column {shown(cell.text)} was left aside.", cell)
         for cell, header in zip(row, found, strict=True)
@@ -201,7 +203,9 @@ def _left_aside(row: Sequence[Cell], found: Sequence[Header | None]) -> tuple[Fi
     )
 
 
-def _convention_hint(row: Sequence[Cell], columns: Sequence[ColumnOrder]) -> tuple[Finding, ...]:
+def _convention_hint(
+    row: Sequence[GridCell], columns: Sequence[ColumnOrder]
+) -> tuple[Finding, ...]:
     shifted = [row[place or 0] for place, header in columns if header.shifted]
     if not shifted:
         return ()
@@ -237,7 +241,7 @@ def _columns_in_order(
     return columns, 0 if has_labels else None, (finding,)
 
 
-def _row(row: Sequence[Cell], columns: Sequence[ColumnOrder], width: int) -> PastedRow:
+def _row(row: Sequence[GridCell], columns: Sequence[ColumnOrder], width: int) -> PastedRow:
     if len(row) != width:
         finding = Finding(
             "row_length",
@@ -279,7 +283,7 @@ def read_pasted_matrix(
     return entries
 
 
-def _matrix_row(row: Sequence[Cell], quantities: Sequence[Kind], reader: Reader) -> list[Entry]:
+def _matrix_row(row: Sequence[GridCell], quantities: Sequence[Kind], reader: Reader) -> list[Entry]:
     if len(row) != len(quantities):
         finding = Finding(
             "row_length",
@@ -297,7 +301,7 @@ def _matrix_row(row: Sequence[Cell], quantities: Sequence[Kind], reader: Reader)
 # --- both
 
 
-def placed(entry: Entry, cell: Cell) -> Entry:
+def placed(entry: Entry, cell: GridCell) -> Entry:
     """The entry with its spans moved from the cell to the text that it was pasted in."""
     if not entry.findings:
         return entry
@@ -308,11 +312,11 @@ def placed(entry: Entry, cell: Cell) -> Entry:
     return replace(entry, findings=findings)
 
 
-def _span(cells: Sequence[Cell]) -> tuple[int, int]:
+def _span(cells: Sequence[GridCell]) -> tuple[int, int]:
     return cells[0].whole[0], max(cells[0].whole[1], cells[-1].whole[1])
 
 
-def _info(code: str, message: str, cell: Cell) -> Finding:
+def _info(code: str, message: str, cell: GridCell) -> Finding:
     return Finding(code, message, severity=Severity.INFO, span=cell.whole, reading=True)
 
 

@@ -3,13 +3,13 @@
 from dataclasses import dataclass, replace
 
 from service.catalogue import Exercise
-from service.expressions import ExpressionError, Kind, Note, read
+from service.expressions import AngleUnit, ExpressionError, Kind, Note, read
 from service.expressions.errors import Span
 from service.grading.reading.column_headers import QUANTITIES
-from service.grading.reading.entry import AngleUnit, Entry, Reader
+from service.grading.reading.entry import Entry, Reader
 from service.grading.reading.pasted import length_unit, placed, read_pasted_table, table_entry
 from service.grading.samples import draw
-from service.grids import Cell, GridError, read_grid
+from service.grids import GridCell, GridError, read_grid
 from service.kinematics.chain import COLUMNS
 
 
@@ -125,7 +125,7 @@ def _matrix(text: str, quantity: Kind, reader: Reader) -> PastedPreview:
 
 
 def _cell(
-    entry: Entry, cell: Cell, place: tuple[str, str], quantity: Kind, reader: Reader
+    entry: Entry, cell: GridCell, place: tuple[str, str], quantity: Kind, reader: Reader
 ) -> CellPreview:
     empty = CellPreview(*place, cell.whole, cell.text)
     if not cell.text:

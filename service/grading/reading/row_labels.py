@@ -7,7 +7,7 @@ from typing import Final
 
 from service.grading.feedback import Finding
 from service.grading.report import Severity
-from service.grids import Cell, GridError
+from service.grids import GridCell, GridError
 
 LAST: Final = 10_000
 _LONGEST: Final = 30
@@ -42,7 +42,7 @@ def is_label(text: str) -> bool:
     return label_place(text) is not None
 
 
-def in_order(labels: Sequence[Cell]) -> tuple[list[int], tuple[Finding, ...]]:
+def in_order(labels: Sequence[GridCell]) -> tuple[list[int], tuple[Finding, ...]]:
     """The rows' places in the order of their labels, and what is to be said about it.
 
     Raises GridError where two rows have one label. Labels that say nothing leave the order alone.
@@ -71,5 +71,5 @@ def in_order(labels: Sequence[Cell]) -> tuple[list[int], tuple[Finding, ...]]:
     return order, (_info("rows_reordered", message, labels[moved]),)
 
 
-def _info(code: str, message: str, cell: Cell) -> Finding:
+def _info(code: str, message: str, cell: GridCell) -> Finding:
     return Finding(code, message, severity=Severity.INFO, span=cell.whole, reading=True)

@@ -13,10 +13,10 @@ from unittest.mock import Mock
 import pytest
 
 from service.expressions import LIMITS, ExpressionError, Vocabulary, read
+from service.expressions.errors import UnreadableError
 from service.expressions.parsing import parser
 from service.expressions.parsing.lexer import END, Token
 from service.expressions.parsing.tree_builder import Builder
-from service.expressions.unreadable import UnreadableError
 
 # A part of a rule: a symbol, or what may be repeated or left out, as alternatives of sequences.
 Part = tuple[str, "str | list[list[Part]]"]
