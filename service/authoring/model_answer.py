@@ -7,8 +7,7 @@ from typing import Final
 from service.authoring.grading import graded, in_words
 from service.authoring.remarks import Remark, failed
 from service.catalogue import Exercise
-from service.expressions import LIMITS
-from service.grading.reading.entry import AngleUnit
+from service.expressions import LIMITS, AngleUnit
 
 UNITS: Final[tuple[AngleUnit, ...]] = ("radians", "degrees")
 

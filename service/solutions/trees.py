@@ -14,7 +14,7 @@ import sympy
 from service.catalogue import Exercise
 from service.expressions import ExpressionError, Symbol, Vocabulary, read
 from service.expressions.printing.text import to_text
-from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, Unit, Variable
+from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
 
 _NAMES: Mapping[type, str] = {
     sympy.sin: "sin",
@@ -65,7 +65,7 @@ class Writer:
         if isinstance(expression, sympy.Add):
             return _signed_sum(sorted(expression.args, key=self._in_sum), self._node)
         if isinstance(expression, sympy.Symbol):
-            return Variable(self._symbols[expression.name])
+            return SymbolNode(self._symbols[expression.name])
         if isinstance(expression, sympy.Pow):
             return self._power(*expression.args)
         if expression == sympy.pi:
@@ -130,7 +130,7 @@ class Writer:
         if short is None or not _reads_as(short, call, self._vocabulary):
             return call
         self.used[short] = to_text(call)
-        return Variable(Symbol(short, "number"))
+        return SymbolNode(Symbol(short, "number"))
 
     def _shorthand(self, function: str, terms: Sequence[sympy.Expr]) -> str | None:
         """Such as c12 for the cosine of a sum of joint angles."""

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from service.catalogue import Exercise
 from service.grading import FeedbackLevel, Submission, grade
 from service.grading.reading.preview import preview_pasted
-from tests.expressions.grids.writers import FORMATS
 from tests.grading.support.robots import EXACT, RRRP
 from tests.grading.support.submitting import as_data
+from tests.grids.writers import FORMATS
 
 HEADERS = ["a [mm]", "alpha (deg)", "d", "theta"]
 SEEDS = [write([HEADERS, *EXACT.rows(RRRP)]) for write in FORMATS.values()]

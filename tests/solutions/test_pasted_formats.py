@@ -7,8 +7,8 @@ import pytest
 from service.catalogue import DhTableSpec, Exercise, shipped_folder
 from service.kinematics.chain import COLUMNS
 from service.solutions import solve
-from tests.expressions.grids.writers import FORMATS
 from tests.grading.support.submitting import full_marks, handed_in
+from tests.grids.writers import FORMATS
 
 IDS = sorted(file.stem for file in shipped_folder().glob("*.toml"))
 

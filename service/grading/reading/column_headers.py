@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from service.expressions import Kind
-from service.grading.reading.entry import AngleUnit
+from service.expressions import AngleUnit, Kind
 
 LABEL: Final = "label"
 ASIDE: Final = "aside"

@@ -3,13 +3,14 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Literal, Self
+from typing import Self
 
 import numpy as np
 
 from service.catalogue import Exercise
 from service.expressions import (
     LIMITS,
+    AngleUnit,
     Expression,
     ExpressionError,
     Kind,
@@ -23,8 +24,6 @@ from service.grading.report import Verdict
 from service.grading.samples import SAMPLES, Samples
 from service.grading.work_budget import MAX_CHARACTERS, WorkBudget
 from service.kinematics.transforms import Numbers
-
-AngleUnit = Literal["radians", "degrees"]
 
 # Textbooks mark the joint variable so in every table: six notes on it would hide the others.
 EXPECTED_NOTES = frozenset({"joint_marker"})

@@ -16,7 +16,7 @@ from service.grading.reading.entry import (
 )
 from service.grading.reading.pasted import from_grid_error, place_of, placed
 from service.grading.samples import Samples
-from service.grids import Cell, GridError, read_grid
+from service.grids import GridCell, GridError, read_grid
 from service.kinematics.transforms import Numbers
 
 Quantities = Sequence[Sequence[Kind]]
@@ -110,7 +110,7 @@ def _pasted(text: str, quantities: Quantities, reader: Reader) -> list[list[Entr
     return entries
 
 
-def _pasted_row(row: Sequence[Cell], kinds: Sequence[Kind], reader: Reader) -> list[Entry]:
+def _pasted_row(row: Sequence[GridCell], kinds: Sequence[Kind], reader: Reader) -> list[Entry]:
     if len(row) != len(kinds):
         return _of_wrong_length(f"{len(row)} entries", len(kinds), place_of(row))
     return [

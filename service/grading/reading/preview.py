@@ -3,13 +3,13 @@
 from dataclasses import dataclass, replace
 
 from service.catalogue import Exercise
-from service.expressions import Kind, Note
+from service.expressions import AngleUnit, Kind, Note
 from service.expressions.errors import Span
-from service.grading.reading.entry import AngleUnit, Entry, Reader
+from service.grading.reading.entry import Entry, Reader
 from service.grading.reading.pasted import placed
 from service.grading.reading.pasted_table import read_pasted_table, table_entry
 from service.grading.samples import draw
-from service.grids import Cell, GridError, read_grid
+from service.grids import GridError, read_grid
 from service.kinematics.chain import COLUMNS
 
 
@@ -119,7 +119,7 @@ def _matrix(text: str, quantity: Kind, reader: Reader) -> PastedPreview:
     return PastedPreview(rows, grid.notes)
 
 
-def _cell(entry: Entry, cell: Cell, place: tuple[str, str]) -> CellPreview:
+def _cell(entry: Entry, cell: GridCell, place: tuple[str, str]) -> CellPreview:
     empty = CellPreview(*place, cell.whole, cell.text)
     if not cell.text:
         return empty

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from service.grading.feedback import Finding, reading_note
-from service.grids import Cell, GridError
+from service.grids import GridCell, GridError
 
 LAST: Final = 10_000
 _LONGEST: Final = 30
@@ -41,7 +41,7 @@ def is_label(text: str) -> bool:
     return label_place(text) is not None
 
 
-def in_order(labels: Sequence[Cell]) -> tuple[list[int], tuple[Finding, ...]]:
+def in_order(labels: Sequence[GridCell]) -> tuple[list[int], tuple[Finding, ...]]:
     """The places of the rows in the order of their labels, with the findings on it.
 
     Rows keep their order where a label has no place. Raises GridError where two have one label.

@@ -13,7 +13,7 @@ from service.grading.feedback import (
 )
 from service.grading.reading.entry import MISSING, Entry, Reader, entry_values
 from service.grading.reading.pasted import from_grid_error, placed
-from service.grids import Cell, GridError, read_grid
+from service.grids import GridCell, GridError, read_grid
 from service.kinematics.transforms import Numbers
 
 
@@ -99,7 +99,7 @@ def _pasted(text: str, quantities: Sequence[Kind], reader: Reader, *, planar: bo
         if entries is None:
             raise UnreadableAnswerError(_from_grid_error(error, len(quantities))) from error
         return entries
-    cells: Sequence[Cell] = rows[0] if len(rows) == 1 else [row[0] for row in rows]
+    cells: Sequence[GridCell] = rows[0] if len(rows) == 1 else [row[0] for row in rows]
     is_list = len(rows) == 1 or all(len(row) == 1 for row in rows)
     left_aside = planar and len(cells) == len(quantities) + 1 and _is_zero(cells[-1].text)
     if not is_list or len(cells) > len(quantities) + left_aside:

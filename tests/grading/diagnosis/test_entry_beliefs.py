@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from service.catalogue import Exercise
-from service.expressions import read
+from service.expressions import AngleUnit, read
 from service.grading.diagnosis import matrix_entry
 from service.grading.diagnosis.formula_repair import WrongEntry
 from service.grading.feedback import Finding
-from service.grading.reading.entry import AngleUnit
 from service.grading.samples import SAMPLES, draw
 
 Misconception = Callable[[WrongEntry], Finding | None]

@@ -5,9 +5,10 @@ from collections.abc import Callable
 import pytest
 
 from service.catalogue import Exercise
+from service.expressions import AngleUnit
 from service.grading import Verdict
 from service.grading.feedback import UnreadableAnswerError
-from service.grading.reading.entry import AngleUnit, Reader
+from service.grading.reading.entry import Reader
 from service.grading.reading.table import HandedInTable, read_table
 from service.grading.samples import draw
 from tests.grading.support.submitting import full_marks, handed_in, part

@@ -12,9 +12,9 @@ from sympy.printing.numpy import NumPyPrinter
 from service.catalogue import Exercise
 from service.grading import PartReport, Verdict
 from service.grids import read_grid
-from tests.expressions.grids.writers import FORMATS
 from tests.grading.support.robots import PLANAR_RRR, ROBOTS, Robot
 from tests.grading.support.submitting import cell, codes, full_marks, handed_in, not_correct, part
+from tests.grids.writers import FORMATS
 
 POSE = [
     ["c123", "-s123", "0", "l1*c1+l2*c12+l3*c123"],

@@ -6,9 +6,9 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import PartReport, Severity, Verdict
-from tests.expressions.grids.writers import FORMATS, TABLES
 from tests.grading.support.robots import ROBOTS, RRRP, Robot, in_pi, with_unit
 from tests.grading.support.submitting import cell, codes, full_marks, handed_in, not_correct, part
+from tests.grids.writers import FORMATS, TABLES
 
 HEADERS = ["i", "a", "alpha", "d", "theta"]
 SPELLINGS: dict[str, tuple[Callable[[int], str], list[str]]] = {
