@@ -27,7 +27,7 @@ from service.catalogue.schema import (
 )
 from service.catalogue.screw_robot import FormulaGrid, ScrewRobot, grid_values
 from service.expressions import Kind, Vocabulary
-from service.kinematics.dh_row import gap, slant
+from service.kinematics.dh_row import dh1_residual, dh2_residual
 from service.kinematics.transforms import Matrices, Numbers
 
 Reference = Robot | ScrewRobot
@@ -195,7 +195,10 @@ def _check_screws(field: str, numbers: Numbers) -> None:
 
 def _check_conditions(field: str, part: DhRowSpec, transform: Matrices) -> None:
     """The two conditions hold for all values of the symbols or fail for all. Raises FieldError."""
-    for residual in (slant(transform, part.convention), gap(transform, part.convention)):
+    for residual in (
+        dh1_residual(transform, part.convention),
+        dh2_residual(transform, part.convention),
+    ):
         holds = np.abs(residual) < EXACT
         if holds.any() and not holds.all():
             raise FieldError(

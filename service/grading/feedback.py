@@ -1,4 +1,4 @@
-"""What a grader has to say, before it is decided how much of it the student is shown."""
+"""Findings: the messages of a grading, before the feedback level decides what is visible."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -7,7 +7,7 @@ from service.grading.report import Feedback, Severity
 
 
 class FeedbackLevel(StrEnum):
-    """How much a report tells: everything, all but the correction, or only what could be read."""
+    """The amount that a report tells: all, all but the correction, or only the reading."""
 
     FULL = "full"
     VERDICTS = "verdicts"
@@ -16,10 +16,11 @@ class FeedbackLevel(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A message in two sentences: what to look at, and the correction itself.
+    """A message in two sentences: a hint where to look, and the correction itself.
 
-    ``code`` is stable, so that a class can be counted. ``reading`` marks what concerns the reading
-    of the text and not its worth: it gives nothing away and is told at every level.
+    ``code`` is stable, so that a class can be counted. ``values`` is a counterexample. ``reading``
+    marks a finding on the reading of a text and not on its worth: it gives nothing away and is
+    visible at every level. ``suggestion`` is the repaired text of one that cannot be read.
     """
 
     code: str
@@ -29,8 +30,9 @@ class Finding:
     span: tuple[int, int] | None = None
     values: dict[str, float | str] | None = None
     reading: bool = False
+    suggestion: str | None = None
 
-    def shown(
+    def visible(
         self, level: FeedbackLevel, row: str | None = None, cell: str | None = None
     ) -> Feedback | None:
         """The message at this level, or None where the level keeps it back."""
@@ -49,6 +51,24 @@ class Finding:
         )
 
 
+def reading_error(code: str, message: str, span: tuple[int, int] | None = None) -> Finding:
+    """The finding that something cannot be read."""
+    return Finding(code, message, span=span, reading=True)
+
+
+def reading_note(code: str, message: str, span: tuple[int, int] | None = None) -> Finding:
+    """The finding that something was read, and how."""
+    return Finding(code, message, severity=Severity.INFO, span=span, reading=True)
+
+
+class UnreadableAnswerError(Exception):
+    """Nothing of an answer can be read; ``finding`` says what it would have to look like."""
+
+    def __init__(self, finding: Finding) -> None:
+        super().__init__(finding.hint)
+        self.finding = finding
+
+
 ROUNDED = Finding(
     "rounded",
     "Accepted, though rounded: write it exactly (pi/2, sqrt(2)/2) and nothing can be lost.",
@@ -56,7 +76,7 @@ ROUNDED = Finding(
 )
 
 
-def shown(
+def visible_messages(
     findings: tuple[Finding, ...],
     level: FeedbackLevel,
     row: str | None = None,
@@ -65,5 +85,5 @@ def shown(
     """The messages that the level lets through."""
     if not findings:
         return ()
-    feedback = (finding.shown(level, row, cell) for finding in findings)
+    feedback = (finding.visible(level, row, cell) for finding in findings)
     return tuple(message for message in feedback if message is not None)

@@ -1,50 +1,22 @@
-"""Grading a whole submission: each part by its kind."""
+"""A submission -> a report: each part is read and judged by its kind."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from service.catalogue import Exercise, PartSpec
-from service.grading.feedback import FeedbackLevel
-from service.grading.follow_through import (
-    STANDS_STILL,
-    carries,
-    followed_part,
-    follows_from,
-    own_chain,
-    stands_still,
-)
-from service.grading.kinds.dh_row import DhRowKind
-from service.grading.kinds.dh_table import DhTableKind
-from service.grading.kinds.euler_angles import EulerAnglesKind
-from service.grading.kinds.link_transforms import LinkTransformsKind
-from service.grading.kinds.matrix import MatrixKind
-from service.grading.kinds.position import PositionKind
-from service.grading.kinds.rotation import RotationKind
-from service.grading.kinds.screw_axes import ScrewAxesKind
-from service.grading.kinds.transform import TransformKind
-from service.grading.kinds.vector import VectorKind
-from service.grading.part import AnswerKind, Grading, PartTerms
-from service.grading.reading.entry import MAX_CHARACTERS, AngleUnit, Reader
+from service.grading.feedback import FeedbackLevel, UnreadableAnswerError
+from service.grading.follow_through import STANDS_STILL, can_follow_through, follows_from
+from service.grading.kinds import KINDS
+from service.grading.part import Grading, Judged, StudentChain, part_report, unjudged_report
+from service.grading.reading.entry import AngleUnit, Reader
 from service.grading.report import PartReport, Report, Verdict, rounded_points
 from service.grading.samples import draw
-
-KINDS: Mapping[str, AnswerKind] = {
-    "dh_table": DhTableKind(),
-    "link_transforms": LinkTransformsKind(),
-    "transform": TransformKind(),
-    "rotation": RotationKind(),
-    "matrix": MatrixKind(),
-    "position": PositionKind(),
-    "vector": VectorKind(),
-    "euler_angles": EulerAnglesKind(),
-    "screw_axes": ScrewAxesKind(),
-    "dh_row": DhRowKind(),
-}
 
 
 @dataclass(frozen=True, slots=True)
 class Submission:
-    """What was handed in: one JSON value for each part answered."""
+    """The answers that were handed in: one JSON value for each part answered."""
 
     answers: Mapping[str, object]
     angle_unit: AngleUnit = "radians"
@@ -73,11 +45,12 @@ def grade(exercise: Exercise, submission: Submission) -> Report:
             raise UnknownPartError(part_id, exercise)
     degrees = submission.angle_unit == "degrees"
     samples = draw(exercise, submission.answers, degrees=degrees)
-    reader = Reader(exercise.vocabulary, samples, submission.angle_unit)
+    reader = Reader.of(exercise, samples, submission.angle_unit)
     grading = Grading(exercise, samples, reader, submission.feedback)
-    parts: list[PartReport] = []
+    graded: dict[str, _Graded] = {}
     for part in exercise.parts:
-        parts.append(_followed(part, submission.answers, parts, grading))
+        graded[part.id] = _graded(part, submission.answers, graded, grading)
+    parts = [each.report for each in graded.values()]
     if grading.level is FeedbackLevel.SCORE:
         parts = [_without_rows(part) for part in parts]
     points = rounded_points(sum(part.points for part in parts))
@@ -93,49 +66,76 @@ def grade(exercise: Exercise, submission: Submission) -> Report:
     )
 
 
-def _followed(
+@dataclass(frozen=True)
+class _Graded:
+    """A part that was graded; ``judged`` is None where there was nothing to judge."""
+
+    part: PartSpec
+    report: PartReport
+    judged: Judged | None
+
+    @cached_property
+    def chain(self) -> StudentChain | None:
+        """The answer as a chain that later parts may follow from."""
+        return None if self.judged is None else self.judged.chain()
+
+
+def _graded(
     part: PartSpec,
     answers: Mapping[str, object],
-    earlier: Sequence[PartReport],
+    earlier: Mapping[str, _Graded],
     grading: Grading,
-) -> PartReport:
-    """The report on a part, by the reference or by the student's own earlier answer."""
+) -> _Graded:
+    """A part judged by the reference, or by the student's own answer to the part it follows."""
     answer = answers.get(part.id)
     if answer is None:
-        terms = PartTerms(part.id, part.kind, part.points, part.all_or_nothing)
-        return terms.unread(Verdict.MISSING)
-    source = followed_part(part, answers, grading.exercise)
-    own = None if source is None else own_chain(source, answers[source.id], _afresh(grading))
-    grading = replace(grading, source=own)
-    grading.reader.moving = False
-    report = KINDS[part.kind].grade(part, answer, grading)
-    if report.points and stands_still(part, grading):
-        return _without_points(report, grading)
-    if report.verdict is Verdict.CORRECT or own is None or source is None:
-        return report
-    carrier = next(done for done in earlier if done.part == source.id)
-    if not carries(source, answers[source.id], carrier, part, grading):
-        return report
-    by_own = KINDS[part.kind].grade(part, answer, replace(_afresh(grading), following=True))
-    if by_own.points <= report.points:
-        return report
-    told = grading.visible((follows_from(source),))
-    return replace(by_own, follow_through=True, feedback=(*told, *by_own.feedback))
+        return _Graded(part, unjudged_report(part, Verdict.MISSING), None)
+    followed = _followed(part, answers, earlier)
+    if followed is not None:
+        grading = replace(grading, student_chain=followed.chain)
+    kind = KINDS[part.kind]
+    try:
+        read = kind.read(part, answer, grading)
+    except UnreadableAnswerError as error:
+        messages = grading.visible((error.finding,))
+        return _Graded(part, unjudged_report(part, Verdict.UNREADABLE, messages), None)
+    if read is None:
+        return _Graded(part, unjudged_report(part, Verdict.MISSING), None)
+    judged = kind.judge(part, read, grading)
+    report = part_report(part, judged)
+    if report.points and judged.stands_still:
+        return _Graded(part, _without_points(report, grading), judged)
+    if report.verdict is Verdict.CORRECT or followed is None or followed.chain is None:
+        return _Graded(part, report, judged)
+    if can_follow_through(part, followed.report, followed.chain, grading):
+        by_student = part_report(part, kind.judge(part, read, replace(grading, following=True)))
+        if by_student.points > report.points:
+            messages = grading.visible((follows_from(followed.part),))
+            report = replace(
+                by_student, follow_through=True, feedback=(*messages, *by_student.feedback)
+            )
+    return _Graded(part, report, judged)
+
+
+def _followed(
+    part: PartSpec, answers: Mapping[str, object], earlier: Mapping[str, _Graded]
+) -> _Graded | None:
+    """The part that this one follows: where that one has no answer, the one that it follows."""
+    while part.follows is not None:
+        part = earlier[part.follows].part
+        if answers.get(part.id) is not None:
+            return earlier[part.id]
+    return None
 
 
 def _without_points(report: PartReport, grading: Grading) -> PartReport:
     """The report on an answer that no joint moves: what is right in it is right by chance."""
     rows = tuple(replace(row, points=0.0) for row in report.rows)
     verdict = Verdict.INCORRECT if report.verdict is Verdict.PARTIAL else report.verdict
-    told = grading.visible((STANDS_STILL,))
+    messages = grading.visible((STANDS_STILL,))
     return replace(
-        report, rows=rows, points=0.0, verdict=verdict, feedback=(*told, *report.feedback)
+        report, rows=rows, points=0.0, verdict=verdict, feedback=(*messages, *report.feedback)
     )
-
-
-def _afresh(grading: Grading) -> Grading:
-    """The same grading with nothing read yet."""
-    return replace(grading, reader=replace(grading.reader, left=MAX_CHARACTERS, unread=0))
 
 
 def _without_rows(report: PartReport) -> PartReport:

@@ -1,10 +1,11 @@
-"""What an answer kind is: one file in this package with one object that fits this protocol."""
+"""An answer kind: how answers of it are read and judged. One file of ``kinds`` holds each."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from service.catalogue import Exercise
-from service.grading.feedback import FeedbackLevel, Finding, shown
+from service.catalogue import Exercise, PartSpec
+from service.grading.feedback import FeedbackLevel, Finding, visible_messages
 from service.grading.reading.entry import Reader
 from service.grading.report import (
     Feedback,
@@ -20,16 +21,18 @@ from service.kinematics.transforms import Matrices, inverse
 
 
 @dataclass(frozen=True, slots=True)
-class OwnChain:
-    """An earlier answer of the student's, as a chain that a later part may follow from.
+class StudentChain:
+    """An answer as a chain of links, which a later part may follow from.
 
     ``frames`` ``(k + 1, SAMPLES, 4, 4)`` are its frames in the base frame, from the base on; the
-    last is the tool's. ``nearest_links`` ``(k, SAMPLES, 4, 4)`` are the link transforms of the
-    valid table nearest to it, None where it is no table.
+    last is the tool's. ``tool_at`` gives the tool's frame at other samples, NaN where it has none.
+    ``nearest_links`` ``(k, SAMPLES, 4, 4)`` are the link transforms of the valid table nearest to
+    the answer, None where it is no table.
     """
 
     frames: Matrices
-    nearest_links: Matrices | None
+    tool_at: Callable[[Samples], Matrices]
+    nearest_links: Matrices | None = None
 
     @property
     def links(self) -> Matrices:
@@ -39,9 +42,9 @@ class OwnChain:
 
 @dataclass(frozen=True, slots=True)
 class Grading:
-    """One submission being graded: what every answer kind may look at.
+    """One submission being graded: everything that an answer kind may use.
 
-    ``source`` is the earlier answer that the part follows from, where there is one. With
+    ``student_chain`` is the earlier answer that the part follows from, where there is one. With
     ``following`` the part is judged by that answer and not by the reference.
     """
 
@@ -49,56 +52,78 @@ class Grading:
     samples: Samples
     reader: Reader
     level: FeedbackLevel
-    source: OwnChain | None = None
+    student_chain: StudentChain | None = None
     following: bool = False
 
     def visible(
         self, findings: tuple[Finding, ...], row: str | None = None, cell: str | None = None
     ) -> tuple[Feedback, ...]:
         """The findings as messages, as far as the feedback level lets them through."""
-        return shown(findings, self.level, row, cell)
+        return visible_messages(findings, self.level, row, cell)
 
 
-class AnswerKind(Protocol):
-    """Grades the parts of one kind. Pure: the same part, answer and samples, the same report."""
-
-    def grade(self, part: Any, answer: object, grading: Grading) -> PartReport:
-        """The report on ``answer``, which is whatever JSON value was handed in, never None."""
-        ...
+def _no_chain() -> StudentChain | None:
+    return None
 
 
 @dataclass(frozen=True, slots=True)
-class PartTerms:
-    """What a part is called and what it is worth, whatever its kind."""
+class Judged:
+    """An answer that was judged: its rows, and the messages on the part as a whole.
 
-    id: str
-    kind: str
-    points: float
-    all_or_nothing: bool
+    ``lost`` is the share of the points that is lost beside those of the rows. ``stands_still``
+    says that no joint moves an answer that must move. ``chain`` gives the answer as a chain, if it
+    is one; it is asked only where another part follows this one.
+    """
 
-    def report(
-        self, rows: tuple[RowReport, ...], feedback: tuple[Feedback, ...] = (), lost: float = 0.0
-    ) -> PartReport:
-        """The part from its rows; ``lost`` is the share of the points that extra rows cost."""
-        verdict = combined(row.verdict for row in rows)
-        if lost and verdict is Verdict.CORRECT:
-            verdict = Verdict.PARTIAL
-        earned = total_of(rows) - lost * self.points
-        if verdict is Verdict.CORRECT:
-            earned = self.points
-        elif self.all_or_nothing:
-            earned = 0.0
-        return PartReport(
-            part=self.id,
-            kind=self.kind,
-            verdict=verdict,
-            points=rounded_points(max(0.0, earned)),
-            max_points=self.points,
-            follow_through=False,
-            rows=rows,
-            feedback=feedback,
-        )
+    rows: tuple[RowReport, ...]
+    feedback: tuple[Feedback, ...] = ()
+    lost: float = 0.0
+    stands_still: bool = False
+    chain: Callable[[], StudentChain | None] = _no_chain
 
-    def unread(self, verdict: Verdict, feedback: tuple[Feedback, ...] = ()) -> PartReport:
-        """The report on a part of which nothing could be read, or nothing was handed in."""
-        return PartReport(self.id, self.kind, verdict, 0.0, self.points, False, (), feedback)
+
+class AnswerKind(Protocol):
+    """The reading and the judging of answers of one kind.
+
+    Pure: the same part, answer and samples, the same result.
+    """
+
+    def read(self, part: Any, answer: object, grading: Grading) -> Any:
+        """The answer as ``judge`` takes it, from whatever JSON value was handed in, never None.
+
+        None where nothing is written. Raises UnreadableAnswerError where nothing can be read.
+        """
+        ...
+
+    def judge(self, part: Any, answer: Any, grading: Grading) -> Judged:
+        """The judgement on an answer that was read."""
+        ...
+
+
+def part_report(part: PartSpec, judged: Judged) -> PartReport:
+    """The report on a part that was judged: the rows share its points."""
+    verdict = combined(row.verdict for row in judged.rows)
+    if judged.lost and verdict is Verdict.CORRECT:
+        verdict = Verdict.PARTIAL
+    earned = total_of(judged.rows) - judged.lost * part.points
+    if verdict is Verdict.CORRECT:
+        earned = part.points
+    elif part.all_or_nothing:
+        earned = 0.0
+    return PartReport(
+        part=part.id,
+        kind=part.kind,
+        verdict=verdict,
+        points=rounded_points(max(0.0, earned)),
+        max_points=part.points,
+        follow_through=False,
+        rows=judged.rows,
+        feedback=judged.feedback,
+    )
+
+
+def unjudged_report(
+    part: PartSpec, verdict: Verdict, feedback: tuple[Feedback, ...] = ()
+) -> PartReport:
+    """The report on a part of which nothing was handed in, or nothing could be read."""
+    return PartReport(part.id, part.kind, verdict, 0.0, part.points, False, (), feedback)

@@ -6,7 +6,7 @@ import sympy
 from service.catalogue import DhRowSpec, Exercise, grid_values
 from service.catalogue.reading import TRIALS, trial_values
 from service.kinematics.dh import Convention
-from service.kinematics.dh_row import gap, slant
+from service.kinematics.dh_row import dh1_residual, dh2_residual
 from service.solutions.algebra import Algebra
 from service.solutions.orientation import as_angle
 
@@ -23,7 +23,7 @@ def dh_row(part: DhRowSpec, exercise: Exercise, algebra: Algebra) -> list[sympy.
     """
     grid = exercise.formulas[part.id]
     numbers = np.moveaxis(grid_values(grid, trial_values(exercise.variables), TRIALS), -1, 0)
-    broken = [slant(numbers, part.convention), gap(numbers, part.convention)]
+    broken = [dh1_residual(numbers, part.convention), dh2_residual(numbers, part.convention)]
     if np.abs(broken).max() > _EXACT:
         return None
     T = algebra.matrix(grid)

@@ -7,8 +7,9 @@ import pytest
 
 from service.catalogue import CatalogueError, Exercise, Robot, ScrewRobot
 from service.kinematics.screws import product_in_space
-from service.kinematics.transforms import rot_z, trans
+from service.kinematics.transforms import rot_z
 from tests.grading.support.exercise_texts import ANGLES, HEAD, SPATIAL_RRR, one_part
+from tests.kinematics.constructions import trans
 
 Make = Callable[[str], Exercise]
 

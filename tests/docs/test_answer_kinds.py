@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from service.catalogue import Exercise
-from service.grading.grade import KINDS
+from service.grading.kinds import KINDS
 from tests.grading.support.submitting import full_marks, handed_in, part
 
 PAGE = (Path(__file__).parents[2] / "docs" / "answer-kinds.md").read_text(encoding="utf-8")

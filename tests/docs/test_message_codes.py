@@ -13,9 +13,9 @@ import pytest
 from service.catalogue import Exercise
 from service.expressions import LIMITS, ExpressionError, read
 from service.grading import FeedbackLevel
-from service.grading.reading.entry import MAX_CHARACTERS
 from service.grading.reading.preview import preview_pasted
 from service.grading.reading.table import MAX_ROWS
+from service.grading.work_budget import MAX_CHARACTERS
 from service.grids import GRID_LIMITS
 from tests.docs.codes import CodeUse, HiddenCodeError, codes_in, sources
 from tests.expressions.corpus_files import ROBOT
@@ -45,6 +45,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
             "grading/reading/row_labels.py",
             "grading/reading/length_units.py",
             "grading/reading/pasted.py",
+            "grading/reading/pasted_table.py",
         ),
     ),
     (
@@ -55,7 +56,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
             "grading/reading/entry.py",
             "grading/kinds/link_transforms.py",
             "grading/reading/value_list.py",
-            "grading/kinds/matrix_rows.py",
+            "grading/reading/matrix.py",
             "grading/reading/table.py",
         ),
     ),

@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.expressions.tree import Call
-from service.grading.comparison import ROUNDED, difference
+from service.grading.comparison import difference
 from service.grading.diagnosis.formula_rewriting import nodes
 from service.grading.diagnosis.wrong_value import WrongValue, differs, undefined
 from service.grading.feedback import Finding
+from service.grading.tolerances import ROUNDED_VALUE
 from service.kinematics.rotations import SEQUENCES, from_angles
 from service.kinematics.transforms import Matrices, Numbers
 
@@ -62,7 +63,7 @@ def swapped_atan2(case: WrongValue) -> Finding | None:
 
     A constant that is off so is rather off by a quarter turn, unless an atan2 was written.
     """
-    varies = np.ptp(case.expected) > ROUNDED
+    varies = np.ptp(case.expected) > ROUNDED_VALUE
     if not (varies or _has_arctangent(case)):
         return None
     if not case.equal(case.actual, np.pi / 2 - case.expected):
@@ -86,8 +87,8 @@ def _has_arctangent(case: WrongValue) -> bool:
 def lost_quadrant(case: WrongValue) -> Finding | None:
     """atan(y/x) was taken for atan2(y, x): it is half a turn off where x is negative."""
     off = np.abs(difference(case.actual, case.expected, angle=True))
-    half = np.abs(off - np.pi) < ROUNDED
-    if half.all() or not half.any() or not ((off < ROUNDED) | half).all():
+    half = np.abs(off - np.pi) < ROUNDED_VALUE
+    if half.all() or not half.any() or not ((off < ROUNDED_VALUE) | half).all():
         return None
     return Finding(
         "lost_quadrant",
@@ -100,7 +101,7 @@ def lost_quadrant(case: WrongValue) -> Finding | None:
 def quarter_turn(case: WrongValue) -> Finding | None:
     """A turn by 90° was left out or added."""
     off = np.abs(difference(case.actual, case.expected, angle=True))
-    if np.abs(off - np.pi / 2).max() > ROUNDED:
+    if np.abs(off - np.pi / 2).max() > ROUNDED_VALUE:
         return None
     return Finding("quarter_turn", "This angle is off by a quarter turn (90°).", case.correction)
 
@@ -108,7 +109,7 @@ def quarter_turn(case: WrongValue) -> Finding | None:
 def half_turn(case: WrongValue) -> Finding | None:
     """A direction was taken for its opposite."""
     off = np.abs(difference(case.actual, case.expected, angle=True))
-    if np.abs(off - np.pi).max() > ROUNDED:
+    if np.abs(off - np.pi).max() > ROUNDED_VALUE:
         return None
     return Finding(
         "half_turn",
@@ -165,7 +166,7 @@ class WrongAngles:
     @property
     def right(self) -> bool:
         """Whether that is the rotation that they should."""
-        return bool(np.abs(self.described - self.rotation).max() < ROUNDED)
+        return bool(np.abs(self.described - self.rotation).max() < ROUNDED_VALUE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -247,7 +248,7 @@ def _repairs(case: WrongAngles) -> Iterator[tuple[Finding, Numbers]]:
 
 
 def _may_be_swapped(case: WrongAngles, chosen: Sequence[int]) -> bool:
-    return all(case.arctangent[i] or np.ptp(case.angles[i]) > ROUNDED for i in chosen)
+    return all(case.arctangent[i] or np.ptp(case.angles[i]) > ROUNDED_VALUE for i in chosen)
 
 
 TRIPLES: tuple[Callable[[WrongAngles], AnglesExplained | None], ...] = (

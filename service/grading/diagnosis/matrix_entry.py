@@ -5,7 +5,7 @@ formula without that misconception is right (or right but for its sign), else No
 explains the entry is told.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
 from service.expressions.parsing.degrees import in_degrees
 from service.expressions.printing.text import to_text
@@ -24,11 +24,16 @@ from service.grading.diagnosis.formula_rewriting import (
     sums_merged,
     without_degrees,
 )
-from service.grading.diagnosis.wrong_value import differs, undefined
+from service.grading.diagnosis.wrong_value import UNEXPLAINED, differs, undefined
 from service.grading.feedback import Finding
 
 # A planar arm of three joints has three runs of joints whose angles add up.
 MAX_RUNS = 3
+# How many nodes of unexplained formulas are taken apart before the rest of a matrix is only
+# compared: where so much has another cause, the rest will have it too. What can be explained costs
+# less of it, but not nothing: the work must be bounded.
+WORK_BUDGET = 100.0
+COST_IF_EXPLAINED = 0.25
 
 
 def sign(case: WrongEntry) -> Finding | None:
@@ -195,3 +200,15 @@ def diagnose(case: WrongEntry, *, patient: bool = True) -> Finding:
         if finding is not None:
             return finding
     return differs(case, "This entry is not right; work it out again from the factors.")
+
+
+def diagnose_entries(
+    wrong: Mapping[tuple[int, int], WrongEntry], work_budget: float = WORK_BUDGET
+) -> dict[tuple[int, int], Finding]:
+    """The finding on each wrong entry; once ``work_budget`` is used up, formulas stay whole."""
+    findings: dict[tuple[int, int], Finding] = {}
+    for place, entry in wrong.items():
+        findings[place] = diagnose(entry, patient=work_budget > 0)
+        explained = findings[place].code != UNEXPLAINED
+        work_budget -= entry.size * (COST_IF_EXPLAINED if explained else 1.0)
+    return findings

@@ -10,10 +10,11 @@ from itertools import permutations
 
 import numpy as np
 
-from service.grading.comparison import EXACT, Match, matches
+from service.grading.comparison import Match, matches
 from service.grading.diagnosis.link_products import alternatives
 from service.grading.diagnosis.matrix_case import Chain
 from service.grading.feedback import Finding
+from service.grading.tolerances import EXACT_VALUE
 from service.kinematics.transforms import Numbers
 
 
@@ -69,7 +70,7 @@ def other_pose(case: WrongPosition) -> Finding | None:
     """
     for alternative in alternatives(case.chains):
         position = np.moveaxis(alternative.pose, 0, -1)[list(case.axes), 3]
-        if np.ptp(position, axis=-1).max() > EXACT and case.is_what_was_written(position):
+        if np.ptp(position, axis=-1).max() > EXACT_VALUE and case.is_what_was_written(position):
             look = f"This position comes from {alternative.what}. {alternative.hint}"
             return Finding(alternative.code, look, alternative.correction)
     return None

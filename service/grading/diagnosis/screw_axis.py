@@ -10,8 +10,9 @@ from functools import cached_property
 
 import numpy as np
 
-from service.grading.comparison import EXACT, ROUNDED, Match, matches
+from service.grading.comparison import Match, matches
 from service.grading.feedback import Finding
+from service.grading.tolerances import EXACT_VALUE, ROUNDED_VALUE
 from service.kinematics.transforms import Numbers
 
 SCREW_LABELS = ("ω1", "ω2", "ω3", "v1", "v2", "v3")
@@ -39,7 +40,7 @@ class WrongScrew:
     @cached_property
     def turns(self) -> bool:
         """Whether the joint turns; else it slides along v."""
-        return bool(np.abs(self.expected[:3]).max() > EXACT)
+        return bool(np.abs(self.expected[:3]).max() > EXACT_VALUE)
 
     @cached_property
     def pitch(self) -> Numbers:
@@ -99,7 +100,7 @@ def not_normalised(case: WrongScrew) -> Finding | None:
     """ω, or v of a sliding joint, is not of unit length."""
     direction = slice(0, 3) if case.turns else slice(3, 6)
     factor = (case.actual[direction] * case.expected[direction]).sum(axis=0)
-    if (np.abs(factor) < EXACT).any() or not case.is_what_was_written(factor * case.expected):
+    if (np.abs(factor) < EXACT_VALUE).any() or not case.is_what_was_written(factor * case.expected):
         return None
     letter = "ω" if case.turns else "v"
     return Finding(
@@ -147,7 +148,7 @@ def exchanged_halves(case: WrongScrew) -> Finding | None:
 
 def point_for_velocity(case: WrongScrew) -> Finding | None:
     """A point on the axis was written in place of v."""
-    if not case.turns or np.abs(case.moment).max() < EXACT:
+    if not case.turns or np.abs(case.moment).max() < EXACT_VALUE:
         return None
     omega, point = case.expected[:3], case.actual[3:]
     if not case.is_what_was_written(case.with_velocity(point)):
@@ -167,11 +168,11 @@ def pitch(case: WrongScrew) -> Finding | None:
     if not case.turns:
         return None
     along = ((case.actual[3:] - case.moment) * case.expected[:3]).sum(axis=0)
-    if np.abs(along - case.pitch).max() < ROUNDED * case.length_scale:
+    if np.abs(along - case.pitch).max() < ROUNDED_VALUE * case.length_scale:
         return None
     if not case.is_what_was_written(case.with_velocity(case.moment + along * case.expected[:3])):
         return None
-    if np.abs(case.pitch).max() < EXACT:
+    if np.abs(case.pitch).max() < EXACT_VALUE:
         look = "This axis has pitch 0, it only turns: v has no part along ω."
     else:
         look = "Of v the part along ω is not right: it is the pitch h times ω."

@@ -9,9 +9,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from service.grading.comparison import ROUNDED, difference
+from service.expressions import Expression
+from service.grading.comparison import Match, difference
 from service.grading.diagnosis.wrong_value import WrongCell, differs, undefined
 from service.grading.feedback import Finding
+from service.grading.formula_text import sum_text
+from service.grading.joint_motion import coefficients
+from service.grading.judging.table import JudgedRow, Judgement
+from service.grading.judging.table_matches import column_scales
+from service.grading.part import Grading
+from service.grading.reading.table import IS_ANGLE, HandedInRow
+from service.grading.tolerances import ROUNDED_VALUE
+from service.kinematics.chain import COLUMNS
 from service.kinematics.transforms import Numbers
 
 AXES = {
@@ -241,7 +250,7 @@ def half_turn(case: WrongCell) -> Finding | None:
 def _is_off_by(turn: float, actual: Numbers, expected: Numbers) -> bool:
     """Whether an angle is expected so much further on; the turn itself may have been rounded."""
     off = difference(actual + turn, expected, angle=True)
-    return bool(np.abs(off).max() < ROUNDED * np.pi)
+    return bool(np.abs(off).max() < ROUNDED_VALUE * np.pi)
 
 
 MISCONCEPTIONS: tuple[Callable[[WrongCell], Finding | None], ...] = (
@@ -268,6 +277,45 @@ def diagnose(case: WrongCell) -> Finding:
     if case.column == "d" and case.shared and case.same_motion:
         return replace(finding, hint=f"{finding.hint} {SUM_COUNTS}")
     return finding
+
+
+def diagnose_cells(judgement: Judgement, grading: Grading) -> dict[tuple[int, int], Finding]:
+    """The finding on each wrong cell that was read, by row and column."""
+    written: list[tuple[int, int, JudgedRow, HandedInRow, Expression]] = []
+    for i, column in np.argwhere(judgement.matches < Match.ROUNDED).tolist():
+        judged = judgement.rows[i]
+        expression = judged.row.entries[column].expression if judged.row else None
+        if judged.row is not None and expression is not None:
+            written.append((i, column, judged, judged.row, expression))
+    if not written:
+        return {}
+    joints, samples = grading.exercise.robot.joints, grading.samples
+    actual = [row.handed_in[column] for _, column, _, row, _ in written]
+    expected = [judged.expected[column] for _, column, judged, _, _ in written]
+    angles = [bool(IS_ANGLE[column]) for _, column, *_ in written]
+    contained = coefficients(np.array(actual + expected), joints, samples, np.array(angles * 2))
+    scales = column_scales(grading).tolist()
+    slips = {}
+    for k, (i, column, judged, _, expression) in enumerate(written):
+        wanted = contained[len(written) + k]
+        slips[i, column] = diagnose(
+            WrongCell(
+                expression=expression,
+                actual=actual[k],
+                expected=expected[k],
+                expected_text=sum_text(expected[k], wanted, angles[k], grading.exercise, samples),
+                samples=samples,
+                scale=scales[column],
+                angle=angles[k],
+                column=COLUMNS[column],
+                joint=judged.joint,
+                joints=joints,
+                actual_coefficients=contained[k],
+                expected_coefficients=wanted or (0,) * len(joints),
+                shared=judged.shared,
+            )
+        )
+    return slips
 
 
 def _first(case: WrongCell) -> Finding:

@@ -10,7 +10,6 @@ from service.catalogue import DhTableSpec
 from service.grading.comparison import Match, difference
 from service.grading.diagnosis.table_freedom import lost_freedom
 from service.grading.diagnosis.whole_table import (
-    TOLERANCE,
     Explanation,
     WrittenTable,
     explanations,
@@ -19,20 +18,20 @@ from service.grading.diagnosis.whole_table import (
 from service.grading.feedback import Finding
 from service.grading.judging.own_frames.few_cells import frames_from_reference
 from service.grading.judging.own_frames.reference import reference_values
-from service.grading.judging.own_frames.row_roles import Role
+from service.grading.judging.own_frames.row_roles import Role, freedom_of
 from service.grading.judging.own_frames.validity import valid_tables
 from service.grading.judging.own_frames.wrong_convention_or_unit import in_convention
-from service.grading.judging.table import Judgement, departures_of, freedom_of, judged_against
+from service.grading.judging.table import Judgement, departures_of, judged_by_intended
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE, values_of
 from service.grading.report import Severity
+from service.grading.tolerances import INTENDED_CELL, INTENDED_POSE
 from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers
 
 # Enough samples to tell tables apart that are tried by the dozen.
 FEW = 3
-SAME = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +75,7 @@ def explained(
     nearer = min(meant, key=lambda each: each.departures, default=None)
     if nearer is None or nearer.table is None or nearer.departures >= judgement.departures:
         return (), judgement
-    return _told([nearer]), judged_against(nearer.table, roles, convention, grading)
+    return _told([nearer]), judged_by_intended(nearer.table, roles, convention, grading)
 
 
 def _explanations(
@@ -96,7 +95,9 @@ def _explanations(
     freedom, subset = freedom_of(part), samples.subset(FEW)
 
     def valid(tables: Numbers, convention: Convention) -> NDArray[np.bool_]:
-        return valid_tables(tables, roles, convention, freedom, grading.exercise, subset, TOLERANCE)
+        return valid_tables(
+            tables, roles, convention, freedom, grading.exercise, subset, INTENDED_POSE
+        )
 
     return table, explanations(table.subset(FEW), valid, combine=combine)
 
@@ -110,7 +111,7 @@ def _meant(
         return _Meant(explanation.findings, None, nothing, np.inf)
     off = np.abs(difference(meant, table.values, IS_ANGLE[:, None])).max(axis=-1)
     apart = frames_from_reference(meant, roles, table.convention, grading)
-    return _Meant(explanation.findings, meant, off > SAME, departures_of(apart, grading))
+    return _Meant(explanation.findings, meant, off > INTENDED_CELL, departures_of(apart, grading))
 
 
 def _told(meant: Sequence[_Meant]) -> tuple[Finding, ...]:

@@ -10,12 +10,12 @@ from itertools import permutations
 
 import numpy as np
 
-from service.grading.comparison import EXACT, ROUNDED
 from service.grading.diagnosis.link_products import Alternative, alternatives, as_entries
 from service.grading.diagnosis.matrix_case import WHOLE, Block, Explanation, Mask, MatrixCase
 from service.grading.diagnosis.wrong_value import UNEXPLAINED
 from service.grading.feedback import Finding
 from service.grading.report import Severity
+from service.grading.tolerances import EXACT_VALUE, ROUNDED_VALUE
 from service.kinematics.transforms import Numbers, inverse
 
 ROTATION = (slice(0, 3), slice(0, 3))
@@ -118,7 +118,7 @@ class _Offered:
 
         A constant block, such as a position of zeros, is no sign of where it came from.
         """
-        moves = np.ptp(self.poses[:, *block], axis=-1).max(axis=(1, 2)) > EXACT
+        moves = np.ptp(self.poses[:, *block], axis=-1).max(axis=(1, 2)) > EXACT_VALUE
         changed = ~_everywhere(self.right[:, *block])
         return _first(_everywhere(self.agree[:, *block]) & changed & moves)
 
@@ -251,7 +251,7 @@ def rotation_not_orthonormal(rotation: Numbers) -> Finding | None:
 def _fault(rotation: Numbers) -> str | None:
     """Which column of ``(SAMPLES, 3, 3)`` has not length 1, or else which are at no right angle."""
     products = np.swapaxes(rotation, 1, 2) @ rotation
-    off = np.abs(products - np.eye(3)).max(axis=0) > 4 * ROUNDED
+    off = np.abs(products - np.eye(3)).max(axis=0) > 4 * ROUNDED_VALUE
     for j in range(3):
         if off[j, j]:
             return f"the length of column {j + 1} is not 1"

@@ -19,11 +19,9 @@ from service.grading.feedback import Finding
 from service.grading.joint_motion import joint_counts
 from service.grading.reading.table import IS_ANGLE
 from service.grading.samples import Samples
+from service.grading.tolerances import INTENDED_POSE
 from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D, Table
 from service.kinematics.dh import Convention
-
-# Four figures are lost when rounded angles are multiplied out over a whole arm.
-TOLERANCE = 1e-2
 
 SYMBOLS = ("a", "α", "d", "θ")
 
@@ -324,6 +322,6 @@ def _explaining(
             tables = np.array([repaired[i][1][-1].table.values for i in ending])
             explains[ending] = valid(tables, convention)
             if convention is table.convention:
-                changed = np.abs(tables - table.values).max(axis=(1, 2, 3)) > TOLERANCE
+                changed = np.abs(tables - table.values).max(axis=(1, 2, 3)) > INTENDED_POSE
                 explains[ending] &= changed
     return [found for found, yes in zip(repaired, explains, strict=True) if yes]

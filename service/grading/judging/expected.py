@@ -1,10 +1,11 @@
-"""What a part expects, in numbers: from the robot's frames, or from the part's own formulas."""
+"""The right answer to a part in numbers: of the robot's frames, or of the part's formulas."""
 
 import numpy as np
 
 from service.catalogue import (
     EulerAnglesSpec,
     Exercise,
+    PartSpec,
     PositionSpec,
     RotationSpec,
     TransformSpec,
@@ -19,13 +20,21 @@ from service.kinematics.transforms import Matrices, Numbers, inverse
 PoseSpec = TransformSpec | RotationSpec | PositionSpec | EulerAnglesSpec
 
 
-def own_values(part_id: str, exercise: Exercise, samples: Samples) -> Numbers | None:
+def formula_values(part: PartSpec, grading: Grading) -> Numbers | None:
     """The numbers of the formulas that the part's file gives, ``(rows, columns, SAMPLES)``.
 
     None where it gives none: then the robot tells.
     """
-    grid = exercise.formulas.get(part_id)
-    return None if grid is None else grid_values(grid, samples.values, SAMPLES)
+    grid = grading.exercise.formulas.get(part.id)
+    return None if grid is None else grid_values(grid, grading.samples.values, SAMPLES)
+
+
+def given_values(part: PartSpec, grading: Grading) -> Numbers:
+    """The same for a part that always has formulas. Raises LookupError where it has none."""
+    values = formula_values(part, grading)
+    if values is None:
+        raise LookupError(f"part {part.id!r} has no formulas")
+    return values
 
 
 def robot_pose(part: PoseSpec, exercise: Exercise, samples: Samples) -> Matrices:
@@ -47,17 +56,17 @@ def robot_pose(part: PoseSpec, exercise: Exercise, samples: Samples) -> Matrices
 def asked_pose(part: PoseSpec, grading: Grading) -> Matrices:
     """The pose ``(SAMPLES, 4, 4)`` that the part asks for: of the robot, or of the student's chain.
 
-    An own chain has the frames that its answer has; what asks for one that it has not is held
-    against the robot.
+    A student's chain has the frames that its answer has; a part that asks for another is judged by
+    the robot.
     """
-    own = grading.source
-    if own is None or not grading.following or part.home:
+    chain = grading.student_chain
+    if chain is None or not grading.following or part.home:
         return robot_pose(part, grading.exercise, grading.samples)
-    places = {"base": 0, "tool": len(own.frames) - 1}
+    places = {"base": 0, "tool": len(chain.frames) - 1}
     start, to = (places.get(str(frame), frame) for frame in (part.start, part.to))
-    if not (isinstance(start, int) and isinstance(to, int) and max(start, to) < len(own.frames)):
+    if not (isinstance(start, int) and isinstance(to, int) and max(start, to) < len(chain.frames)):
         return robot_pose(part, grading.exercise, grading.samples)
-    return np.asarray(inverse(own.frames[start]) @ own.frames[to])
+    return np.asarray(inverse(chain.frames[start]) @ chain.frames[to])
 
 
 def is_whole_chain(part: PoseSpec, exercise: Exercise) -> bool:

@@ -10,11 +10,12 @@ from service.grading.comparison import Match
 from service.grading.feedback import ROUNDED, Finding
 from service.grading.part import Grading
 from service.grading.reading.entry import Entry
+from service.grading.reading.value_list import StudentValues
 from service.grading.report import CellReport, RowReport, Verdict, row_report
 
 _EXACT = int(Match.EXACT)
 
-# What is to be said of single entries, by row and column.
+# Findings on single entries, by row and column.
 Slips = Mapping[tuple[int, int], Finding]
 
 
@@ -31,7 +32,7 @@ def entry_rows(
     """Rows of entries that share ``points``; ``found`` is the Match of each, ``(rows, columns)``.
 
     Rows are labelled from "1" on unless ``labels`` says otherwise, columns from "1" on.
-    ``remarks`` is what is to be said of whole rows.
+    ``remarks`` are findings on whole rows.
     """
     names = labels or [str(i + 1) for i in range(len(entries))]
     return tuple(
@@ -39,7 +40,7 @@ def entry_rows(
             label,
             points / len(entries),
             tuple(
-                _cell(entry, (label, str(j + 1)), match, slips.get((i, j)), grading)
+                cell_report(entry, (label, str(j + 1)), match, slips.get((i, j)), grading)
                 for j, (entry, match) in enumerate(zip(row, found[i].tolist(), strict=True))
             ),
             grading.visible((remarks[i],), label) if remarks and i in remarks else (),
@@ -48,16 +49,31 @@ def entry_rows(
     )
 
 
+def value_rows(
+    student: StudentValues,
+    found: NDArray[np.int_],
+    slips: Slips,
+    points: float,
+    grading: Grading,
+) -> tuple[RowReport, ...]:
+    """Rows of one value each; ``found`` is the Match of each, ``(n,)``."""
+    column = [[entry] for entry in student.entries]
+    return entry_rows(column, found[:, None], slips, points, grading)
+
+
 @lru_cache(maxsize=64)
 def _right(column: str) -> CellReport:
-    """The report on an entry that is right and of which nothing is to be said: on most of them."""
+    """The report on a right entry without a message, as most are."""
     return CellReport(column, Verdict.CORRECT)
 
 
-def _cell(
+def cell_report(
     entry: Entry, place: tuple[str, str], match: int, slip: Finding | None, grading: Grading
 ) -> CellReport:
-    """The report on an entry; of a wrong one without a slip of its own the part tells why."""
+    """The report on an entry at its place, a row and a column.
+
+    ``match`` is its Match. Of a wrong entry without a ``slip`` of its own, the part says why.
+    """
     row, column = place
     verdict, findings = entry.verdict, entry.findings
     if match == _EXACT and not findings and entry.expression is not None:

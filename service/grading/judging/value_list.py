@@ -1,4 +1,4 @@
-"""A list of single values, each of its own quantity, held against what was expected."""
+"""A list of single values, each of its own quantity, held against the expected one."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,85 +6,35 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from service.expressions import Kind
 from service.grading.comparison import matches
-from service.grading.diagnosis.angle import diagnose_angle
-from service.grading.diagnosis.formula_repair import WrongEntry
-from service.grading.diagnosis.matrix_entry import diagnose
-from service.grading.diagnosis.wrong_value import WrongValue
-from service.grading.feedback import Finding
 from service.grading.part import Grading
-from service.grading.reading.entry import Entry
+from service.grading.reading.value_list import StudentValues
 from service.kinematics.transforms import Numbers
 
 
 @dataclass(frozen=True, slots=True)
-class WrittenValues:
-    """What was written and what was expected, ``(n, SAMPLES)``.
+class ComparedValues:
+    """A list as read and the expected values, ``(n, SAMPLES)``.
 
-    ``texts`` is what would be right as formulas, each empty where it is not known as one.
+    ``texts`` are the expected values as formulas, each empty where it is not known as one.
     """
 
-    entries: Sequence[Entry]
+    student: StudentValues
     expected: Numbers
-    quantities: Sequence[Kind]
     texts: Sequence[str]
 
-    def actual(self, grading: Grading) -> Numbers:
-        """The numbers that were written, ``(n, SAMPLES)``; NaN where there are none."""
-        return grading.reader.numbers(self.entries, self.quantities)
-
     def scales(self, grading: Grading) -> Numbers:
-        """What each value is measured against, ``(n,)``."""
-        lengths = [quantity == "length" for quantity in self.quantities]
+        """The size that each value is measured against, ``(n,)``."""
+        lengths = [quantity == "length" for quantity in self.student.quantities]
         return np.where(lengths, grading.exercise.length_scale, 1.0)
 
     def matches(self, grading: Grading) -> NDArray[np.int_]:
         """The Match of each value, ``(n,)``; angles modulo 2π."""
-        angle = np.array([quantity == "angle" for quantity in self.quantities])
+        angle = np.array([quantity == "angle" for quantity in self.student.quantities])
         return matches(
-            self.actual(grading),
+            self.student.values,
             self.expected,
             self.scales(grading),
             angle=angle[:, None],
-            rounded=[entry.may_be_rounded for entry in self.entries],
+            rounded=self.student.rounded,
         )
-
-
-def slips_of(
-    written: WrittenValues, wrong: NDArray[np.bool_], grading: Grading
-) -> dict[tuple[int, int], Finding]:
-    """What is to be said of each wrong value that could be read, at (its place, 0)."""
-    if not wrong.any():
-        return {}
-    actual, scales = written.actual(grading), written.scales(grading)
-    slips: dict[tuple[int, int], Finding] = {}
-    for i in np.flatnonzero(wrong).tolist():
-        expression = written.entries[i].expression
-        if expression is None:
-            continue
-        angle = written.quantities[i] == "angle"
-        value = WrongValue(
-            expression=expression,
-            actual=actual[i],
-            expected=written.expected[i],
-            expected_text=written.texts[i],
-            samples=grading.samples,
-            scale=float(scales[i]),
-            angle=angle,
-        )
-        slips[i, 0] = diagnose_angle(value) if angle else diagnose(_as_entry(value, grading))
-    return slips
-
-
-def _as_entry(value: WrongValue, grading: Grading) -> WrongEntry:
-    return WrongEntry(
-        expression=value.expression,
-        actual=value.actual,
-        expected=value.expected,
-        expected_text=value.expected_text,
-        samples=value.samples,
-        scale=value.scale,
-        angle=False,
-        turning=grading.exercise.vocabulary.turning,
-    )

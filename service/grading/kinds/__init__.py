@@ -1,1 +1,21 @@
-"""One file for each kind of answer."""
+"""The answer kinds: one file for each, with its name, says how answers are read and judged.
+
+The file has the functions ``read`` and ``judge`` of AnswerKind. A file without ``judge`` serves
+several kinds.
+"""
+
+from collections.abc import Mapping
+from importlib import import_module
+from pkgutil import iter_modules
+
+from service.grading.part import AnswerKind
+
+
+def _found() -> dict[str, AnswerKind]:
+    modules = {
+        found.name: import_module(f"{__name__}.{found.name}") for found in iter_modules(__path__)
+    }
+    return {name: module for name, module in modules.items() if hasattr(module, "judge")}
+
+
+KINDS: Mapping[str, AnswerKind] = _found()

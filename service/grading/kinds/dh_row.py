@@ -5,21 +5,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from service.catalogue import DhRowSpec
+from service.expressions import Expression
 from service.grading.comparison import Match, matches
 from service.grading.diagnosis.dh_row import RowCase, explain_row, has_a_row, violated
 from service.grading.diagnosis.table_cell import diagnose
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, WrongCell
-from service.grading.feedback import ROUNDED, Finding
+from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.formula_text import formula_text
-from service.grading.judging.expected import own_values
-from service.grading.part import Grading, PartTerms
+from service.grading.judging.expected import given_values
+from service.grading.judging.report_rows import cell_report
+from service.grading.part import Grading, Judged
 from service.grading.reading.entry import MISSING
-from service.grading.reading.pasted import length_unit
-from service.grading.reading.table import IS_ANGLE, HandedInRow, UnreadableTableError, read_table
+from service.grading.reading.table import IS_ANGLE, HandedInRow, read_table
 from service.grading.reading.table_json import canonical_table
-from service.grading.report import CellReport, PartReport, Verdict, row_report
+from service.grading.report import CellReport, Verdict, row_report
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh_row import row
 from service.kinematics.transforms import Matrices, Numbers
@@ -29,77 +31,104 @@ NONE = "none"
 
 
 @dataclass(frozen=True, slots=True)
-class DhRowKind:
-    """Grades the row of a transform cell by cell, or the claim that there is none."""
+class DhRowAnswer:
+    """The row that was handed in; None for the answer that there is none."""
 
-    def grade(self, part: DhRowSpec, answer: object, grading: Grading) -> PartReport:
-        """The report on a row, or on "none"."""
-        terms = PartTerms(part.id, part.kind, part.points, part.all_or_nothing)
-        transform = _transform(part, grading)
-        broken = violated(transform, part.convention, grading.exercise.length_scale)
-        try:
-            written = None if _says_none(answer) else _read_row(answer, grading)
-        except UnreadableTableError as error:
-            return terms.unread(Verdict.UNREADABLE, grading.visible((error.finding,)))
-        if written is None:
-            slips = () if broken else (has_a_row(part.convention),)
-            verdict = Verdict.CORRECT if broken else Verdict.INCORRECT
-            cell = CellReport(NONE, verdict)
-            report = row_report(LABEL, part.points, (cell,), grading.visible(slips, LABEL))
-            return terms.report((report,))
-        if broken:
-            cells = tuple(
-                CellReport(
-                    label,
-                    Verdict.INCORRECT if entry.readable else entry.verdict,
-                    grading.visible(entry.findings, LABEL, label),
-                )
-                for label, entry in zip(COLUMNS, written.entries, strict=True)
-            )
-            told = grading.visible(tuple(broken), LABEL)
-            return terms.report((row_report(LABEL, part.points, cells, told),))
-        return self._against_the_row(written, transform, part, grading, terms)
+    row: HandedInRow | None
 
-    @staticmethod
-    def _against_the_row(
-        written: HandedInRow,
-        transform: Matrices,
-        part: DhRowSpec,
-        grading: Grading,
-        terms: PartTerms,
-    ) -> PartReport:
-        expected = row(transform, part.convention)
-        scale = np.where(IS_ANGLE, 1.0, grading.exercise.length_scale)
-        found = matches(written.values, expected, scale, IS_ANGLE[:, None], rounded=written.rounded)
-        remark: Finding | None = None
-        if (found < Match.ROUNDED).any() and np.isfinite(written.values).all():
-            case = RowCase(
-                written.values, transform, part.convention, grading.exercise.length_scale
-            )
-            remark = explain_row(case)
-        cells = tuple(
-            _cell(i, written, expected[i], match, grading, explained=remark is not None)
-            for i, match in enumerate(found.tolist())
+
+def read(part: DhRowSpec, answer: object, grading: Grading) -> DhRowAnswer:
+    """The row, or "none"."""
+    return DhRowAnswer(None if _says_none(answer) else _read_row(answer, grading))
+
+
+def judge(part: DhRowSpec, answer: DhRowAnswer, grading: Grading) -> Judged:
+    """One row, of four cells or of one for "none"."""
+    transform = np.moveaxis(given_values(part, grading), -1, 0)
+    broken = violated(transform, part.convention, grading.exercise.length_scale)
+    if answer.row is None:
+        cells: tuple[CellReport, ...] = (_none_cell(right=bool(broken)),)
+        findings = [] if broken else [has_a_row(part.convention)]
+    elif broken:
+        cells = _cells(answer.row, np.full(len(COLUMNS), int(Match.DIFFERENT)), {}, grading)
+        findings = broken
+    else:
+        cells, findings = _against_the_row(answer.row, transform, part, grading)
+    messages = grading.visible(tuple(findings), LABEL)
+    return Judged((row_report(LABEL, part.points, cells, messages),))
+
+
+def _none_cell(*, right: bool) -> CellReport:
+    return CellReport(NONE, Verdict.CORRECT if right else Verdict.INCORRECT)
+
+
+def _cells(
+    written: HandedInRow,
+    found: NDArray[np.int_],
+    slips: Mapping[int, Finding],
+    grading: Grading,
+) -> tuple[CellReport, ...]:
+    """The four cells; ``found`` is the Match of each."""
+    return tuple(
+        cell_report(written.entries[i], (LABEL, column), match, slips.get(i), grading)
+        for i, (column, match) in enumerate(zip(COLUMNS, found.tolist(), strict=True))
+    )
+
+
+def _against_the_row(
+    written: HandedInRow, transform: Matrices, part: DhRowSpec, grading: Grading
+) -> tuple[tuple[CellReport, ...], list[Finding]]:
+    """The cells held against the row that the transform has, and what explains all of them."""
+    expected = row(transform, part.convention)
+    length_scale = grading.exercise.length_scale
+    scale = np.where(IS_ANGLE, 1.0, length_scale)
+    found = matches(written.values, expected, scale, IS_ANGLE[:, None], rounded=written.rounded)
+    explained: Finding | None = None
+    if (found < Match.ROUNDED).any() and np.isfinite(written.values).all():
+        case = RowCase(written.values, transform, part.convention, length_scale)
+        explained = explain_row(case)
+    slips = {
+        i: _slip(i, expression, written.values[i], expected[i], grading)
+        for i in np.flatnonzero(found < Match.ROUNDED).tolist()
+        if (expression := written.entries[i].expression) is not None
+    }
+    if explained is not None:
+        slips = {i: slip for i, slip in slips.items() if slip.code != UNEXPLAINED}
+    return _cells(written, found, slips, grading), [explained] if explained else []
+
+
+def _slip(
+    i: int, expression: Expression, actual: Numbers, expected: Numbers, grading: Grading
+) -> Finding:
+    """The finding on a wrong cell."""
+    angle = bool(IS_ANGLE[i])
+    return diagnose(
+        WrongCell(
+            expression=expression,
+            actual=actual,
+            expected=expected,
+            expected_text=formula_text(expected, angle, grading.exercise, grading.samples),
+            samples=grading.samples,
+            scale=1.0 if angle else grading.exercise.length_scale,
+            angle=angle,
+            column=COLUMNS[i],
+            joint=None,
+            joints=(),
         )
-        told = grading.visible((remark,) if remark else (), LABEL)
-        return terms.report((row_report(LABEL, part.points, cells, told),))
-
-
-def _transform(part: DhRowSpec, grading: Grading) -> Matrices:
-    values = own_values(part.id, grading.exercise, grading.samples)
-    if values is None:
-        raise LookupError(f"part {part.id!r} has no formulas")
-    return np.moveaxis(values, -1, 0)
+    )
 
 
 def _says_none(answer: object) -> bool:
-    """Whether the answer is that there is no row. Raises UnreadableTableError for one with both."""
+    """Whether the answer is that there is no row.
+
+    Raises UnreadableAnswerError for one that gives a row all the same.
+    """
     if isinstance(answer, Mapping):
         named = answer.get(NONE)
         if named in _NOT_SAID:
             return False
         if _gives_a_row(answer):
-            raise UnreadableTableError(_CONTRADICTION)
+            raise UnreadableAnswerError(_CONTRADICTION)
         return named is True
     return isinstance(answer, str) and _NONE.fullmatch(answer.strip()) is not None
 
@@ -116,20 +145,20 @@ def _is_written(value: object) -> bool:
 
 
 def _read_row(answer: object, grading: Grading) -> HandedInRow:
-    """The one row that was handed in. Raises UnreadableTableError."""
+    """The one row that was handed in. Raises UnreadableAnswerError."""
     if not isinstance(answer, str):
         answer = canonical_table(answer if _has_rows(answer) else [answer])
         if not isinstance(answer, Mapping):
-            raise UnreadableTableError(_WRONG_SHAPE)
+            raise UnreadableAnswerError(_WRONG_SHAPE)
     try:
-        table = read_table(answer, grading.reader, length_unit(grading.exercise))
-    except UnreadableTableError as error:
-        # A table of another shape; of this answer nobody expects a table.
+        table = read_table(answer, grading.reader)
+    except UnreadableAnswerError as error:
+        # The refusal speaks of a table, and this answer is none.
         wrong = error.finding.code == _WRONG_SHAPE.code
         finding = replace(_WRONG_TEXT, span=error.finding.span) if wrong else error.finding
-        raise UnreadableTableError(finding) from error
+        raise UnreadableAnswerError(finding) from error
     if len(table.rows) > 1:
-        raise UnreadableTableError(_WRONG_SHAPE)
+        raise UnreadableAnswerError(_WRONG_SHAPE)
     if not table.rows:
         return HandedInRow((MISSING,) * len(COLUMNS), np.full((len(COLUMNS), 1), np.nan))
     return table.rows[0]
@@ -146,56 +175,18 @@ def _has_rows(answer: object) -> bool:
 _NONE = re.compile(r"""["']?none["']?\.?|\{\s*["']?none["']?\s*:\s*true\s*\}""", re.IGNORECASE)
 _NOT_SAID: tuple[object, ...] = (None, False, "")
 
-_WRONG_SHAPE = Finding(
+_WRONG_SHAPE = reading_error(
     "wrong_shape",
     'This answer is one row, {"a": …, "alpha": …, "d": …, "theta": …}, or {"none": true} where '
     "there is none.",
-    reading=True,
 )
-_WRONG_TEXT = Finding(
+_WRONG_TEXT = reading_error(
     "wrong_shape",
     "This answer is one row: write its four values in the order a, α, d, θ with commas between "
     "them, or none where there is no row.",
-    reading=True,
 )
-_CONTRADICTION = Finding(
+_CONTRADICTION = reading_error(
     "contradiction",
     'This answer says that there is no row, and gives one: write {"none": true} alone, or the '
     "row alone.",
-    reading=True,
 )
-
-
-def _cell(
-    i: int,
-    written: HandedInRow,
-    expected: Numbers,
-    match: int,
-    grading: Grading,
-    *,
-    explained: bool,
-) -> CellReport:
-    label, entry = COLUMNS[i], written.entries[i]
-    verdict, findings = entry.verdict, entry.findings
-    if match == Match.ROUNDED:
-        findings = (*findings, ROUNDED)
-    elif entry.expression is not None and match < Match.ROUNDED:
-        verdict = Verdict.INCORRECT
-        angle = bool(IS_ANGLE[i])
-        slip = diagnose(
-            WrongCell(
-                expression=entry.expression,
-                actual=written.values[i],
-                expected=expected,
-                expected_text=formula_text(expected, angle, grading.exercise, grading.samples),
-                samples=grading.samples,
-                scale=1.0 if angle else grading.exercise.length_scale,
-                angle=angle,
-                column=label,
-                joint=None,
-                joints=(),
-            )
-        )
-        if not (explained and slip.code == UNEXPLAINED):
-            findings = (*findings, slip)
-    return CellReport(label, verdict, grading.visible(findings, LABEL, label))

@@ -1,80 +1,55 @@
 """Answer kind ``dh_table``: a Denavit-Hartenberg table of the exercise's robot."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from service.catalogue import DhTableSpec, Exercise
-from service.expressions import Expression
-from service.grading.comparison import Match
-from service.grading.diagnosis.table_cell import diagnose
+from service.grading.diagnosis.table_cell import diagnose_cells
 from service.grading.diagnosis.table_explained import explained, freedom_lost
-from service.grading.diagnosis.wrong_value import WrongCell
-from service.grading.feedback import ROUNDED, Finding
-from service.grading.formula_text import sum_text
-from service.grading.joint_motion import coefficients
-from service.grading.judging.table import (
-    JudgedRow,
-    Judgement,
-    column_scales,
-    judged_table,
-    roles_in,
-)
-from service.grading.part import Grading, OwnChain, PartTerms
-from service.grading.reading.pasted import length_unit
-from service.grading.reading.table import (
-    IS_ANGLE,
-    HandedInRow,
-    HandedInTable,
-    UnreadableTableError,
-    read_table,
-    values_of,
-)
-from service.grading.report import (
-    CellReport,
-    PartReport,
-    RowReport,
-    Severity,
-    Verdict,
-    row_report,
-)
+from service.grading.feedback import Finding
+from service.grading.follow_through import stands_still
+from service.grading.judging.own_frames.best_roles import roles_in
+from service.grading.judging.report_rows import cell_report
+from service.grading.judging.table import JudgedRow, Judgement, judged_table
+from service.grading.part import Grading, Judged, StudentChain
+from service.grading.reading.table import HandedInRow, HandedInTable, read_table, values_of
+from service.grading.report import CellReport, RowReport, Severity, Verdict, row_report
+from service.grading.samples import Samples
 from service.kinematics.chain import COLUMNS, frames, links
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices
-
-EXACT = int(Match.EXACT)
-_RIGHT = tuple(CellReport(label, Verdict.CORRECT) for label in COLUMNS)
 
 # With so many wrong cells two misconceptions at once are looked for.
 WRONG_THROUGHOUT = 3
 
 
-@dataclass(frozen=True, slots=True)
-class DhTableKind:
-    """Grades tables in the reference's frames, or in the student's own where those are free."""
+def read(part: DhTableSpec, answer: object, grading: Grading) -> HandedInTable | None:
+    """The rows of a table; None where there are none."""
+    table = read_table(answer, grading.reader)
+    return table if table.rows else None
 
-    def grade(self, part: DhTableSpec, answer: object, grading: Grading) -> PartReport:
-        """The report on a table, row by row and cell by cell."""
-        terms = PartTerms(part.id, part.kind, part.points, part.all_or_nothing)
-        try:
-            table = read_table(answer, grading.reader, length_unit(grading.exercise))
-        except UnreadableTableError as error:
-            return terms.unread(Verdict.UNREADABLE, grading.visible((error.finding,)))
-        if not table.rows:
-            return terms.unread(Verdict.MISSING)
-        convention, findings = _convention(part, table, grading.exercise)
-        judgement = judged_table(part, table.rows, convention, grading)
-        judgement, found, lost = _of_the_whole(part, table.rows, judgement, convention, grading)
-        rows = _row_reports(judgement, part.points, grading, found)
-        told = grading.visible((*table.findings, *findings, *found, *lost, *judgement.findings))
-        missing = tuple(
-            message
-            for judged in judgement.rows
-            if judged.row is None
-            for message in grading.visible((_missing(judged),), judged.label)
-        )
-        extra = grading.visible(tuple(_extra_row(i) for i in judgement.extra))
-        return terms.report(rows, (*told, *missing, *extra), lost=judgement.lost)
+
+def judge(part: DhTableSpec, answer: HandedInTable, grading: Grading) -> Judged:
+    """The table row by row and cell by cell."""
+    convention, findings = _convention(part, answer, grading.exercise)
+    first = judged_table(part, answer.rows, convention, grading)
+    judgement, found, lost = _of_the_whole(part, answer.rows, first, convention, grading)
+    messages = grading.visible((*answer.findings, *findings, *found, *lost, *judgement.findings))
+    missing = tuple(
+        message
+        for judged in judgement.rows
+        if judged.row is None
+        for message in grading.visible((_missing(judged),), judged.label)
+    )
+    extra = grading.visible(tuple(_extra_row(i) for i in judgement.extra))
+    return Judged(
+        _row_reports(judgement, part.points, grading, found),
+        (*messages, *missing, *extra),
+        lost=judgement.lost,
+        stands_still=stands_still(values_of(answer.rows)),
+        chain=lambda: _chain(answer.rows, first, convention),
+    )
 
 
 def _of_the_whole(
@@ -84,9 +59,9 @@ def _of_the_whole(
     convention: Convention,
     grading: Grading,
 ) -> tuple[Judgement, tuple[Finding, ...], tuple[Finding, ...]]:
-    """What explains the whole of a wrong table; or else which freedom its joints have lost.
+    """The explanation of a wrong table as a whole, or else the freedom that its joints have lost.
 
-    With the judgement that agrees with it.
+    Returned with the judgement that agrees with it.
     """
     if not judgement.wrong:
         return judgement, (), ()
@@ -95,14 +70,14 @@ def _of_the_whole(
     if judgement.wrong > 1:
         combine = judgement.wrong >= WRONG_THROUGHOUT
         found, judgement = explained(part, roles, convention, judgement, grading, combine=combine)
-    # Where all is explained, what the table seems to describe was not meant.
+    # An explained table is not the one that the student intended, so its freedom says nothing.
     return judgement, found, () if found else freedom_lost(roles, convention, grading)
 
 
 def _convention(
     part: DhTableSpec, table: HandedInTable, exercise: Exercise
 ) -> tuple[Convention, tuple[Finding, ...]]:
-    """The convention that the table is read in, and what to say where the answer names another."""
+    """The convention that the table is read in, and the finding where the answer names another."""
     if part.convention == "either":
         return table.convention or exercise.robot.convention, ()
     if table.convention in (None, part.convention):
@@ -117,40 +92,23 @@ def _convention(
     )
 
 
-def read_chain(part: DhTableSpec, answer: object, grading: Grading) -> OwnChain | None:
-    """A table as the chain that later parts may follow from; None where not all of it is read."""
-    read = _read_whole(part, answer, grading)
-    if read is None:
+def _chain(
+    rows: tuple[HandedInRow, ...], judgement: Judgement, convention: Convention
+) -> StudentChain | None:
+    """A table as a chain; None where not all of it has a value."""
+    values = values_of(rows)
+    if np.isnan(values).any():
         return None
-    rows, convention = read
-    judgement = judged_table(part, rows, convention, grading)
-    return OwnChain(
-        frames=frames(values_of(rows), convention),
+
+    def tool_at(samples: Samples) -> Matrices:
+        table = np.array([row.values_at(samples) for row in rows])
+        return np.asarray(frames(table, convention)[-1])
+
+    return StudentChain(
+        frames(values, convention),
+        tool_at,
         nearest_links=links(np.array([row.expected for row in judgement.rows]), convention),
     )
-
-
-def read_frames(part: DhTableSpec, answer: object, grading: Grading) -> Matrices | None:
-    """The frames of that chain alone, ``(rows + 1, SAMPLES, 4, 4)``, without a judgement."""
-    read = _read_whole(part, answer, grading)
-    if read is None:
-        return None
-    rows, convention = read
-    return frames(values_of(rows), convention)
-
-
-def _read_whole(
-    part: DhTableSpec, answer: object, grading: Grading
-) -> tuple[tuple[HandedInRow, ...], Convention] | None:
-    """The rows of a table of which all was read, and the convention that it is read in."""
-    try:
-        table = read_table(answer, grading.reader, length_unit(grading.exercise))
-    except UnreadableTableError:
-        return None
-    if not table.rows or np.isnan(values_of(table.rows)).any():
-        return None
-    convention, _ = _convention(part, table, grading.exercise)
-    return table.rows, convention
 
 
 def _row_reports(
@@ -158,7 +116,7 @@ def _row_reports(
 ) -> tuple[RowReport, ...]:
     """The rows with their cells, which belong to the slip of the whole table if there is one."""
     share = points / len(judgement.rows)
-    slips = _slips(judgement, grading)
+    slips = diagnose_cells(judgement, grading)
     if of_the_whole:
         belongs = replace(of_the_whole[0], hint=_PART_OF_IT)
         slips = {
@@ -185,55 +143,7 @@ def _cell(
     label = COLUMNS[column]
     if judged.row is None:
         return CellReport(label, Verdict.MISSING)
-    entry = judged.row.entries[column]
-    if match == EXACT and not entry.findings:
-        return _RIGHT[column]
-    verdict, findings = entry.verdict, entry.findings
-    if match == Match.ROUNDED:
-        findings = (*findings, ROUNDED)
-    elif entry.expression is not None and match < Match.ROUNDED:
-        verdict = Verdict.INCORRECT
-        findings = (*findings, slip) if slip else findings
-    return CellReport(label, verdict, grading.visible(findings, judged.label, label))
-
-
-def _slips(judgement: Judgement, grading: Grading) -> dict[tuple[int, int], Finding]:
-    """What is to be said of each wrong cell that was read."""
-    written: list[tuple[int, int, JudgedRow, HandedInRow, Expression]] = []
-    for i, column in np.argwhere(judgement.matches < Match.ROUNDED).tolist():
-        judged = judgement.rows[i]
-        expression = judged.row.entries[column].expression if judged.row else None
-        if judged.row is not None and expression is not None:
-            written.append((i, column, judged, judged.row, expression))
-    if not written:
-        return {}
-    joints, samples = grading.exercise.robot.joints, grading.samples
-    actual = [row.handed_in[column] for _, column, _, row, _ in written]
-    expected = [judged.expected[column] for _, column, judged, _, _ in written]
-    angles = [bool(IS_ANGLE[column]) for _, column, *_ in written]
-    contained = coefficients(np.array(actual + expected), joints, samples, np.array(angles * 2))
-    scales = column_scales(grading).tolist()
-    slips = {}
-    for k, (i, column, judged, _, expression) in enumerate(written):
-        wanted = contained[len(written) + k]
-        slips[i, column] = diagnose(
-            WrongCell(
-                expression=expression,
-                actual=actual[k],
-                expected=expected[k],
-                expected_text=sum_text(expected[k], wanted, angles[k], grading.exercise, samples),
-                samples=samples,
-                scale=scales[column],
-                angle=angles[k],
-                column=COLUMNS[column],
-                joint=judged.joint,
-                joints=joints,
-                actual_coefficients=contained[k],
-                expected_coefficients=wanted or (0,) * len(joints),
-                shared=judged.shared,
-            )
-        )
-    return slips
+    return cell_report(judged.row.entries[column], (judged.label, label), match, slip, grading)
 
 
 _PART_OF_IT = "This belongs to what is said of the table as a whole."

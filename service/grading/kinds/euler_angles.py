@@ -4,15 +4,13 @@ Every triple of the same rotation is right. Where the triple is wrong, it is hel
 nearest of those that are right, so that a single slip costs a single angle.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import EulerAnglesSpec
 from service.expressions import Kind
 from service.expressions.tree import Call
-from service.grading.comparison import EXACT, ROUNDED, Match, difference, matches
+from service.grading.comparison import Match, difference, matches
 from service.grading.diagnosis.angle import (
     ARCTANGENTS,
     AnglesExplained,
@@ -24,13 +22,13 @@ from service.grading.diagnosis.formula_rewriting import nodes
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, WrongValue
 from service.grading.feedback import Finding
 from service.grading.formula_text import formula_text
-from service.grading.judging.expected import asked_pose, own_values
-from service.grading.judging.report_rows import entry_rows
-from service.grading.kinds.matrix_rows import UnreadableMatrixError
-from service.grading.part import Grading, PartTerms
+from service.grading.judging.expected import asked_pose, formula_values
+from service.grading.judging.report_rows import value_rows
+from service.grading.part import Grading, Judged
 from service.grading.reading.entry import Entry
-from service.grading.reading.value_list import read_list
-from service.grading.report import PartReport, Severity, Verdict
+from service.grading.reading.value_list import StudentValues, read_list
+from service.grading.report import Severity
+from service.grading.tolerances import EXACT_VALUE, ROUNDED_VALUE
 from service.kinematics.rotations import (
     from_angles,
     is_singular,
@@ -50,59 +48,48 @@ SINGULAR = Finding(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class EulerAnglesKind:
-    """Grades three angles by the rotation that they describe."""
+def read(part: EulerAnglesSpec, answer: object, grading: Grading) -> StudentValues:
+    """The angles in a list or a pasted text."""
+    return read_list(answer, QUANTITIES, grading.reader)
 
-    def grade(self, part: EulerAnglesSpec, answer: object, grading: Grading) -> PartReport:
-        """The report on a list of three angles, one row for each."""
-        terms = PartTerms(part.id, part.kind, part.points, part.all_or_nothing)
-        try:
-            entries = read_list(answer, QUANTITIES, grading.reader)
-        except UnreadableMatrixError as error:
-            return terms.unread(Verdict.UNREADABLE, grading.visible((error.finding,)))
-        turns, fixed = part.turns, part.axes == "fixed"
-        rotation = _expected_rotation(part, grading)
-        angles = grading.reader.numbers(entries, QUANTITIES)
-        expected = nearest_triple(angles, rotation, turns, fixed=fixed)
-        found = _found(angles, expected, rotation, entries, part)
-        slips: dict[tuple[int, int], Finding] = {}
-        told: tuple[Finding, ...] = ()
-        if is_singular(turns, rotation, fixed=fixed).all():
-            told = (SINGULAR,)
-        if (found < Match.ROUNDED).any() and np.isfinite(angles).all():
-            case = WrongAngles(angles, rotation, turns, fixed, _arctangents(entries))
-            found, slips, explained = _explained(found, explain_angles(case))
-            told += explained
-        slips = {**_slips(entries, angles, expected, found, grading), **slips}
-        if told and told[-1] is not SINGULAR:
-            slips = {place: slip for place, slip in slips.items() if slip.code != UNEXPLAINED}
-        rows = entry_rows(
-            [[entry] for entry in entries], found[:, None], slips, part.points, grading
-        )
-        return terms.report(rows, grading.visible(told))
+
+def judge(part: EulerAnglesSpec, answer: StudentValues, grading: Grading) -> Judged:
+    """The list with one row for each angle."""
+    turns, fixed = part.turns, part.axes == "fixed"
+    angles, rotation = answer.values, _expected_rotation(part, grading)
+    expected = nearest_triple(angles, rotation, turns, fixed=fixed)
+    found = _found(answer, expected, rotation, part)
+    slips: dict[tuple[int, int], Finding] = {}
+    findings: tuple[Finding, ...] = ()
+    if is_singular(turns, rotation, fixed=fixed).all():
+        findings = (SINGULAR,)
+    if (found < Match.ROUNDED).any() and np.isfinite(angles).all():
+        case = WrongAngles(angles, rotation, turns, fixed, _arctangents(answer.entries))
+        found, slips, explained = _explained(found, explain_angles(case))
+        findings += explained
+    slips = {**_slips(answer, expected, found, grading), **slips}
+    if findings and findings[-1] is not SINGULAR:
+        slips = {place: slip for place, slip in slips.items() if slip.code != UNEXPLAINED}
+    rows = value_rows(answer, found, slips, part.points, grading)
+    return Judged(rows, grading.visible(findings))
 
 
 def _expected_rotation(part: EulerAnglesSpec, grading: Grading) -> Matrices:
-    own = own_values(part.id, grading.exercise, grading.samples)
-    if own is None:
+    given = formula_values(part, grading)
+    if given is None:
         return asked_pose(part, grading)[:, :3, :3]
-    return from_angles(part.turns, own[0].T, fixed=part.axes == "fixed")
+    return from_angles(part.turns, given[0].T, fixed=part.axes == "fixed")
 
 
 def _found(
-    angles: Numbers,
-    expected: Numbers,
-    rotation: Matrices,
-    entries: list[Entry],
-    part: EulerAnglesSpec,
+    student: StudentValues, expected: Numbers, rotation: Matrices, part: EulerAnglesSpec
 ) -> NDArray[np.int_]:
     """The Match of each angle, ``(3,)``: all are right where they describe the rotation."""
-    rounded = [entry.may_be_rounded for entry in entries]
-    found = matches(angles, expected, 1.0, angle=True, rounded=rounded)
+    angles = student.values
+    found = matches(angles, expected, 1.0, angle=True, rounded=student.rounded)
     if np.isfinite(angles).all():
         described = from_angles(part.turns, angles.T, fixed=part.axes == "fixed")
-        if np.abs(described - rotation).max() < EXACT:
+        if np.abs(described - rotation).max() < EXACT_VALUE:
             return np.full(3, int(Match.EXACT))
     return found
 
@@ -122,7 +109,7 @@ def nearest_triple(
         one = np.where(singular[:, None], _singular_triple(angles, one, rotation, sequence), one)
     both = np.stack([one, np.where(singular[:, None], one, other_triple(sequence, one))])
     off = np.nan_to_num(np.abs(difference(angles.T, both, angle=True)))
-    hit = off <= ROUNDED * np.maximum(1.0, np.abs(both))
+    hit = off <= ROUNDED_VALUE * np.maximum(1.0, np.abs(both))
     samples = np.arange(len(one))
     # The samples may take sides differently: an atan2 is of one family, a robot's own angle of
     # both.
@@ -174,18 +161,14 @@ def _explained(
 
 
 def _slips(
-    entries: list[Entry],
-    angles: Numbers,
-    expected: Numbers,
-    found: NDArray[np.int_],
-    grading: Grading,
+    student: StudentValues, expected: Numbers, found: NDArray[np.int_], grading: Grading
 ) -> dict[tuple[int, int], Finding]:
-    """What is to be said of single wrong angles."""
+    """The findings on single wrong angles."""
     return {
         (i, 0): diagnose_angle(
             WrongValue(
                 expression=entry.expression,
-                actual=angles[i],
+                actual=student.values[i],
                 expected=expected[i],
                 expected_text=formula_text(expected[i], True, grading.exercise, grading.samples),
                 samples=grading.samples,
@@ -193,6 +176,6 @@ def _slips(
                 angle=True,
             )
         )
-        for i, entry in enumerate(entries)
+        for i, entry in enumerate(student.entries)
         if entry.expression is not None and found[i] < Match.ROUNDED
     }

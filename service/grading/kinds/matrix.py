@@ -1,33 +1,20 @@
 """Answer kind ``matrix``: a matrix of any meaning, entry by entry."""
 
-from dataclasses import dataclass
-
 from service.catalogue import MatrixSpec
-from service.grading.judging.expected import own_values
-from service.grading.kinds.matrix_rows import (
-    ExpectedMatrix,
-    UnreadableMatrixError,
-    judged_matrix,
-    read_matrix,
-)
-from service.grading.part import Grading, PartTerms
-from service.grading.report import PartReport, Verdict
+from service.grading.judging.expected import given_values
+from service.grading.judging.matrix import ExpectedMatrix
+from service.grading.kinds.matrix_rows import matrix_rows
+from service.grading.part import Grading, Judged
+from service.grading.reading.matrix import StudentMatrix, read_matrix
 
 
-@dataclass(frozen=True, slots=True)
-class MatrixKind:
-    """Grades a matrix against the formulas of the exercise."""
+def read(part: MatrixSpec, answer: object, grading: Grading) -> StudentMatrix:
+    """The entries of a nested list or a pasted text."""
+    return read_matrix(answer, part.quantities, grading.reader)
 
-    def grade(self, part: MatrixSpec, answer: object, grading: Grading) -> PartReport:
-        """The report on a matrix, row by row and entry by entry."""
-        terms = PartTerms(part.id, part.kind, part.points, part.all_or_nothing)
-        try:
-            entries = read_matrix(answer, part.quantities, grading.reader)
-        except UnreadableMatrixError as error:
-            return terms.unread(Verdict.UNREADABLE, grading.visible((error.finding,)))
-        values = own_values(part.id, grading.exercise, grading.samples)
-        if values is None:
-            raise LookupError(f"part {part.id!r} has no formulas")
-        expected = ExpectedMatrix(values, part.quantities)
-        judged = judged_matrix(entries, expected, part.points, grading)
-        return terms.report(judged.rows, judged.feedback)
+
+def judge(part: MatrixSpec, answer: StudentMatrix, grading: Grading) -> Judged:
+    """The matrix row by row and entry by entry."""
+    expected = ExpectedMatrix(given_values(part, grading), part.quantities)
+    judged = matrix_rows(answer, expected, part.points, grading)
+    return Judged(judged.rows, judged.feedback)

@@ -1,7 +1,5 @@
 """Answer kind ``position``: the coordinates of a point, such as the end effector's."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from service.catalogue import PositionSpec, Robot
@@ -9,65 +7,58 @@ from service.expressions import Kind
 from service.grading.comparison import Match
 from service.grading.diagnosis.matrix_case import chains_of
 from service.grading.diagnosis.position import WrongPosition, explain_position
+from service.grading.diagnosis.value_list import slips_of
 from service.grading.feedback import Finding
-from service.grading.judging.expected import as_entries, asked_pose, is_whole_chain, own_values
-from service.grading.judging.report_rows import entry_rows
-from service.grading.judging.value_list import WrittenValues, slips_of
-from service.grading.kinds.matrix_rows import UnreadableMatrixError, constant_text
-from service.grading.part import Grading, PartTerms
-from service.grading.reading.value_list import read_list
-from service.grading.report import PartReport, Verdict
+from service.grading.judging.expected import as_entries, asked_pose, formula_values, is_whole_chain
+from service.grading.judging.matrix import constant_text
+from service.grading.judging.report_rows import value_rows
+from service.grading.judging.value_list import ComparedValues
+from service.grading.part import Grading, Judged
+from service.grading.reading.value_list import StudentValues, read_list
 from service.kinematics.transforms import Numbers
 
 
-@dataclass(frozen=True, slots=True)
-class PositionKind:
-    """Grades the coordinates of a point one by one."""
+def read(part: PositionSpec, answer: object, grading: Grading) -> StudentValues:
+    """The coordinates in a list or a pasted text."""
+    # In [x, y, 0] for x and z, nobody can say whether z is the second or the third value.
+    planar = part.coordinates == "xy"
+    lengths: list[Kind] = ["length"] * len(part.coordinates)
+    return read_list(answer, lengths, grading.reader, planar=planar)
 
-    def grade(self, part: PositionSpec, answer: object, grading: Grading) -> PartReport:
-        """The report on a list of coordinates, one row for each."""
-        terms = PartTerms(part.id, part.kind, part.points, part.all_or_nothing)
-        quantities: list[Kind] = ["length"] * len(part.coordinates)
-        try:
-            # Of [x, y, 0] for x and z nobody could say whether z is the second or the third.
-            planar = part.coordinates == "xy"
-            entries = read_list(answer, quantities, grading.reader, planar=planar)
-        except UnreadableMatrixError as error:
-            return terms.unread(Verdict.UNREADABLE, grading.visible((error.finding,)))
-        expected = _expected(part, grading)
-        texts = [constant_text(values) for values in expected]
-        written = WrittenValues(entries, expected, quantities, texts)
-        found = written.matches(grading)
-        wrong = found < Match.ROUNDED
-        explained = _explained(part, written, grading) if wrong.any() else None
-        slips = {} if explained else slips_of(written, wrong, grading)
-        column = [[entry] for entry in entries]
-        rows = entry_rows(column, found[:, None], slips, part.points, grading)
-        return terms.report(rows, grading.visible((explained,) if explained else ()))
+
+def judge(part: PositionSpec, answer: StudentValues, grading: Grading) -> Judged:
+    """The list with one row for each coordinate."""
+    expected = _expected(part, grading)
+    compared = ComparedValues(answer, expected, [constant_text(each) for each in expected])
+    found = compared.matches(grading)
+    wrong = found < Match.ROUNDED
+    explained = _explained(part, compared, grading) if wrong.any() else None
+    slips = {} if explained else slips_of(compared, wrong, grading)
+    rows = value_rows(answer, found, slips, part.points, grading)
+    return Judged(rows, grading.visible((explained,) if explained else ()))
 
 
 def _expected(part: PositionSpec, grading: Grading) -> Numbers:
     """The coordinates asked for, ``(n, SAMPLES)``."""
-    own = own_values(part.id, grading.exercise, grading.samples)
-    if own is not None:
-        return np.asarray(own[0])
-    pose = as_entries(asked_pose(part, grading))
-    return pose[_axes(part), 3]
+    given = formula_values(part, grading)
+    if given is not None:
+        return np.asarray(given[0])
+    return as_entries(asked_pose(part, grading))[_axes(part), 3]
 
 
 def _axes(part: PositionSpec) -> list[int]:
     return ["xyz".index(letter) for letter in part.coordinates]
 
 
-def _explained(part: PositionSpec, written: WrittenValues, grading: Grading) -> Finding | None:
+def _explained(part: PositionSpec, compared: ComparedValues, grading: Grading) -> Finding | None:
     exercise = grading.exercise
-    by_links = is_whole_chain(part, exercise) and isinstance(exercise.reference, Robot)
+    linked = is_whole_chain(part, exercise) and isinstance(exercise.reference, Robot)
     return explain_position(
         WrongPosition(
-            actual=written.actual(grading),
-            expected=written.expected,
+            actual=compared.student.values,
+            expected=compared.expected,
             axes=tuple(_axes(part)),
             scale=exercise.length_scale,
-            chains=chains_of(exercise, grading.samples) if by_links else (),
+            chains=chains_of(exercise, grading.samples) if linked else (),
         )
     )

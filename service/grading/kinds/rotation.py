@@ -1,68 +1,61 @@
 """Answer kind ``rotation``: a rotation matrix, of a pose or made of turns about axes."""
 
-from dataclasses import dataclass
-
 from service.catalogue import Robot, RotationSpec
 from service.catalogue.answers import ROTATION
-from service.grading.diagnosis.matrix_case import Explanation, MatrixCase, chains_of
+from service.grading.diagnosis.matrix_case import Chain, Explanation, MatrixCase, chains_of
 from service.grading.diagnosis.rotation_steps import Step, explain_steps
-from service.grading.judging.expected import as_entries, asked_pose, is_whole_chain, own_values
-from service.grading.kinds.matrix_rows import (
-    ExpectedMatrix,
-    UnreadableMatrixError,
-    judged_matrix,
-    read_matrix,
+from service.grading.judging.expected import (
+    as_entries,
+    asked_pose,
+    formula_values,
+    given_values,
+    is_whole_chain,
 )
-from service.grading.part import Grading, PartTerms
-from service.grading.report import PartReport, Verdict
+from service.grading.judging.matrix import ExpectedMatrix
+from service.grading.kinds.matrix_rows import matrix_rows
+from service.grading.part import Grading, Judged
+from service.grading.reading.matrix import StudentMatrix, read_matrix
+from service.grading.samples import Samples
 from service.kinematics.rotations import about, composed
 from service.kinematics.transforms import Numbers
 
 
-@dataclass(frozen=True, slots=True)
-class RotationKind:
-    """Grades a 3×3 matrix entry by entry."""
+def read(part: RotationSpec, answer: object, grading: Grading) -> StudentMatrix:
+    """The entries of a nested list or a pasted text."""
+    return read_matrix(answer, ROTATION, grading.reader)
 
-    def grade(self, part: RotationSpec, answer: object, grading: Grading) -> PartReport:
-        """The report on a rotation matrix, row by row and entry by entry."""
-        terms = PartTerms(part.id, part.kind, part.points, part.all_or_nothing)
-        try:
-            entries = read_matrix(answer, ROTATION, grading.reader)
-        except UnreadableMatrixError as error:
-            return terms.unread(Verdict.UNREADABLE, grading.visible((error.finding,)))
-        exercise, samples = grading.exercise, grading.samples
-        steps = _steps(part, grading)
-        own = own_values(part.id, exercise, samples)
-        if steps:
-            values = as_entries(composed([(step.rotation, step.fixed) for step in steps]))
-        elif own is not None:
-            values = own
-        else:
-            values = as_entries(asked_pose(part, grading)[:, :3, :3])
 
-        def misconceptions(case: MatrixCase) -> list[Explanation]:
-            return explain_steps(case, steps)
+def judge(part: RotationSpec, answer: StudentMatrix, grading: Grading) -> Judged:
+    """The matrix row by row and entry by entry."""
+    exercise = grading.exercise
+    steps = _steps(part, grading)
+    linked = is_whole_chain(part, exercise) and isinstance(exercise.reference, Robot)
 
-        whole = is_whole_chain(part, exercise) and isinstance(exercise.reference, Robot)
-        judged = judged_matrix(
-            entries,
-            ExpectedMatrix(values, ROTATION, rigid=True),
-            part.points,
-            grading,
-            chains=lambda samples: chains_of(exercise, samples) if whole else (),
-            misconceptions=misconceptions,
-        )
-        return terms.report(judged.rows, judged.feedback)
+    def chains(samples: Samples) -> tuple[Chain, ...]:
+        return chains_of(exercise, samples) if linked else ()
+
+    def explanations(case: MatrixCase) -> list[Explanation]:
+        return explain_steps(case, steps)
+
+    expected = ExpectedMatrix(_expected(part, steps, grading), ROTATION, rigid=True)
+    judged = matrix_rows(answer, expected, part.points, grading, chains, explanations)
+    return Judged(judged.rows, judged.feedback)
+
+
+def _expected(part: RotationSpec, steps: list[Step], grading: Grading) -> Numbers:
+    """The right rotation, ``(3, 3, SAMPLES)``."""
+    if steps:
+        return as_entries(composed([(step.rotation, step.fixed) for step in steps]))
+    given = formula_values(part, grading)
+    return as_entries(asked_pose(part, grading)[:, :3, :3]) if given is None else given
 
 
 def _steps(part: RotationSpec, grading: Grading) -> list[Step]:
     """The turns that the rotation is made of, in numbers; none where it is not given so."""
     if part.steps is None:
         return []
-    angles: Numbers | None = own_values(part.id, grading.exercise, grading.samples)
-    if angles is None:
-        return []
+    [angles] = given_values(part, grading)
     return [
         Step(step.axis.upper(), about(step.axis.upper(), angle), step.about == "fixed")
-        for step, angle in zip(part.steps, angles[0], strict=True)
+        for step, angle in zip(part.steps, angles, strict=True)
     ]

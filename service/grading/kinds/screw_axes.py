@@ -1,6 +1,5 @@
 """Answer kind ``screw_axes``: the screw axis (ω; v) of each joint, seen from base or tool."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,19 +10,16 @@ from service.catalogue.answers import SCREW
 from service.catalogue.robot import at_home
 from service.grading.comparison import Match, matches
 from service.grading.diagnosis.screw_axis import WrongScrew, explain_screw
+from service.grading.diagnosis.value_list import slips_of
 from service.grading.feedback import Finding
-from service.grading.judging.expected import own_values
+from service.grading.judging.expected import formula_values
+from service.grading.judging.matrix import constant_text
 from service.grading.judging.report_rows import entry_rows
-from service.grading.judging.value_list import WrittenValues, slips_of
-from service.grading.kinds.matrix_rows import (
-    UnreadableMatrixError,
-    constant_text,
-    numbers_of,
-    read_matrix,
-)
-from service.grading.part import Grading, PartTerms
-from service.grading.reading.entry import Entry
-from service.grading.report import PartReport, RowReport, Severity, Verdict, rounded_points
+from service.grading.judging.value_list import ComparedValues
+from service.grading.part import Grading, Judged
+from service.grading.reading.matrix import StudentMatrix, read_matrix
+from service.grading.reading.value_list import StudentValues
+from service.grading.report import RowReport, Severity, Verdict, rounded_points
 from service.grading.samples import SAMPLES
 from service.kinematics.screws import moved
 from service.kinematics.transforms import Numbers, inverse
@@ -41,47 +37,42 @@ class ExpectedScrews:
     labels: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class ScrewAxesKind:
-    """Grades screw axes joint by joint and number by number."""
+def read(part: ScrewAxesSpec, answer: object, grading: Grading) -> StudentMatrix:
+    """One six-vector for each joint, in a list of lists or a pasted text."""
+    quantities = (SCREW,) * _count(part, grading)
+    return read_matrix(_as_rows(answer, len(quantities)), quantities, grading.reader)
 
-    def grade(self, part: ScrewAxesSpec, answer: object, grading: Grading) -> PartReport:
-        """The report on a list of six-vectors, one row for each joint."""
-        terms = PartTerms(part.id, part.kind, part.points, part.all_or_nothing)
-        expected = _expected(part, grading)
-        quantities = (SCREW,) * len(expected.axes)
-        try:
-            entries = read_matrix(_as_rows(answer, len(quantities)), quantities, grading.reader)
-        except UnreadableMatrixError as error:
-            return terms.unread(Verdict.UNREADABLE, grading.visible((error.finding,)))
-        actual = numbers_of(entries, quantities, grading.reader)
-        found = _matches(actual, expected.axes, entries, grading)
-        axes = expected.axes
-        told: dict[int, Finding] = {}
-        if part.directions == "free":
-            turned = _matches(actual, -axes, entries, grading)
-            better = (turned >= Match.ROUNDED).sum(axis=1) > (found >= Match.ROUNDED).sum(axis=1)
-            found = np.where(better[:, None], turned, found)
-            axes = np.where(better[:, None, None], -axes, axes)
-            told = {int(i): REVERSED for i in np.flatnonzero(better)}
-        wrong = found < Match.ROUNDED
-        remarks = _remarks(actual, axes, wrong, expected, part, grading)
-        slips = {
-            (i, j): slip
-            for i in np.flatnonzero(wrong.any(axis=1)).tolist()
-            if i not in remarks
-            for (j, _), slip in _slips(entries[i], axes[i], wrong[i], grading).items()
-        }
-        rows = entry_rows(
-            entries,
-            found,
-            slips,
-            part.points,
-            grading,
-            labels=expected.labels,
-            remarks={**told, **remarks},
-        )
-        return terms.report(tuple(map(_marked_by_vectors, rows)))
+
+def judge(part: ScrewAxesSpec, answer: StudentMatrix, grading: Grading) -> Judged:
+    """The axes with one row for each joint."""
+    expected = _expected(part, grading)
+    axes = expected.axes
+    found = _matches(answer, axes, grading)
+    remarks: dict[int, Finding] = {}
+    if part.directions == "free":
+        turned = _matches(answer, -axes, grading)
+        better = (turned >= Match.ROUNDED).sum(axis=1) > (found >= Match.ROUNDED).sum(axis=1)
+        found = np.where(better[:, None], turned, found)
+        axes = np.where(better[:, None, None], -axes, axes)
+        remarks = {int(i): REVERSED for i in np.flatnonzero(better)}
+    wrong = found < Match.ROUNDED
+    explained = _explained(answer.values, axes, wrong, expected, part, grading)
+    slips = {
+        (i, j): slip
+        for i in np.flatnonzero(wrong.any(axis=1)).tolist()
+        if i not in explained
+        for (j, _), slip in _slips(answer, i, axes[i], wrong[i], grading).items()
+    }
+    rows = entry_rows(
+        answer.entries,
+        found,
+        slips,
+        part.points,
+        grading,
+        labels=expected.labels,
+        remarks={**remarks, **explained},
+    )
+    return Judged(tuple(map(_marked_by_vectors, rows)))
 
 
 def _marked_by_vectors(row: RowReport) -> RowReport:
@@ -108,11 +99,16 @@ def _as_rows(answer: object, count: int) -> object:
     return answer
 
 
+def _count(part: ScrewAxesSpec, grading: Grading) -> int:
+    """The number of axes asked for."""
+    return len(part.expected or grading.exercise.joints)
+
+
 def _expected(part: ScrewAxesSpec, grading: Grading) -> ExpectedScrews:
     exercise, samples = grading.exercise, grading.samples
-    own, robot = own_values(part.id, exercise, samples), exercise.reference
-    if own is not None:
-        return ExpectedScrews(own, None, tuple(str(i + 1) for i in range(len(own))))
+    given, robot = formula_values(part, grading), exercise.reference
+    if given is not None:
+        return ExpectedScrews(given, None, tuple(str(i + 1) for i in range(len(given))))
     if robot is None:
         raise LookupError(f"exercise {exercise.id!r} has no robot")
     home = robot.frame("tool", at_home(robot.joints, samples.values, SAMPLES), SAMPLES)
@@ -126,16 +122,13 @@ def _expected(part: ScrewAxesSpec, grading: Grading) -> ExpectedScrews:
     )
 
 
-def _matches(
-    actual: Numbers, expected: Numbers, entries: list[list[Entry]], grading: Grading
-) -> NDArray[np.int_]:
+def _matches(student: StudentMatrix, expected: Numbers, grading: Grading) -> NDArray[np.int_]:
     """The Match of each number, ``(joints, 6)``."""
     scale = np.repeat([1.0, grading.exercise.length_scale], 3)
-    rounded = [[entry.may_be_rounded for entry in row] for row in entries]
-    return matches(actual, expected, scale, rounded=rounded)
+    return matches(student.values, expected, scale, rounded=student.rounded)
 
 
-def _remarks(
+def _explained(
     actual: Numbers,
     axes: Numbers,
     wrong: NDArray[np.bool_],
@@ -143,19 +136,21 @@ def _remarks(
     part: ScrewAxesSpec,
     grading: Grading,
 ) -> dict[int, Finding]:
-    """What explains the whole of a wrong axis, by its place."""
-    remarks: dict[int, Finding] = {}
+    """The finding that explains the whole of a wrong axis, by its place."""
+    explained: dict[int, Finding] = {}
     for i in np.flatnonzero(wrong.any(axis=1)).tolist():
         elsewhere = None if expected.elsewhere is None else expected.elsewhere[i]
         case = WrongScrew(actual[i], axes[i], elsewhere, part.frame, grading.exercise.length_scale)
         finding = explain_screw(case)
         if finding is not None:
-            remarks[i] = finding
-    return remarks
+            explained[i] = finding
+    return explained
 
 
 def _slips(
-    entries: Sequence[Entry], axis: Numbers, wrong: NDArray[np.bool_], grading: Grading
+    student: StudentMatrix, i: int, axis: Numbers, wrong: NDArray[np.bool_], grading: Grading
 ) -> dict[tuple[int, int], Finding]:
-    texts = [constant_text(values) for values in axis]
-    return slips_of(WrittenValues(entries, axis, SCREW, texts), wrong, grading)
+    """The findings on single numbers of axis ``i``."""
+    values = StudentValues(student.entries[i], SCREW, student.values[i])
+    texts = [constant_text(number) for number in axis]
+    return slips_of(ComparedValues(values, axis, texts), wrong, grading)

@@ -1,55 +1,57 @@
 """Answer kind ``transform``: a homogeneous transform, such as the pose of the end effector."""
 
-from dataclasses import dataclass
+import numpy as np
 
 from service.catalogue import Robot, TransformSpec
-from service.expressions import Kind
+from service.catalogue.answers import HOMOGENEOUS
 from service.grading.diagnosis.exponentials import explain_product
 from service.grading.diagnosis.matrix_case import Chain, Explanation, MatrixCase, chains_of
-from service.grading.judging.expected import as_entries, asked_pose, is_whole_chain, own_values
-from service.grading.kinds.matrix_rows import (
-    ExpectedMatrix,
-    UnreadableMatrixError,
-    judged_matrix,
-    read_matrix,
-)
-from service.grading.part import Grading, PartTerms
-from service.grading.report import PartReport, Verdict
+from service.grading.follow_through import stands_still
+from service.grading.judging.expected import as_entries, asked_pose, formula_values, is_whole_chain
+from service.grading.judging.matrix import ExpectedMatrix
+from service.grading.kinds.matrix_rows import matrix_rows
+from service.grading.part import Grading, Judged, StudentChain
+from service.grading.reading.matrix import StudentMatrix, read_matrix
 from service.grading.samples import Samples
+from service.kinematics.chain import products
+from service.kinematics.transforms import Matrices
 
-_LINE: tuple[Kind, ...] = ("number", "number", "number", "length")
-HOMOGENEOUS: tuple[tuple[Kind, ...], ...] = (_LINE, _LINE, _LINE, ("number",) * 4)
+
+def read(part: TransformSpec, answer: object, grading: Grading) -> StudentMatrix:
+    """The entries of a nested list or a pasted text."""
+    return read_matrix(answer, HOMOGENEOUS, grading.reader)
 
 
-@dataclass(frozen=True, slots=True)
-class TransformKind:
-    """Grades a 4×4 matrix: a pose of the robot, or what the exercise says."""
+def judge(part: TransformSpec, answer: StudentMatrix, grading: Grading) -> Judged:
+    """The matrix row by row and entry by entry."""
+    exercise = grading.exercise
+    given = formula_values(part, grading)
+    values = as_entries(asked_pose(part, grading)) if given is None else given
+    whole = is_whole_chain(part, exercise)
+    linked = whole and isinstance(exercise.reference, Robot)
 
-    def grade(self, part: TransformSpec, answer: object, grading: Grading) -> PartReport:
-        """The report on a 4×4 matrix, row by row and entry by entry."""
-        terms = PartTerms(part.id, part.kind, part.points, part.all_or_nothing)
-        try:
-            entries = read_matrix(answer, HOMOGENEOUS, grading.reader)
-        except UnreadableMatrixError as error:
-            return terms.unread(Verdict.UNREADABLE, grading.visible((error.finding,)))
-        exercise, samples = grading.exercise, grading.samples
-        own = own_values(part.id, exercise, samples)
-        values = as_entries(asked_pose(part, grading)) if own is None else own
-        whole = is_whole_chain(part, exercise)
-        linked = whole and isinstance(exercise.reference, Robot)
+    def chains(samples: Samples) -> tuple[Chain, ...]:
+        return chains_of(exercise, samples) if linked else ()
 
-        def chains(samples: Samples) -> tuple[Chain, ...]:
-            return chains_of(exercise, samples) if linked else ()
+    def explanations(case: MatrixCase) -> list[Explanation]:
+        return explain_product(case, exercise, grading.samples) if whole else []
 
-        def misconceptions(case: MatrixCase) -> list[Explanation]:
-            return explain_product(case, exercise, samples) if whole else []
+    expected = ExpectedMatrix(values, HOMOGENEOUS, rigid=True)
+    judged = matrix_rows(answer, expected, part.points, grading, chains, explanations)
+    return Judged(
+        judged.rows,
+        judged.feedback,
+        stands_still=whole and stands_still(answer.values),
+        chain=lambda: _chain(answer),
+    )
 
-        judged = judged_matrix(
-            entries,
-            ExpectedMatrix(values, HOMOGENEOUS, rigid=True),
-            part.points,
-            grading,
-            chains=chains,
-            misconceptions=misconceptions,
-        )
-        return terms.report(judged.rows, judged.feedback)
+
+def _chain(answer: StudentMatrix) -> StudentChain | None:
+    """The pose as a chain of one link; None where not all of it has a value."""
+    if np.isnan(answer.values).any():
+        return None
+
+    def tool_at(samples: Samples) -> Matrices:
+        return np.moveaxis(answer.values_at(samples), -1, 0)
+
+    return StudentChain(products(np.moveaxis(answer.values, -1, 0)[None]), tool_at)

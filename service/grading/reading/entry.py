@@ -1,12 +1,13 @@
-"""From what was handed in for one cell to the numbers that it gives at the samples."""
+"""A cell as handed in -> an entry, and entries -> their numbers at the samples."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 
+from service.catalogue import Exercise
 from service.expressions import (
     LIMITS,
     Expression,
@@ -17,24 +18,16 @@ from service.expressions import (
     evaluate_all,
     read,
 )
-from service.grading.feedback import Finding
-from service.grading.report import Severity, Verdict
-from service.grading.samples import HALF, SAMPLES, Samples
+from service.grading.feedback import Finding, reading_error, reading_note
+from service.grading.report import Verdict
+from service.grading.samples import SAMPLES, Samples
+from service.grading.work_budget import MAX_CHARACTERS, WorkBudget
 from service.kinematics.transforms import Numbers
 
 AngleUnit = Literal["radians", "degrees"]
 
-# Textbooks mark the joint variable so in every table; six notes about it would bury the others.
+# Textbooks mark the joint variable so in every table: six notes on it would hide the others.
 EXPECTED_NOTES = frozenset({"joint_marker"})
-
-# What changes by less than this when the joints move does not move.
-MOVES = 1e-9
-
-# A 4×4 matrix of a six-joint arm, multiplied out and not simplified, takes a third of it.
-MAX_CHARACTERS = 12_000
-
-# Of so many unreadable cells of a submission a repaired text is looked for; that costs most.
-REPAIRED = 12
 
 # Beyond these nobody measures a robot, and an angle has lost its digits to whole turns.
 BOUNDS: Mapping[Kind, float] = {"angle": 1e6, "length": 1e9, "number": 1e9}
@@ -62,34 +55,39 @@ class Entry:
         return self.expression is not None and self.expression.has_decimal
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class Reader:
-    """Reads the cells of one submission.
+    """Reads the cells of one submission. Copies with another angle unit share the budget.
 
-    Together they may hold so many characters and no more (``left``): reading is what costs time.
-    ``moving`` says whether any value met so far changes with the joints, ``unread`` how many texts
-    could not be read.
+    ``length_unit`` is the one unit of all lengths of the exercise, None where there are several.
     """
 
     vocabulary: Vocabulary
     samples: Samples
     angle_unit: AngleUnit
-    left: int = MAX_CHARACTERS
-    moving: bool = False
-    unread: int = 0
+    length_unit: str | None
+    budget: WorkBudget = field(default_factory=WorkBudget)
+
+    @classmethod
+    def of(cls, exercise: Exercise, samples: Samples, angle_unit: AngleUnit) -> Self:
+        """The reader of a submission to an exercise."""
+        units = {variable.unit for variable in exercise.variables if variable.kind == "length"}
+        unit = units.pop() if len(units) == 1 else None
+        return cls(exercise.vocabulary, samples, angle_unit, unit)
 
     def read(self, raw: object, quantity: Kind) -> Entry:
         """The entry for a JSON value. Whatever it is, the worst that comes back is unreadable."""
+        budget = self.budget
         if isinstance(raw, str):
             if not raw.strip():
                 return MISSING
             if len(raw) <= LIMITS.characters:
-                self.left -= len(raw)
+                budget.characters -= len(raw)
         elif raw is None:
             return MISSING
         elif isinstance(raw, bool) or not isinstance(raw, int | float):
             return unreadable(_wrong_type(raw))
-        if self.left < 0:
+        if budget.characters < 0:
             return unreadable(_TOO_MUCH)
         try:
             expression = read(
@@ -97,50 +95,47 @@ class Reader:
                 self.vocabulary,
                 quantity=quantity,
                 angle_unit=self.angle_unit,
-                repairs=self.unread < REPAIRED,
+                repairs=budget.repairs > 0,
             )
         except ExpressionError as error:
-            self.unread += 1
+            budget.repairs -= 1
             return unreadable(_from_error(error))
         if not expression.notes:
             return Entry(expression)
         notes = (note for note in expression.notes if note.code not in EXPECTED_NOTES)
-        return Entry(expression, findings=tuple(map(_from_note, notes)))
+        return Entry(expression, findings=tuple(map(from_note, notes)))
 
-    def numbers(self, entries: Sequence[Entry], quantities: Sequence[Kind]) -> Numbers:
-        """The values of entries at the samples, ``(entries, SAMPLES)``.
 
-        NaN where an entry has none: nothing could be read, or it is undefined or beyond all bounds
-        there.
-        """
-        expressions = [entry.expression for entry in entries]
-        found = evaluate_all(expressions, self.samples.values, self.samples.memo)
-        numbers = np.empty((len(entries), SAMPLES))
-        for i, values in enumerate(found):
-            numbers[i] = values
-        numbers[np.abs(numbers) > _bounds(tuple(quantities))] = np.nan
-        if not self.moving:
-            change = np.abs(numbers[:, :HALF] - numbers[:, HALF:])
-            self.moving = bool((change > MOVES).any())
-        return numbers
+def entry_values(entries: Sequence[Entry], quantities: Sequence[Kind], samples: Samples) -> Numbers:
+    """The values of entries at the samples, ``(entries, SAMPLES)``.
+
+    NaN where an entry has none: nothing could be read, or it is undefined or beyond all bounds
+    there.
+    """
+    expressions = [entry.expression for entry in entries]
+    found = evaluate_all(expressions, samples.values, samples.memo)
+    numbers = np.empty((len(entries), SAMPLES))
+    for i, values in enumerate(found):
+        numbers[i] = values
+    numbers[np.abs(numbers) > _bounds(tuple(quantities))] = np.nan
+    return numbers
 
 
 @lru_cache(maxsize=256)
 def _bounds(quantities: tuple[Kind, ...]) -> Numbers:
-    """What the values of these may be at most, ``(quantities, 1)``."""
+    """The largest value of each quantity, ``(quantities, 1)``."""
     return np.array([[BOUNDS[quantity]] for quantity in quantities])
 
 
-_TOO_MUCH = Finding(
+_TOO_MUCH = reading_error(
     "too_long",
     f"The answers hold more than {MAX_CHARACTERS} characters together; what follows is not read.",
-    reading=True,
 )
 
 MISSING = Entry(
     None,
     Verdict.MISSING,
-    (Finding("missing", "Nothing is written here; if the value is zero, write 0.", reading=True),),
+    (reading_error("missing", "Nothing is written here; if the value is zero, write 0."),),
 )
 
 
@@ -152,19 +147,22 @@ def unreadable(finding: Finding) -> Entry:
 def _wrong_type(raw: object) -> Finding:
     names = {bool: "true or false", list: "a list", dict: "an object"}
     found = names.get(type(raw), "neither")
-    return Finding(
-        "wrong_type",
-        f"A cell holds one number or one formula as text; this is {found}.",
-        reading=True,
-    )
+    message = f"A cell holds one number or one formula as text; this is {found}."
+    return reading_error("wrong_type", message)
 
 
 def _from_error(error: ExpressionError) -> Finding:
-    suggestion = f"Did you mean {error.suggestion}?" if error.suggestion else ""
-    if suggestion in error.message:
-        suggestion = ""
-    return Finding(error.code, error.message, suggestion, span=error.span, reading=True)
+    question = f"Did you mean {error.suggestion}?" if error.suggestion else ""
+    return Finding(
+        error.code,
+        error.message,
+        "" if question in error.message else question,
+        span=error.span,
+        reading=True,
+        suggestion=error.suggestion,
+    )
 
 
-def _from_note(note: Note) -> Finding:
-    return Finding(note.code, note.message, severity=Severity.INFO, span=note.span, reading=True)
+def from_note(note: Note) -> Finding:
+    """A note on how a text was read, as a finding."""
+    return reading_note(note.code, note.message, note.span)

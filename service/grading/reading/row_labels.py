@@ -5,8 +5,7 @@ import unicodedata
 from collections.abc import Sequence
 from typing import Final
 
-from service.grading.feedback import Finding
-from service.grading.report import Severity
+from service.grading.feedback import Finding, reading_note
 from service.grids import Cell, GridError
 
 LAST: Final = 10_000
@@ -19,7 +18,7 @@ _END: Final = frozenset(
 
 
 def label_place(text: str) -> int | None:
-    """Where a label puts its row: its number, or behind all numbers; None where it says nothing.
+    """The place of a row by its label: its number, or behind all numbers; None for none.
 
     ``1``, ``Link 1``, ``J1``, ``{1}``, ``0→1``; ``e``, ``tool``, ``end effector``.
     """
@@ -43,9 +42,9 @@ def is_label(text: str) -> bool:
 
 
 def in_order(labels: Sequence[Cell]) -> tuple[list[int], tuple[Finding, ...]]:
-    """The rows' places in the order of their labels, and what is to be said about it.
+    """The places of the rows in the order of their labels, with the findings on it.
 
-    Raises GridError where two rows have one label. Labels that say nothing leave the order alone.
+    Rows keep their order where a label has no place. Raises GridError where two have one label.
     """
     typed = list(range(len(labels)))
     places = [label_place(label.text) for label in labels]
@@ -55,7 +54,7 @@ def in_order(labels: Sequence[Cell]) -> tuple[list[int], tuple[Finding, ...]]:
             return typed, ()
         unknown = next(i for i in typed if places[i] is None)
         message = "Not all rows have a number in front, so they were read in the order as pasted."
-        return typed, (_info("row_labels", message, labels[unknown]),)
+        return typed, (reading_note("row_labels", message, labels[unknown].whole),)
     if len(set(known)) < len(known):
         again = next(i for i in typed if known[i] in known[:i])
         raise GridError(
@@ -68,8 +67,4 @@ def in_order(labels: Sequence[Cell]) -> tuple[list[int], tuple[Finding, ...]]:
         return typed, ()
     moved = next(i for i in typed if order[i] != i)
     message = "The rows were put into the order of their labels."
-    return order, (_info("rows_reordered", message, labels[moved]),)
-
-
-def _info(code: str, message: str, cell: Cell) -> Finding:
-    return Finding(code, message, severity=Severity.INFO, span=cell.whole, reading=True)
+    return order, (reading_note("rows_reordered", message, labels[moved].whole),)

@@ -1,17 +1,18 @@
-"""Reading a handed-in DH table, and finding out which of its rows is which."""
+"""A DH table as handed in, JSON or pasted text -> its rows and their numbers."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from service.grading.feedback import Finding
+from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.reading.column_headers import QUANTITIES
-from service.grading.reading.entry import MISSING, Entry, Reader, unreadable
-from service.grading.reading.pasted import entries_of, from_grid_error, read_pasted_table
+from service.grading.reading.entry import MISSING, Entry, Reader, entry_values, unreadable
+from service.grading.reading.pasted import from_grid_error
+from service.grading.reading.pasted_table import entries_of, read_pasted_table
 from service.grading.reading.table_json import canonical_table
 from service.grading.report import Severity
+from service.grading.samples import Samples
 from service.grids import GridError
 from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh import Convention
@@ -53,8 +54,12 @@ class HandedInRow:
 
     @property
     def rounded(self) -> list[bool]:
-        """Which cells may be off by what rounding does."""
+        """Which cells may have been rounded."""
         return [entry.may_be_rounded for entry in self.entries]
+
+    def values_at(self, samples: Samples) -> Table:
+        """The numbers at other samples, as they were handed in."""
+        return np.asarray(_values([self.entries], samples)[0])
 
     @property
     def is_zero(self) -> bool:
@@ -71,55 +76,45 @@ class HandedInTable:
     findings: tuple[Finding, ...] = ()
 
 
-class UnreadableTableError(Exception):
-    """The answer is no table at all; ``finding`` says what it would have to look like."""
-
-    def __init__(self, finding: Finding) -> None:
-        super().__init__(finding.hint)
-        self.finding = finding
-
-
-def read_table(answer: object, reader: Reader, length_unit: str | None = None) -> HandedInTable:
+def read_table(answer: object, reader: Reader) -> HandedInTable:
     """The table in a JSON answer ``{"rows": [{"a", "alpha", "d", "theta"} …], "convention"?}``.
 
-    It may have other shapes that mean the same (``table_shapes``), and it, or its rows, may be
-    pasted text. ``length_unit`` is that of the exercise's lengths, for a pasted column that names
-    another.
+    It may have other shapes that mean the same (``table_json``), and it, or its rows, may be
+    pasted text.
 
-    Raises UnreadableTableError where the answer has no rows at all; a row or cell that cannot be
+    Raises UnreadableAnswerError where the answer has no rows at all; a row or cell that cannot be
     read costs only itself.
     """
     if isinstance(answer, str):
         answer = {"rows": answer}
     answer = canonical_table(answer)
     if isinstance(answer, Mapping) and isinstance(answer.get("rows"), str):
-        return _pasted(answer["rows"], answer.get("convention"), reader, length_unit)
+        return _pasted(answer["rows"], answer.get("convention"), reader)
     if not isinstance(answer, Mapping) or not isinstance(answer.get("rows"), list):
-        raise UnreadableTableError(
-            Finding(
+        raise UnreadableAnswerError(
+            reading_error(
                 "wrong_shape",
                 'A DH table is written {"rows": [{"a": …, "alpha": …, "d": …, "theta": …}, …]}.',
-                reading=True,
             )
         )
     rows = answer["rows"]
     if len(rows) > MAX_ROWS:
-        raise UnreadableTableError(_too_many_rows(len(rows)))
+        raise UnreadableAnswerError(_too_many_rows(len(rows)))
     convention, findings = _convention(answer.get("convention"))
     return _table([_entries(row, reader) for row in rows], convention, findings, reader)
 
 
-def _pasted(text: str, stated: object, reader: Reader, length_unit: str | None) -> HandedInTable:
+def _pasted(text: str, stated: object, reader: Reader) -> HandedInTable:
     convention, findings = _convention(stated)
     if not text.strip():
         return HandedInTable((), convention, findings)
     try:
         pasted = read_pasted_table(text, reader)
     except GridError as error:
-        raise UnreadableTableError(from_grid_error(error)) from error
+        raise UnreadableAnswerError(from_grid_error(error)) from error
     if len(pasted.rows) > MAX_ROWS:
-        raise UnreadableTableError(_too_many_rows(len(pasted.rows)))
-    entries = entries_of(pasted, reader, length_unit)
+        raise UnreadableAnswerError(_too_many_rows(len(pasted.rows)))
+    entries = entries_of(pasted, reader)
     return _table(entries, convention, (*findings, *pasted.findings), reader)
 
 
@@ -131,16 +126,19 @@ def _table(
 ) -> HandedInTable:
     if not read:
         return HandedInTable((), convention, findings)
-    cells = [entry for entries in read for entry in entries]
-    numbers = reader.numbers(cells, (*QUANTITIES.values(),) * len(read))
-    values = numbers.reshape(len(read), len(COLUMNS), -1)
+    values = _values(read, reader.samples)
     return HandedInTable(tuple(map(HandedInRow, read, values)), convention, findings)
 
 
+def _values(rows: Sequence[tuple[Entry, ...]], samples: Samples) -> Table:
+    cells = [entry for entries in rows for entry in entries]
+    numbers = entry_values(cells, (*QUANTITIES.values(),) * len(rows), samples)
+    return numbers.reshape(len(rows), len(COLUMNS), -1)
+
+
 def _too_many_rows(found: int) -> Finding:
-    return Finding(
-        "too_many_rows", f"A table has at most {MAX_ROWS} rows; this one has {found}.", reading=True
-    )
+    message = f"A table has at most {MAX_ROWS} rows; this one has {found}."
+    return reading_error("too_many_rows", message)
 
 
 def _convention(stated: object) -> tuple[Convention | None, tuple[Finding, ...]]:
@@ -164,7 +162,7 @@ def _entries(row: object, reader: Reader) -> tuple[Entry, ...]:
         return (MISSING,) * len(COLUMNS)
     if not isinstance(row, Mapping):
         return (unreadable(_NO_ROW),) * len(COLUMNS)
-    # A value under a name that is not understood must not pass for one that is not there.
+    # A value under an unknown name must not pass for a missing one.
     stray = not row.keys() <= QUANTITIES.keys()
     return tuple(
         unreadable(_NO_ROW)
@@ -174,41 +172,9 @@ def _entries(row: object, reader: Reader) -> tuple[Entry, ...]:
     )
 
 
-_NO_ROW = Finding(
-    "wrong_shape", 'A row is written {"a": …, "alpha": …, "d": …, "theta": …}.', reading=True
-)
+_NO_ROW = reading_error("wrong_shape", 'A row is written {"a": …, "alpha": …, "d": …, "theta": …}.')
 
 
 def values_of(rows: Sequence[HandedInRow]) -> Table:
     """The numbers of the rows, ``(rows, 4, SAMPLES)``; NaN where a cell could not be read."""
     return np.array([row.values for row in rows])
-
-
-def aligned(scores: NDArray[np.float64]) -> list[tuple[int | None, int | None]]:
-    """Pair handed-in rows with expected rows, in order, so that the scores add up to the most.
-
-    ``scores`` is ``(handed in, expected)``. A row without partner is paired with None: on the left
-    it is missing, on the right it is extra. Where nothing tells, the last rows stay unpaired.
-
-    The longest-common-subsequence recurrence with weights.
-    """
-    m, n = scores.shape
-    best = np.zeros((m + 1, n + 1))
-    for i in reversed(range(m)):
-        for j in reversed(range(n)):
-            best[i, j] = max(scores[i, j] + best[i + 1, j + 1], best[i + 1, j], best[i, j + 1])
-    pairs: list[tuple[int | None, int | None]] = []
-    i = j = 0
-    while i < m and j < n:
-        if best[i, j] == scores[i, j] + best[i + 1, j + 1]:
-            pairs.append((i, j))
-            i, j = i + 1, j + 1
-        elif best[i, j] == best[i, j + 1]:
-            pairs.append((None, j))
-            j += 1
-        else:
-            pairs.append((i, None))
-            i += 1
-    pairs.extend((k, None) for k in range(i, m))
-    pairs.extend((None, k) for k in range(j, n))
-    return pairs

@@ -1,37 +1,63 @@
-"""Reading handed-in lists of values, and what is wrong with the shape of one."""
+"""A list of values as handed in, JSON or pasted text -> its entries and their numbers."""
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from service.expressions import Kind
-from service.grading.feedback import Finding
-from service.grading.kinds.matrix_rows import UnreadableMatrixError
-from service.grading.reading.entry import MISSING, Entry, Reader
+from service.grading.feedback import (
+    Finding,
+    UnreadableAnswerError,
+    reading_error,
+    reading_note,
+)
+from service.grading.reading.entry import MISSING, Entry, Reader, entry_values
 from service.grading.reading.pasted import from_grid_error, placed
-from service.grading.report import Severity
 from service.grids import Cell, GridError, read_grid
+from service.kinematics.transforms import Numbers
+
+
+@dataclass(frozen=True, slots=True)
+class StudentValues:
+    """A list of values as read: entries, and numbers ``(n, SAMPLES)``, NaN where there are none."""
+
+    entries: list[Entry]
+    quantities: Sequence[Kind]
+    values: Numbers
+
+    @property
+    def rounded(self) -> list[bool]:
+        """Which values may have been rounded."""
+        return [entry.may_be_rounded for entry in self.entries]
 
 
 def read_list(
     answer: object, quantities: Sequence[Kind], reader: Reader, *, planar: bool = False
-) -> list[Entry]:
-    """The entries of a list, one for each quantity asked for.
+) -> StudentValues:
+    """The values of a list, one for each quantity asked for.
 
-    A column, a list of lists of one, or a row in a list of its own will do, and pasted text. Values
-    that were left off at the end are missing. Where the values are those of a ``planar`` answer,
-    one 0 more, as in [x, y, 0], is left aside and said to be. Raises UnreadableMatrixError where
-    there is no list of the length asked for.
+    A list may also be a column (a list of lists of one), a row in a list of its own, or pasted
+    text. Values that were left off at the end are missing. A ``planar`` answer may have one 0 more,
+    as in [x, y, 0]: it is left aside, with a note. Raises UnreadableAnswerError where there is no
+    list of the length asked for.
     """
     if isinstance(answer, str):
-        return _pasted(answer, quantities, reader, planar=planar)
+        entries = _pasted(answer, quantities, reader, planar=planar)
+    else:
+        entries = _listed(answer, quantities, reader, planar=planar)
+    return StudentValues(entries, quantities, entry_values(entries, quantities, reader.samples))
+
+
+def _listed(
+    answer: object, quantities: Sequence[Kind], reader: Reader, *, planar: bool
+) -> list[Entry]:
     values = _flat(answer)
     left_aside = planar and len(values) == len(quantities) + 1 and _is_zero(values[-1])
     if left_aside:
         values = values[:-1]
     is_nested = all(isinstance(value, list) for value in values)
     if is_nested or len(values) > len(quantities):
-        raise UnreadableMatrixError(_wrong_shape(len(quantities), 0 if is_nested else len(values)))
+        raise UnreadableAnswerError(_wrong_shape(len(quantities), 0 if is_nested else len(values)))
     padded = [*values, *[None] * (len(quantities) - len(values))]
     entries = [reader.read(raw, quantity) for raw, quantity in zip(padded, quantities, strict=True)]
     return _with_note(entries) if left_aside else entries
@@ -71,7 +97,7 @@ def _pasted(text: str, quantities: Sequence[Kind], reader: Reader, *, planar: bo
         if error.code in _OF_TABLES:
             entries = _taken_apart(text, quantities, reader, planar=planar)
         if entries is None:
-            raise UnreadableMatrixError(_from_grid_error(error, len(quantities))) from error
+            raise UnreadableAnswerError(_from_grid_error(error, len(quantities))) from error
         return entries
     cells: Sequence[Cell] = rows[0] if len(rows) == 1 else [row[0] for row in rows]
     is_list = len(rows) == 1 or all(len(row) == 1 for row in rows)
@@ -80,7 +106,7 @@ def _pasted(text: str, quantities: Sequence[Kind], reader: Reader, *, planar: bo
         entries = None if is_list else _taken_apart(text, quantities, reader, planar=planar)
         if entries is None:
             found = len(cells) if is_list else 0
-            raise UnreadableMatrixError(_wrong_shape(len(quantities), found))
+            raise UnreadableAnswerError(_wrong_shape(len(quantities), found))
         return entries
     entries = [
         placed(reader.read(cell.text, quantity), cell)
@@ -127,9 +153,9 @@ def _lines(text: str) -> Iterator[tuple[int, str]]:
 
 
 def _split(text: str, separator: str) -> Iterator[tuple[int, str]]:
-    """What stands between separators inside the brackets around all of a text, with its place.
+    """The pieces between separators, each with its place; brackets around all are left out.
 
-    Nothing where [c1 -s1, 0] might be three values, as in MATLAB.
+    No pieces where [c1 -s1, 0] might be three values, as in MATLAB.
     """
     start, end = _inside(text)
     if text[:start].strip() == "[" and _NEW_VALUE.search(text):
@@ -168,7 +194,7 @@ def _shifted(entry: Entry, by: int) -> Entry:
 # A blank and a sign with none behind it: in MATLAB's brackets a new value begins there.
 _NEW_VALUE = re.compile(r"[^\s,;(\[{*/^+-]\s+[-+−–][^\s]")
 
-# What is said of pasted tables, and what of it is worth saying of a list.
+# Refusals that speak of tables, and the sentence that a list gets in their place.
 _OF_TABLES = {
     "no_grid": "",
     "named_values": "",
@@ -180,31 +206,27 @@ _OF_TABLES = {
     "and a -b.",
 }
 
-_ZERO_LEFT_ASIDE = Finding(
-    "zero_left_aside",
-    "Only two values are asked for; the third, 0, was left aside.",
-    severity=Severity.INFO,
-    reading=True,
+_ZERO_LEFT_ASIDE = reading_note(
+    "zero_left_aside", "Only two values are asked for; the third, 0, was left aside."
 )
 
 
 def _wrong_shape(count: int, found: int) -> Finding:
-    """What a list would look like; ``found`` is how many values one too long has."""
-    return Finding(
+    """The finding that an answer is no such list; ``found`` counts the values of one too long."""
+    return reading_error(
         "wrong_shape",
         f"This answer is a list of {count} values, such as [{', '.join(['…'] * count)}]"
         f"{f'; this one has {found}' if found else ''}.",
-        reading=True,
     )
 
 
 def _from_grid_error(error: GridError, count: int) -> Finding:
-    """Why a pasted text is no list; of rows and columns, as of a table, this does not speak."""
+    """The finding that a pasted text is no list, without a word of rows and columns."""
     finding = from_grid_error(error)
     if error.code not in _OF_TABLES:
         return finding
-    look = (
+    message = (
         f"This answer is a list of {count} values: write them with commas between them, or one on "
         f"each line. {_OF_TABLES[error.code]}"
     )
-    return replace(finding, hint=look.strip())
+    return replace(finding, hint=message.strip())

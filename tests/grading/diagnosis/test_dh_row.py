@@ -10,7 +10,8 @@ from service.grading.diagnosis.dh_row import MISCONCEPTIONS, RowCase, explain_ro
 from service.grading.feedback import Finding
 from service.grading.samples import SAMPLES
 from service.kinematics.dh import Convention, link_transforms
-from service.kinematics.transforms import Matrices, Numbers, rot_x, rot_y, trans
+from service.kinematics.transforms import Matrices, Numbers, rot_x, rot_y
+from tests.kinematics.constructions import trans
 
 RNG = np.random.default_rng(10)
 A, ALPHA, D, THETA = ROW = RNG.uniform(0.3, 1.2, (4, SAMPLES))

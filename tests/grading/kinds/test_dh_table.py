@@ -6,7 +6,7 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import PartReport
-from service.grading.reading.entry import REPAIRED
+from service.grading.work_budget import MAX_REPAIRS
 from tests.grading.support.robots import EXACT, STANFORD
 from tests.grading.support.submitting import graded_table, handed_in, not_correct, part, table
 
@@ -151,7 +151,7 @@ def test_repairs_are_looked_for_in_so_many_cells_and_no_more(
     report = part(handed_in(catalogue["stanford-arm"], {"table": table(rows)}), "table")
     messages = [m.message for row in report.rows for cell in row.cells for m in cell.feedback]
     helped = ["Did you mean (theta1 + " in message for message in messages]
-    assert helped == [True] * REPAIRED + [False] * (24 - REPAIRED)
+    assert helped == [True] * MAX_REPAIRS + [False] * (24 - MAX_REPAIRS)
 
 
 def test_rounded_angles_and_a_fixed_row_raise_nothing(catalogue: Mapping[str, Exercise]) -> None:

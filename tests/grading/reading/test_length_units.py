@@ -6,9 +6,9 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import Verdict
+from service.grading.feedback import UnreadableAnswerError
 from service.grading.reading.entry import AngleUnit, Reader
-from service.grading.reading.pasted import length_unit
-from service.grading.reading.table import HandedInTable, UnreadableTableError, read_table
+from service.grading.reading.table import HandedInTable, read_table
 from service.grading.samples import draw
 from tests.grading.support.submitting import full_marks, handed_in, part
 
@@ -43,12 +43,15 @@ def arm(make_exercise: Maker) -> Exercise:
 
 
 def read(exercise: Exercise, text: str, angle_unit: AngleUnit = "radians") -> HandedInTable:
-    reader = Reader(exercise.vocabulary, draw(exercise, text), angle_unit)
-    return read_table(text, reader, length_unit(exercise))
+    return read_table(text, Reader.of(exercise, draw(exercise, text), angle_unit))
 
 
 def table(head: str, cell: str) -> str:
     return f"{head}, alpha, d, theta\n{cell}, 90deg, l1, q1\nl2, 0, 0, q2 - 90deg"
+
+
+def length_unit(exercise: Exercise) -> str | None:
+    return Reader.of(exercise, draw(exercise, ""), "radians").length_unit
 
 
 def test_the_unit_of_an_exercise(make_exercise: Maker, arm: Exercise) -> None:
@@ -153,6 +156,6 @@ def test_a_name_may_be_a_header_or_a_declared_length(make_exercise: Maker) -> No
         assert full_marks(part(handed_in(exercise, {"table": pasted}), "table"))
     [first, _] = read(exercise, "a, 0, d, q1\nd, 0, 0, q2").rows
     assert all(entry.readable for entry in first.entries)
-    with pytest.raises(UnreadableTableError) as caught:
+    with pytest.raises(UnreadableAnswerError) as caught:
         read(exercise, "a, d, foo, bar\n0, 0, 0, 0")
     assert caught.value.finding.code == "unknown_header"

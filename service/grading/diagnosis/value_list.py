@@ -1,0 +1,51 @@
+"""Slips in a list of single values, each of its own quantity."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.grading.diagnosis.angle import diagnose_angle
+from service.grading.diagnosis.formula_repair import WrongEntry
+from service.grading.diagnosis.matrix_entry import diagnose
+from service.grading.diagnosis.wrong_value import WrongValue
+from service.grading.feedback import Finding
+from service.grading.judging.value_list import ComparedValues
+from service.grading.part import Grading
+
+
+def slips_of(
+    compared: ComparedValues, wrong: NDArray[np.bool_], grading: Grading
+) -> dict[tuple[int, int], Finding]:
+    """The finding on each wrong value that was read, at (its place, 0)."""
+    if not wrong.any():
+        return {}
+    student, scales = compared.student, compared.scales(grading)
+    slips: dict[tuple[int, int], Finding] = {}
+    for i in np.flatnonzero(wrong).tolist():
+        expression = student.entries[i].expression
+        if expression is None:
+            continue
+        angle = student.quantities[i] == "angle"
+        value = WrongValue(
+            expression=expression,
+            actual=student.values[i],
+            expected=compared.expected[i],
+            expected_text=compared.texts[i],
+            samples=grading.samples,
+            scale=float(scales[i]),
+            angle=angle,
+        )
+        slips[i, 0] = diagnose_angle(value) if angle else diagnose(_as_entry(value, grading))
+    return slips
+
+
+def _as_entry(value: WrongValue, grading: Grading) -> WrongEntry:
+    return WrongEntry(
+        expression=value.expression,
+        actual=value.actual,
+        expected=value.expected,
+        expected_text=value.expected_text,
+        samples=value.samples,
+        scale=value.scale,
+        angle=False,
+        turning=grading.exercise.vocabulary.turning,
+    )

@@ -1,0 +1,42 @@
+"""A matrix held against the expected one, entry by entry."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.expressions import Kind
+from service.grading.comparison import matches
+from service.grading.reading.matrix import StudentMatrix
+from service.grading.tolerances import PRINTED_NUMBER
+from service.kinematics.transforms import Numbers
+
+
+@dataclass(frozen=True, slots=True)
+class ExpectedMatrix:
+    """The right matrix: ``values`` is ``(rows, columns, SAMPLES)``, each entry of a quantity.
+
+    ``rigid`` marks a homogeneous transform (4×4) or a rotation (3×3).
+    """
+
+    values: Numbers
+    quantities: tuple[tuple[Kind, ...], ...]
+    rigid: bool = False
+
+    def scale(self, length_scale: float) -> Numbers:
+        """The size that each entry is measured against, ``(rows, columns)``."""
+        return np.array(
+            [[length_scale if q == "length" else 1.0 for q in row] for row in self.quantities]
+        )
+
+    def matches(self, student: StudentMatrix, length_scale: float) -> NDArray[np.int_]:
+        """The Match of each entry, ``(rows, columns)``."""
+        scale = self.scale(length_scale)
+        return matches(student.values, self.values, scale, rounded=student.rounded)
+
+
+def constant_text(values: Numbers) -> str:
+    """An entry ``(SAMPLES,)`` that is a plain number everywhere, as text; empty where it varies."""
+    if np.ptp(values) > PRINTED_NUMBER:
+        return ""
+    return f"{values[0] + 0.0:.4g}"

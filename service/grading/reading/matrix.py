@@ -1,0 +1,118 @@
+"""A matrix as handed in, nested lists or pasted text -> its entries and their values."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import chain
+
+from service.expressions import Kind
+from service.grading.feedback import UnreadableAnswerError, reading_error
+from service.grading.reading.entry import (
+    MISSING,
+    Entry,
+    Reader,
+    entry_values,
+    from_note,
+    unreadable,
+)
+from service.grading.reading.pasted import from_grid_error, place_of, placed
+from service.grading.samples import Samples
+from service.grids import Cell, GridError, read_grid
+from service.kinematics.transforms import Numbers
+
+Quantities = Sequence[Sequence[Kind]]
+
+
+@dataclass(frozen=True, slots=True)
+class StudentMatrix:
+    """A matrix as read: its entries and their values ``(rows, columns, SAMPLES)``.
+
+    A value is NaN where the entry has none.
+    """
+
+    entries: list[list[Entry]]
+    quantities: Quantities
+    values: Numbers
+
+    @property
+    def rounded(self) -> list[list[bool]]:
+        """Which entries may have been rounded."""
+        return [[entry.may_be_rounded for entry in row] for row in self.entries]
+
+    def values_at(self, samples: Samples) -> Numbers:
+        """The values at other samples."""
+        return matrix_values(self.entries, self.quantities, samples)
+
+
+def read_matrix(answer: object, quantities: Quantities, reader: Reader) -> StudentMatrix:
+    """The matrix in a nested list or a pasted text, with one entry for each quantity.
+
+    Rows that were left off at the end are missing. A row of the wrong length is unreadable: nobody
+    can say which entry is which. Raises UnreadableAnswerError where there are no rows at
+    all, or too many.
+    """
+    entries = _entries(answer, quantities, reader)
+    entries += [[MISSING] * len(row) for row in quantities[len(entries) :]]
+    return StudentMatrix(entries, quantities, matrix_values(entries, quantities, reader.samples))
+
+
+def matrix_values(entries: list[list[Entry]], quantities: Quantities, samples: Samples) -> Numbers:
+    """The values of a matrix's entries, ``(rows, columns, SAMPLES)``; NaN where there are none."""
+    flat = entry_values(list(chain(*entries)), list(chain(*quantities)), samples)
+    return flat.reshape(len(entries), len(quantities[0]), -1)
+
+
+def _entries(answer: object, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
+    if isinstance(answer, str):
+        return _pasted(answer, quantities, reader) if answer.strip() else []
+    if not isinstance(answer, list) or not answer or len(answer) > len(quantities):
+        rows, columns = len(quantities), len(quantities[0])
+        message = (
+            f"This answer is a matrix of {rows} rows with {columns} entries each, written as a "
+            f"list of lists."
+        )
+        raise UnreadableAnswerError(reading_error("wrong_shape", message))
+    return [_row(row, kinds, reader) for row, kinds in zip(answer, quantities, strict=False)]
+
+
+def _row(row: object, kinds: Sequence[Kind], reader: Reader) -> list[Entry]:
+    if row is None:
+        return [MISSING] * len(kinds)
+    if not isinstance(row, list) or len(row) != len(kinds):
+        found = f"{len(row)} entries" if isinstance(row, list) else "no list"
+        return _of_wrong_length(found, len(kinds))
+    return [reader.read(raw, kind) for raw, kind in zip(row, kinds, strict=True)]
+
+
+def _of_wrong_length(found: str, wanted: int, span: tuple[int, int] | None = None) -> list[Entry]:
+    message = f"A row has {wanted} entries; this is {found}."
+    return [unreadable(reading_error("row_length", message, span))] * wanted
+
+
+def _pasted(text: str, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
+    try:
+        grid = read_grid(text)
+    except GridError as error:
+        raise UnreadableAnswerError(from_grid_error(error)) from error
+    height, width = len(quantities), len(quantities[0])
+    if len(grid.rows) > height or all(len(row) != width for row in grid.rows):
+        message = (
+            f"This answer is a matrix of {height} rows with {width} entries each; what was pasted "
+            f"is {grid.size}."
+        )
+        span = grid.rows[0][0].whole[0], grid.rows[-1][-1].whole[1]
+        raise UnreadableAnswerError(reading_error("wrong_shape", message, span))
+    entries = [
+        _pasted_row(row, kinds, reader) for row, kinds in zip(grid.rows, quantities, strict=False)
+    ]
+    first = entries[0][0]
+    notes = tuple(map(from_note, grid.notes))
+    entries[0][0] = replace(first, findings=(*first.findings, *notes))
+    return entries
+
+
+def _pasted_row(row: Sequence[Cell], kinds: Sequence[Kind], reader: Reader) -> list[Entry]:
+    if len(row) != len(kinds):
+        return _of_wrong_length(f"{len(row)} entries", len(kinds), place_of(row))
+    return [
+        placed(reader.read(cell.text, kind), cell) for cell, kind in zip(row, kinds, strict=True)
+    ]

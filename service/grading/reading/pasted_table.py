@@ -1,0 +1,227 @@
+"""A pasted DH table -> its rows and their entries. Spans are places in the text as pasted."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+from service.grading.feedback import Finding, reading_error, reading_note
+from service.grading.reading import column_headers
+from service.grading.reading.column_headers import METRES, QUANTITIES, Header, is_wordy, read_header
+from service.grading.reading.entry import Entry, Reader, from_note, unreadable
+from service.grading.reading.length_units import in_unit
+from service.grading.reading.pasted import place_of, placed, quoted
+from service.grading.reading.row_labels import in_order, is_label
+from service.grids import Cell, Grid, GridError, read_grid
+from service.kinematics.chain import COLUMNS
+
+# Names for these columns, as they are written in a message.
+SHOWN: Final = {"a": "a", "alpha": "α", "d": "d", "theta": "θ"}
+
+ColumnOrder = tuple[int | None, Header]
+
+
+@dataclass(frozen=True, slots=True)
+class PastedRow:
+    """The cells of one row in the order a, α, d, θ.
+
+    A row of the wrong length has a ``problem``, and each of its cells is the whole row.
+    """
+
+    cells: tuple[Cell, ...]
+    problem: Finding | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PastedTable:
+    """A table's rows in the order of its joints, and the header of each of a, α, d, θ."""
+
+    rows: tuple[PastedRow, ...]
+    headers: tuple[Header, ...]
+    findings: tuple[Finding, ...] = ()
+
+
+def read_pasted_table(text: str, reader: Reader) -> PastedTable:
+    """The rows of a pasted DH table.
+
+    Columns go by their headers, in any order; without headers there must be four, or five with
+    the rows' numbers in front, in the order a, α, d, θ. Rows go by their labels, where they have
+    any. Raises GridError where the text is no table, or which column is which cannot be told.
+    """
+    grid = read_grid(text)
+    found = _found_headers(grid.rows[0], reader)
+    if found is None:
+        columns, labels, findings = _columns_in_order(grid)
+        body = grid.rows
+    else:
+        columns, labels, findings = _columns_by_headers(grid.rows[0], found)
+        body = grid.rows[1:]
+    if not body:
+        raise GridError(
+            "no_rows", "There are headers here, but no rows below them.", place_of(grid.rows[0])
+        )
+    width = len(grid.rows[0]) if found is not None else max(map(len, body))
+    rows = tuple(_row(row, columns, width) for row in body)
+    if labels is not None:
+        order, more = in_order([row[labels] if labels < len(row) else row[0] for row in body])
+        rows = tuple(rows[i] for i in order)
+        findings = (*findings, *more)
+    notes = tuple(map(from_note, grid.notes))
+    heads = tuple(header for _, header in columns)
+    return PastedTable(rows, heads, (*notes, *findings))
+
+
+def entries_of(table: PastedTable, reader: Reader) -> list[tuple[Entry, ...]]:
+    """The entries of each row."""
+    return [
+        (unreadable(row.problem),) * len(COLUMNS)
+        if row.problem
+        else tuple(
+            table_entry(cell, column, header, reader)
+            for cell, column, header in zip(row.cells, COLUMNS, table.headers, strict=True)
+        )
+        for row in table.rows
+    ]
+
+
+def table_entry(cell: Cell, column: str, header: Header, reader: Reader) -> Entry:
+    """One cell of a table, in the unit that its header names."""
+    if header.angle_unit:
+        reader = replace(reader, angle_unit=header.angle_unit)
+    entry = reader.read(cell.text, QUANTITIES[column])
+    if header.metres and header.metres != METRES.get(reader.length_unit or ""):
+        entry = in_unit(entry, header, reader)
+    return placed(entry, cell)
+
+
+def _found_headers(row: Sequence[Cell], reader: Reader) -> list[Header | None] | None:
+    """The header in each cell of the first row; None where the row holds values.
+
+    A name such as ``a`` may be a header or a declared length: the row's other cells decide.
+    """
+    found = [read_header(cell.text) for cell in row]
+    cells = [cell for cell in row if cell.text]
+    known = sum(header is not None and header.column in QUANTITIES for header in found)
+    if all(header for cell, header in zip(row, found, strict=True) if cell.text):
+        return found if known > 1 else None
+    readable = [reader.read(cell.text, "number").readable for cell in cells]
+    wordy = all(is_wordy(cell.text) for cell in cells)
+    if wordy and known > 1 and not all(readable):
+        return found
+    if (wordy or known > 2) and len(cells) > 1 and not any(readable):
+        return found
+    return None
+
+
+def _columns_by_headers(
+    row: Sequence[Cell], found: Sequence[Header | None]
+) -> tuple[tuple[ColumnOrder, ...], int | None, tuple[Finding, ...]]:
+    unknown = [cell for cell, header in zip(row, found, strict=True) if not header and cell.text]
+    if unknown:
+        names = ", ".join(quoted(cell.text) for cell in unknown)
+        raise GridError(
+            "unknown_header",
+            f"Which parameter stands below {names}? Use the headers a, alpha, d and theta, and i "
+            "for the number of the row.",
+            place_of(unknown),
+        )
+    places: dict[str, int] = {}
+    for i, header in enumerate(found):
+        if header is None or header.column in (column_headers.LABEL, column_headers.ASIDE):
+            continue
+        if header.column in places:
+            raise GridError(
+                "two_headers",
+                f"Two columns are {SHOWN[header.column]}: "
+                f"{quoted(row[places[header.column]].text)} and {quoted(row[i].text)}.",
+                row[i].whole,
+            )
+        places[header.column] = i
+    missing = [SHOWN[column] for column in COLUMNS if column not in places]
+    if missing:
+        raise GridError(
+            "missing_header",
+            f"No column is {' or '.join(missing)}; a DH table has a, α, d and θ.",
+            place_of(row),
+        )
+    columns = tuple((places[column], _header(found, places[column])) for column in COLUMNS)
+    for (place, header), column in zip(columns, COLUMNS, strict=True):
+        _check_unit(header, column, row[place or 0])
+    labels = next((i for i, h in enumerate(found) if h and h.column == column_headers.LABEL), None)
+    if labels is None and found[0] is None:
+        labels = 0
+    return columns, labels, (*_left_aside(row, found), *_convention_hint(row, columns))
+
+
+def _header(found: Sequence[Header | None], place: int) -> Header:
+    header = found[place]
+    assert header is not None
+    return header
+
+
+def _check_unit(header: Header, column: str, cell: Cell) -> None:
+    if not header.unit:
+        return
+    is_angle = QUANTITIES[column] == "angle"
+    if is_angle != (header.angle_unit is not None):
+        raise GridError(
+            "header_unit",
+            f"{SHOWN[column]} is {'an angle' if is_angle else 'a length'}, but its header says "
+            f"{header.unit}.",
+            cell.whole,
+        )
+
+
+def _left_aside(row: Sequence[Cell], found: Sequence[Header | None]) -> tuple[Finding, ...]:
+    return tuple(
+        _note("column_left_aside", f"The column {quoted(cell.text)} was left aside.", cell)
+        for cell, header in zip(row, found, strict=True)
+        if header and header.column == column_headers.ASIDE
+    )
+
+
+def _convention_hint(row: Sequence[Cell], columns: Sequence[ColumnOrder]) -> tuple[Finding, ...]:
+    shifted = [row[place or 0] for place, header in columns if header.shifted]
+    if not shifted:
+        return ()
+    names = " and ".join(quoted(cell.text) for cell in shifted)
+    message = (
+        f"Headers such as {names} belong to the modified (proximal) convention. The table was "
+        "read in the convention of this part, whatever its headers."
+    )
+    return (_note("convention_hint", message, shifted[0]),)
+
+
+def _columns_in_order(
+    grid: Grid,
+) -> tuple[tuple[ColumnOrder, ...], int | None, tuple[Finding, ...]]:
+    """The columns of a table without headers."""
+    width = max(map(len, grid.rows))
+    has_labels = width == len(COLUMNS) + 1 and all(is_label(row[0].text) for row in grid.rows)
+    if width != len(COLUMNS) and not has_labels:
+        raise GridError(
+            "wrong_shape",
+            f"This is {grid.size}; a DH table without headers has the 4 columns a, α, d, θ, or 5 "
+            "with the numbers of the rows in front. With headers the columns may stand in any "
+            "order.",
+            place_of(grid.rows[0]),
+        )
+    first = 1 if has_labels else 0
+    columns = tuple((first + i, Header(column)) for i, column in enumerate(COLUMNS))
+    message = (
+        "The columns have no headers and were read in the order a, α, d, θ. If yours is another, "
+        "such as θ, d, a, α in the Robotics Toolbox, put headers above them."
+    )
+    finding = _note("column_order", message, grid.rows[0][0])
+    return columns, 0 if has_labels else None, (finding,)
+
+
+def _row(row: Sequence[Cell], columns: Sequence[ColumnOrder], width: int) -> PastedRow:
+    if len(row) != width:
+        message = f"This row has {len(row)} values, and the table {width} columns."
+        finding = reading_error("row_length", message, place_of(row))
+        return PastedRow((row[0],) * len(COLUMNS), finding)
+    return PastedRow(tuple(row[place or 0] for place, _ in columns))
+
+
+def _note(code: str, message: str, cell: Cell) -> Finding:
+    return reading_note(code, message, cell.whole)
