@@ -9,7 +9,7 @@ from service.grading.reading.entry import Entry, Reader
 from service.grading.reading.pasted import placed
 from service.grading.reading.pasted_table import read_pasted_table, table_entry
 from service.grading.samples import draw
-from service.grids import GridError, read_grid
+from service.grids import GridCell, GridError, read_grid
 from service.kinematics.chain import COLUMNS
 
 
