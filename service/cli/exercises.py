@@ -58,14 +58,12 @@ def show_exercise(
     console.print(Padding(_symbols(exercise), (0, 0, 0, 2), expand=False))
     console.print()
     console.print(Text("Parts", "bold"))
-    # Only here: FastAPI takes a third of a second to import.
-    from service.api.exercises import shape
-    from service.cli.shapes import in_words
-
     for part in exercise.parts:
         heading = f"{part.id}: {part.title} ({part.kind}, {part.points:g} points)"
         console.print(Padding(Text(heading), (0, 0, 0, 2), expand=False))
-        for text in filter(None, (part.prompt, f"Answer: {in_words(shape(part, exercise))}.")):
+        for text in filter(
+            None, (part.prompt, f"Answer: {part.shape(exercise.reference).in_words()}.")
+        ):
             console.print(Padding(Text(text, "dim"), (0, 0, 0, 4), expand=False))
 
 

@@ -10,13 +10,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from service.catalogue import (
-    DhTableSpec,
-    Exercise,
-    LinkTransformsSpec,
-    PartSpec,
-    TransformSpec,
-)
+from service.catalogue import Exercise, PartSpec
+from service.catalogue.parts.dh_table import DhTableSpec
+from service.catalogue.parts.link_transforms import LinkTransformsSpec
+from service.catalogue.parts.transform import TransformSpec
 from service.grading.feedback import Finding
 from service.grading.judging.expected import is_whole_chain
 from service.grading.kinds.dh_table import read_chain, read_frames

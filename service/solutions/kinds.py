@@ -6,20 +6,18 @@ from typing import Any
 
 import sympy
 
-from service.catalogue import (
-    DhRowSpec,
-    DhTableSpec,
-    EulerAnglesSpec,
-    Exercise,
-    LinkTransformsSpec,
-    MatrixSpec,
-    PositionSpec,
-    RotationSpec,
-    ScrewAxesSpec,
-    TransformSpec,
-    VectorSpec,
-)
-from service.catalogue.answers import SCREW
+from service.catalogue import Exercise
+from service.catalogue.formulas import SCREW
+from service.catalogue.parts.dh_row import DhRowSpec
+from service.catalogue.parts.dh_table import DhTableSpec
+from service.catalogue.parts.euler_angles import EulerAnglesSpec
+from service.catalogue.parts.link_transforms import LinkTransformsSpec
+from service.catalogue.parts.matrix import MatrixSpec
+from service.catalogue.parts.position import PositionSpec
+from service.catalogue.parts.rotation import RotationSpec
+from service.catalogue.parts.screw_axes import ScrewAxesSpec
+from service.catalogue.parts.transform import TransformSpec
+from service.catalogue.parts.vector import VectorSpec
 from service.expressions import Expression, Kind, read
 from service.expressions.printing.text import to_text
 from service.expressions.tree import Node

@@ -3,8 +3,9 @@
 import numpy as np
 import sympy
 
-from service.catalogue import DhRowSpec, Exercise, grid_values
-from service.catalogue.reading import TRIALS, trial_values
+from service.catalogue import Exercise, grid_values
+from service.catalogue.parts.dh_row import DhRowSpec
+from service.catalogue.variables import TRIALS, trial_values
 from service.kinematics.dh import Convention
 from service.kinematics.dh_row import gap, slant
 from service.solutions.algebra import Algebra

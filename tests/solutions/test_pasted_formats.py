@@ -4,7 +4,8 @@ from collections.abc import Mapping
 
 import pytest
 
-from service.catalogue import DhTableSpec, Exercise, shipped_folder
+from service.catalogue import Exercise, shipped_folder
+from service.catalogue.parts.dh_table import DhTableSpec
 from service.kinematics.chain import COLUMNS
 from service.solutions import solve
 from tests.expressions.grids.writers import FORMATS

@@ -2,15 +2,13 @@
 
 import numpy as np
 
-from service.catalogue import (
-    EulerAnglesSpec,
-    Exercise,
-    PositionSpec,
-    RotationSpec,
-    TransformSpec,
-    grid_values,
-)
-from service.catalogue.robot import Robot, Values, at_home
+from service.catalogue import Exercise, grid_values
+from service.catalogue.parts.euler_angles import EulerAnglesSpec
+from service.catalogue.parts.position import PositionSpec
+from service.catalogue.parts.rotation import RotationSpec
+from service.catalogue.parts.transform import TransformSpec
+from service.catalogue.robot import Robot, at_home
+from service.catalogue.variables import SymbolValues
 from service.grading.judging.own_frames.reference import tool_pose
 from service.grading.part import Grading
 from service.grading.samples import SAMPLES, Samples
@@ -35,7 +33,7 @@ def robot_pose(part: PoseSpec, exercise: Exercise, samples: Samples) -> Matrices
         raise LookupError(f"exercise {exercise.id!r} has no robot")
     if isinstance(robot, Robot) and is_whole_chain(part, exercise):
         return tool_pose(exercise, samples)
-    values: Values = samples.values
+    values: SymbolValues = samples.values
     if part.home:
         values = at_home(robot.joints, values, SAMPLES)
     pose = robot.frame(part.to, values, SAMPLES)

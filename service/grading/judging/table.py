@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from service.catalogue import DhTableSpec, Joint, ReferenceTable
+from service.catalogue import Joint, ReferenceTable
+from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.comparison import Match, difference, matches, same
 from service.grading.feedback import Finding
 from service.grading.joint_motion import TOLERANCE, changes

@@ -4,7 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from service.catalogue import DhTableSpec, Exercise
+from service.catalogue import Exercise
+from service.catalogue.parts.dh_table import DhTableSpec
 from service.expressions import Expression
 from service.grading.comparison import Match
 from service.grading.diagnosis.table_cell import diagnose

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from service.catalogue import EulerAnglesSpec
+from service.catalogue.parts.euler_angles import EulerAnglesSpec
 from service.expressions import Kind
 from service.expressions.tree import Call
 from service.grading.comparison import EXACT, ROUNDED, Match, difference, matches

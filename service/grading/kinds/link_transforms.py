@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from service.catalogue import LinkTransformsSpec
+from service.catalogue.parts.link_transforms import LinkTransformsSpec
 from service.expressions import Vocabulary, read
 from service.grading.feedback import Finding
 from service.grading.judging.own_frames.frame_freedom import Freedom

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from service.catalogue import MatrixSpec
+from service.catalogue.parts.matrix import MatrixSpec
 from service.grading.judging.expected import own_values
 from service.grading.kinds.matrix_rows import (
     ExpectedMatrix,

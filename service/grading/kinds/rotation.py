@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass
 
-from service.catalogue import Robot, RotationSpec
-from service.catalogue.answers import ROTATION
+from service.catalogue import Robot
+from service.catalogue.formulas import ROTATION
+from service.catalogue.parts.rotation import RotationSpec
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase, chains_of
 from service.grading.diagnosis.rotation_steps import Step, explain_steps
 from service.grading.judging.expected import as_entries, asked_pose, is_whole_chain, own_values

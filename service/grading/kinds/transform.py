@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from service.catalogue import Robot, TransformSpec
+from service.catalogue import Robot
+from service.catalogue.parts.transform import TransformSpec
 from service.expressions import Kind
 from service.grading.diagnosis.exponentials import explain_product
 from service.grading.diagnosis.matrix_case import Chain, Explanation, MatrixCase, chains_of

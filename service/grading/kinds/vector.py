@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from service.catalogue import VectorSpec
+from service.catalogue.parts.vector import VectorSpec
 from service.expressions import Kind
 from service.grading.comparison import Match
 from service.grading.judging.expected import own_values
