@@ -11,6 +11,7 @@ from service.authoring.remarks import Remark, warning
 from service.catalogue import Exercise, PartSpec, PosePartSpec, grid_values
 from service.catalogue.variables import TRIALS, trial_values
 from service.grading import Verdict
+from service.solutions import solve
 
 _SAME: Final = 1e-9
 
@@ -22,8 +23,6 @@ def duplicate_parts(exercise: Exercise) -> Iterator[Remark]:
     ]
     if not candidates:
         return
-    from service.solutions import solve
-
     answers = solve(exercise).answers
     for one, other in candidates:
         if _equal(one, other, answers, exercise):

@@ -11,6 +11,7 @@ from rich.text import Text
 
 from service.catalogue import Exercise
 from service.cli import check, new
+from service.cli.solution import write_solution
 from service.cli.terminal import catalogue_or_exit, give_up, stdout
 from service.submissions import UnknownExerciseError, find_exercise
 
@@ -43,10 +44,7 @@ def show_exercise(
         give_up(f"{error} Known are: {', '.join(error.known)}.")
     console = stdout()
     if solution or latex:
-        # Only here: SymPy takes half a second to import.
-        from service.cli.solution import write
-
-        write(exercise, console, latex=latex)
+        write_solution(exercise, console, latex=latex)
         return
     console.print(Text(exercise.title, "bold"))
     name = ", ".join(filter(None, (exercise.id, exercise.structure)))
