@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-from service.catalogue import DhTableSpec, Exercise, load_catalogue, load_exercise, shipped_folder
+from service.catalogue import Exercise, load_catalogue, load_exercise, shipped_folder
+from service.catalogue.parts.dh_table import DhTableSpec
 
 # How long one example takes says more about the machine than about the code.
 settings.register_profile(

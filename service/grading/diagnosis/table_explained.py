@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from service.catalogue import DhTableSpec
+from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.comparison import Match, difference
 from service.grading.diagnosis.table_freedom import lost_freedom
 from service.grading.diagnosis.whole_table import (

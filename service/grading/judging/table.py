@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from service.catalogue import DhTableSpec, Joint, ReferenceTable
+from service.catalogue import Joint, ReferenceTable
+from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.comparison import Match, difference, matches
 from service.grading.feedback import Finding
 from service.grading.judging.own_frames.best_roles import best_roles, without_idle_rows

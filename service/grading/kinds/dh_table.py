@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from service.catalogue import DhTableSpec, Exercise
+from service.catalogue import Exercise
+from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.diagnosis.table_cell import diagnose_cells
 from service.grading.diagnosis.table_explained import explained, freedom_lost
 from service.grading.feedback import Finding

@@ -7,7 +7,7 @@ nearest of those that are right, so that a single slip costs a single angle.
 import numpy as np
 from numpy.typing import NDArray
 
-from service.catalogue import EulerAnglesSpec
+from service.catalogue.parts.euler_angles import EulerAnglesSpec
 from service.expressions import Kind
 from service.expressions.tree import Call
 from service.grading.comparison import Match, difference, matches

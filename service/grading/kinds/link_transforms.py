@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from service.catalogue import LinkTransformsSpec
-from service.catalogue.answers import HOMOGENEOUS
+from service.catalogue.formulas import HOMOGENEOUS
+from service.catalogue.parts.link_transforms import LinkTransformsSpec
 from service.expressions import Vocabulary
 from service.expressions import read as read_expression
 from service.grading.diagnosis.matrix_entry import WORK_BUDGET

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from service.catalogue import PositionSpec, Robot
+from service.catalogue import Robot
+from service.catalogue.parts.position import PositionSpec
 from service.expressions import Kind
 from service.grading.comparison import Match
 from service.grading.diagnosis.matrix_case import chains_of

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from service.catalogue import ScrewAxesSpec
-from service.catalogue.answers import SCREW
+from service.catalogue.formulas import SCREW
+from service.catalogue.parts.screw_axes import ScrewAxesSpec
 from service.catalogue.robot import at_home
 from service.grading.comparison import Match, matches
 from service.grading.diagnosis.screw_axis import WrongScrew, explain_screw

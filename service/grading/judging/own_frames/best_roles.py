@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from service.catalogue import DhTableSpec
+from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.judging.own_frames.few_cells import NearestTable
 from service.grading.judging.own_frames.nearest_table import nearest_for_roles
 from service.grading.judging.own_frames.rounded_angles import with_exact_angles

@@ -6,7 +6,8 @@ from itertools import zip_longest
 
 import numpy as np
 
-from service.catalogue import DhTableSpec, Joint
+from service.catalogue import Joint
+from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.joint_motion import changes, joint_counts
 from service.grading.reading.table import IS_ANGLE, HandedInRow, values_of
 from service.grading.samples import SAMPLES, Samples

@@ -1,14 +1,26 @@
-"""Screw axes as formulas."""
+"""The model answer of kind ``screw_axes``."""
 
 import sympy
 
 from service.catalogue import Exercise, ScrewRobot
+from service.catalogue.parts.screw_axes import ScrewAxesSpec
+from service.solutions import layout
 from service.solutions.algebra import Algebra
 from service.solutions.chains import between, joint_axes
+from service.solutions.model_solution import PrintedAnswer
 from service.solutions.motions import multiplied
+from service.solutions.work import Work
 
 
-def screw_axes(exercise: Exercise, frame: str, algebra: Algebra) -> list[list[sympy.Expr]]:
+def answer(part: ScrewAxesSpec, work: Work) -> PrintedAnswer:
+    """The axes as the file gives them, or those of the robot's joints at home."""
+    given = work.as_written(part)
+    if given:
+        return layout.matrix(given)
+    return work.matrix(sympy.Matrix(_screw_axes(work.exercise, part.frame, work.algebra)))
+
+
+def _screw_axes(exercise: Exercise, frame: str, algebra: Algebra) -> list[list[sympy.Expr]]:
     """The screw axis (ω; v) of each joint at home, seen from the "space" or the "body" frame."""
     axes = _in_space(exercise, algebra)
     if frame == "body":

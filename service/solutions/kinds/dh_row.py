@@ -1,21 +1,35 @@
-"""The DH row of a transform as formulas."""
+"""The model answer of kind ``dh_row``: the row of a transform, or that it has none."""
 
 import numpy as np
 import sympy
 
-from service.catalogue import DhRowSpec, Exercise, grid_values
-from service.catalogue.reading import TRIALS, trial_values
+from service.catalogue import Exercise, grid_values
+from service.catalogue.formulas import EXACT
+from service.catalogue.parts.dh_row import DhRowSpec
+from service.catalogue.robot import ROW_QUANTITIES
+from service.catalogue.variables import TRIALS, trial_values
 from service.kinematics.dh import Convention
 from service.kinematics.dh_row import dh1_residual, dh2_residual
+from service.solutions import layout
 from service.solutions.algebra import Algebra
+from service.solutions.model_solution import PrintedAnswer
 from service.solutions.orientation import as_angle
+from service.solutions.work import Work
 
-# What rounding may leave of a condition that holds.
-_EXACT = 1e-9
 _MOST_STEPS = 60
 
 
-def dh_row(part: DhRowSpec, exercise: Exercise, algebra: Algebra) -> list[sympy.Expr] | None:
+def answer(part: DhRowSpec, work: Work) -> PrintedAnswer:
+    """The row, or that there is none."""
+    row = _dh_row(part, work.exercise, work.algebra)
+    if row is None:
+        return layout.no_row()
+    write = {"angle": work.writer.angle, "length": work.writer.number}
+    nodes = [write[kind](cell) for kind, cell in zip(ROW_QUANTITIES, row, strict=True)]
+    return layout.row(nodes, "1", part.convention)
+
+
+def _dh_row(part: DhRowSpec, exercise: Exercise, algebra: Algebra) -> list[sympy.Expr] | None:
     """The row (a, α, d, θ) of the part's transform, or None where it has none.
 
     Read off the link transforms' own entries (Spong, Hutchinson, Vidyasagar, *Robot Modeling and
@@ -24,7 +38,7 @@ def dh_row(part: DhRowSpec, exercise: Exercise, algebra: Algebra) -> list[sympy.
     grid = exercise.formulas[part.id]
     numbers = np.moveaxis(grid_values(grid, trial_values(exercise.variables), TRIALS), -1, 0)
     broken = [dh1_residual(numbers, part.convention), dh2_residual(numbers, part.convention)]
-    if np.abs(broken).max() > _EXACT:
+    if np.abs(broken).max() > EXACT:
         return None
     T = algebra.matrix(grid)
     x, y, z = T[:3, 3]
