@@ -6,6 +6,7 @@ VENV   ?= .venv
 HOST   ?= 127.0.0.1
 PORT   ?= 8000
 COUNT  ?= 100000
+TABLES ?= 1000
 SEED   ?= 1
 
 python  := "$(VENV)/bin/python"
@@ -21,7 +22,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test lint format bench fuzz lock clean
+.PHONY: help install run test lint format bench fuzz campaign lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' Makefile
@@ -31,8 +32,8 @@ install: $(dev) ## create .venv with everything for work on the project
 run: $(runtime) ## start the service on http://127.0.0.1:8000 (HOST=, PORT=)
 	$(python) -m service serve --host "$(HOST)" --port "$(PORT)"
 
-test: lint ## lint, type-check and test, with coverage
-	$(python) -m pytest --cov
+test: lint ## lint, type-check and test on every core, with coverage
+	$(python) -m pytest -n auto --dist worksteal --cov
 
 lint: $(dev) ## ruff and mypy, without the tests
 	$(python) -m ruff check .
@@ -48,6 +49,9 @@ bench: $(dev) ## measure against the budgets
 
 fuzz: $(dev) ## read 100,000 hostile texts (COUNT=, SEED=)
 	$(python) -m tests.fuzz --count "$(COUNT)" --seed "$(SEED)"
+
+campaign: $(dev) ## grade tables in random frames, TABLES= of each robot and convention (SEED=)
+	$(python) -m tests.frame_choice --tables "$(TABLES)" --seed "$(SEED)"
 
 # Only pins that pyproject.toml no longer allows are changed; `make lock UPGRADE=--upgrade` takes the newest.
 # One resolution serves every Python and platform; later files repeat the pins of earlier ones.

@@ -5,28 +5,36 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
-from service.catalogue import DhTableSpec, Exercise, load_catalogue, load_exercise, shipped_folder
+from service.catalogue import Exercise, load_catalogue, load_exercise, shipped_folder
+from service.catalogue.parts.dh_table import DhTableSpec
 
 # How long one example takes says more about the machine than about the code.
-settings.register_profile("suite", deadline=None, max_examples=50)
+settings.register_profile(
+    "suite", deadline=None, max_examples=50, suppress_health_check=[HealthCheck.too_slow]
+)
 settings.load_profile("suite")
 
-
-FIGURES = pytest.StashKey[list[str]]()
+FIGURE = "figure"
 
 
 @pytest.fixture
-def figure(pytestconfig: pytest.Config) -> Callable[[str], None]:
+def figure(record_property: Callable[[str, object], None]) -> Callable[[str], None]:
     """Notes a measured figure, to be shown at the end of the run."""
-    return pytestconfig.stash.setdefault(FIGURES, []).append
+    return lambda line: record_property(FIGURE, line)
 
 
-def pytest_terminal_summary(
-    terminalreporter: pytest.TerminalReporter, config: pytest.Config
-) -> None:
-    figures = config.stash.get(FIGURES, [])
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Show the figures; they come with the reports of the tests, also from other processes."""
+    figures = [
+        str(value)
+        for reports in terminalreporter.stats.values()
+        for report in reports
+        if getattr(report, "when", None) == "call"
+        for name, value in report.user_properties
+        if name == FIGURE
+    ]
     if figures:
         terminalreporter.section("figures")
         for line in figures:

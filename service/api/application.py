@@ -12,7 +12,7 @@ from starlette.types import ASGIApp
 
 from service.api import exercises, grading, health, preview, problems
 from service.api import solutions as model_solutions
-from service.api.boundary import Edge
+from service.api.boundary import BoundaryMiddleware
 from service.api.lookup import Catalogue
 from service.api.openapi import any_other_failure, with_problem_schema
 from service.submissions import MAX_BODY_SIZE
@@ -26,7 +26,7 @@ Every other failure is `application/problem+json` (RFC 9457).
 
 
 @asynccontextmanager
-async def _settled(_: FastAPI) -> AsyncIterator[None]:
+async def _freeze_gc(_: FastAPI) -> AsyncIterator[None]:
     """Take what the start has built out of the garbage collector's rounds.
 
     A body of many small lists sets off full rounds; over the program itself, too, they took twice
@@ -49,12 +49,12 @@ class _Api(FastAPI):
             redoc_url=None,
             redirect_slashes=False,
             max_body_size=MAX_BODY_SIZE,
-            lifespan=_settled,
+            lifespan=_freeze_gc,
         )
 
     def build_middleware_stack(self) -> ASGIApp:
-        """The framework's layers, then the edge, then CORS: a page may read problems as well."""
-        app: ASGIApp = Edge(super().build_middleware_stack())
+        """The framework's layers, then the boundary, then CORS: a page may read problems, too."""
+        app: ASGIApp = BoundaryMiddleware(super().build_middleware_stack())
         if self._cors_origins:
             app = CORSMiddleware(
                 app,

@@ -8,7 +8,7 @@ from service.api.problems import too_large
 from service.submissions import MAX_BODY_SIZE
 
 
-class Edge:
+class BoundaryMiddleware:
     """Hardens answers, has HEAD answered as GET, and refuses a body that says it is too large.
 
     The framework's own limit counts the bytes as they come; where a length is declared, nothing

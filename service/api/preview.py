@@ -14,13 +14,12 @@ from service.catalogue import Exercise
 from service.expressions import (
     ExpressionError,
     Kind,
-    Note,
     Symbol,
     Vocabulary,
     joint_variable,
     read,
 )
-from service.grading.reading.preview import CellPreview, Problem, preview_pasted
+from service.grading.reading.preview import preview_pasted
 
 JOINTS: Final = range(1, 10)
 
@@ -59,6 +58,9 @@ class PreviewRequest(BaseModel):
 class PreviewNote(BaseModel):
     """Something worth knowing about how the text was read; ``span`` is [from, to) in it."""
 
+    # Picked, with its subclasses, from what the reader says.
+    model_config = ConfigDict(from_attributes=True)
+
     code: str
     message: str
     span: tuple[int, int]
@@ -73,6 +75,8 @@ class PreviewError(PreviewNote):
 class PreviewCell(BaseModel):
     """How one cell of a pasted table or matrix was read; labels are those of a report."""
 
+    model_config = ConfigDict(from_attributes=True)
+
     row: str
     column: str
     span: tuple[int, int] = Field(description="[from, to) in the pasted text.")
@@ -82,7 +86,7 @@ class PreviewCell(BaseModel):
     mathml: str
     symbols: list[str]
     notes: list[PreviewNote]
-    error: PreviewError | None = None
+    error: PreviewError | None = Field(None, validation_alias="problem")
 
 
 class PreviewAnswer(BaseModel):
@@ -109,22 +113,16 @@ def preview(body: PreviewRequest, vocabulary: Vocabulary) -> PreviewAnswer:
     try:
         expression = read(body.text, vocabulary, quantity=body.quantity, angle_unit=body.angle_unit)
     except ExpressionError as error:
-        return PreviewAnswer(
-            ok=False,
-            error=PreviewError(
-                code=error.code,
-                message=error.message,
-                span=error.span,
-                suggestion=error.suggestion,
-            ),
-        )
-    return PreviewAnswer(
-        ok=True,
-        text=expression.text(),
-        latex=expression.latex(),
-        mathml=expression.mathml(),
-        symbols=sorted(expression.symbols),
-        notes=[_note(note) for note in expression.notes],
+        return PreviewAnswer.model_validate({"ok": False, "error": error})
+    return PreviewAnswer.model_validate(
+        {
+            "ok": True,
+            "text": expression.text(),
+            "latex": expression.latex(),
+            "mathml": expression.mathml(),
+            "symbols": sorted(expression.symbols),
+            "notes": expression.notes,
+        }
     )
 
 
@@ -135,42 +133,15 @@ _BETWEEN_CELLS: Final = frozenset("\n\t;|&<[,")
 def preview_grid(body: PreviewRequest, exercise: Exercise, part: str) -> PreviewAnswer:
     """How a whole pasted table or matrix reads, cell by cell."""
     pasted = preview_pasted(body.text, exercise, part, body.angle_unit)
-    return PreviewAnswer(
-        ok=pasted.ok,
-        rows=[[_cell(cell) for cell in row] for row in pasted.rows] or None,
-        symbols=sorted({name for row in pasted.rows for cell in row for name in cell.symbols}),
-        notes=[_note(note) for note in pasted.notes],
-        error=_problem(pasted.problem),
-    )
-
-
-def _cell(cell: CellPreview) -> PreviewCell:
-    return PreviewCell(
-        row=cell.row,
-        column=cell.column,
-        span=cell.span,
-        typed=cell.typed,
-        text=cell.text,
-        latex=cell.latex,
-        mathml=cell.mathml,
-        symbols=sorted(cell.symbols),
-        notes=[_note(note) for note in cell.notes],
-        error=_problem(cell.problem),
-    )
-
-
-def _note(note: Note) -> PreviewNote:
-    return PreviewNote(code=note.code, message=note.message, span=note.span)
-
-
-def _problem(problem: Problem | None) -> PreviewError | None:
-    if problem is None:
-        return None
-    return PreviewError(
-        code=problem.code,
-        message=problem.message,
-        span=problem.span,
-        suggestion=problem.suggestion,
+    symbols = {name for row in pasted.rows for cell in row for name in cell.symbols}
+    return PreviewAnswer.model_validate(
+        {
+            "ok": pasted.ok,
+            "rows": pasted.rows or None,
+            "symbols": sorted(symbols),
+            "notes": pasted.notes,
+            "error": pasted.problem,
+        }
     )
 
 

@@ -8,28 +8,21 @@ import numpy as np
 
 from service.authoring.grading import graded
 from service.authoring.remarks import Remark, warning
-from service.catalogue import Exercise, PartSpec, grid_values
-from service.catalogue.reading import TRIALS, trial_values
+from service.catalogue import Exercise, PartSpec, PosePartSpec, grid_values
+from service.catalogue.variables import TRIALS, trial_values
 from service.grading import Verdict
+from service.solutions import solve
 
-# Fields that do not change what is asked for.
-_MANNER: Final = {"id", "title", "prompt", "points", "all_or_nothing", "follows", "follows_from"}
-# Those that say in formulas what is right; these are compared by their values.
-_FORMULAS: Final = {"expected", "steps", "components", "transform", "start", "to", "home"}
 _SAME: Final = 1e-9
 
 
 def duplicate_parts(exercise: Exercise) -> Iterator[Remark]:
     """Parts whose right answers are the same for all values of the symbols."""
     candidates = [
-        (one, other)
-        for one, other in combinations(exercise.parts, 2)
-        if _policy(one) == _policy(other)
+        (one, other) for one, other in combinations(exercise.parts, 2) if _task(one) == _task(other)
     ]
     if not candidates:
         return
-    from service.solutions import solve
-
     answers = solve(exercise).answers
     for one, other in candidates:
         if _equal(one, other, answers, exercise):
@@ -41,13 +34,13 @@ def duplicate_parts(exercise: Exercise) -> Iterator[Remark]:
             )
 
 
-def _policy(part: PartSpec) -> dict[str, object]:
-    return part.model_dump(exclude=_MANNER | _FORMULAS)
+def _task(part: PartSpec) -> dict[str, object]:
+    """What is asked for, apart from the formulas, frames and terms: those are compared by value."""
+    return part.model_dump(exclude={*PosePartSpec.model_fields, *part.answer_fields})
 
 
 def _equal(one: PartSpec, other: PartSpec, answers: dict[str, object], exercise: Exercise) -> bool:
-    if one.kind == "dh_row":
-        # Transforms without a row have one answer, and are two tasks all the same.
+    if one.compared_by_formulas:
         return _same_formulas(one.id, other.id, exercise)
     report = graded(exercise, {other.id: answers[one.id]})[other.id]
     return report.verdict is Verdict.CORRECT

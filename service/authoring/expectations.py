@@ -7,7 +7,7 @@ from typing import Final
 from service.authoring.grading import graded, in_words, told
 from service.authoring.remarks import Remark, failed, warning
 from service.catalogue import CheckSpec, Exercise
-from service.catalogue.check_schema import ExpectSpec
+from service.catalogue.schema import ExpectSpec
 from service.grading import PartReport, Verdict
 
 # How many checks of each kind make a mistake in the exercise unlikely.

@@ -6,7 +6,7 @@ import numpy as np
 
 from service.authoring.remarks import Remark, warning
 from service.catalogue import Exercise
-from service.catalogue.reading import TRIALS, trial_values
+from service.catalogue.variables import TRIALS, trial_values
 from service.kinematics.jacobian import coincident, rank
 from service.kinematics.screws import exponential, moved
 from service.kinematics.transforms import identity

@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping
 
 from service.catalogue import Exercise
+from service.expressions import AngleUnit
 from service.grading import Feedback, FeedbackLevel, PartReport, Submission, grade
-from service.grading.reading.entry import AngleUnit
 
 
 def graded(

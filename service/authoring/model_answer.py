@@ -7,17 +7,14 @@ from typing import Final
 from service.authoring.grading import graded, in_words
 from service.authoring.remarks import Remark, failed
 from service.catalogue import Exercise
-from service.expressions import LIMITS
-from service.grading.reading.entry import AngleUnit
+from service.expressions import LIMITS, AngleUnit
+from service.solutions import solve
 
 UNITS: Final[tuple[AngleUnit, ...]] = ("radians", "degrees")
 
 
 def model_answer(exercise: Exercise) -> Iterator[Remark]:
     """Parts in which the model solution does not get full marks, in radians or in degrees."""
-    # Only here: SymPy takes its time to import.
-    from service.solutions import solve
-
     answers = solve(exercise).answers
     fields = {part.id: f"parts[{i}]" for i, part in enumerate(exercise.parts)}
     too_long = [part for part, answer in answers.items() if _longest(answer) > LIMITS.characters]

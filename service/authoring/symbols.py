@@ -2,12 +2,11 @@
 
 import re
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Final
 
 from service.authoring.remarks import Remark, warning
-from service.catalogue import Exercise, Robot, ScrewRobot, Variable
-from service.expressions import Expression
+from service.catalogue import Exercise, Variable
 
 _SHORTHAND: Final = re.compile(r"[cCsS][0-9]+")
 # What each is mistaken for.
@@ -43,13 +42,7 @@ def ambiguous_symbols(exercise: Exercise) -> Iterator[Remark]:
 
 def unused_symbols(exercise: Exercise) -> Iterator[Remark]:
     """Symbols that no formula of the file holds."""
-    used = {
-        name
-        for grid in _grids(exercise)
-        for row in grid
-        for formula in row
-        for name in formula.symbols
-    }
+    used = {name for _, formula, _ in exercise.fields() for name in formula.symbols}
     for variable in exercise.variables:
         if variable.joint is None and variable.name not in used:
             yield warning(
@@ -88,15 +81,3 @@ def _function(name: str) -> str:
 def _as_seen(name: str) -> str:
     """The name as it looks: without capitals, with one sign for those that look the same."""
     return name.translate(str.maketrans("IlO", "110")).lower()
-
-
-def _grids(exercise: Exercise) -> Iterator[Sequence[Sequence[Expression]]]:
-    yield from exercise.formulas.values()
-    match exercise.reference:
-        case Robot(tables=tables, convention=convention):
-            yield tables[convention].rows
-        case ScrewRobot(home=home, axes=axes):
-            yield home
-            yield axes
-        case None:
-            pass

@@ -1,6 +1,7 @@
 """Exercise files, validated and compiled. Knows nothing of answers."""
 
-from service.catalogue.exercise import Exercise, Variable
+from service.catalogue.exercise import Exercise
+from service.catalogue.formulas import FormulaGrid, grid_values
 from service.catalogue.live import open_catalogue
 from service.catalogue.load import (
     CatalogueError,
@@ -10,45 +11,25 @@ from service.catalogue.load import (
     load_exercise,
     shipped_folder,
 )
+from service.catalogue.part import PartSpec, PosePartSpec
 from service.catalogue.robot import Joint, ReferenceTable, Robot
-from service.catalogue.schema import (
-    CheckSpec,
-    DhRowSpec,
-    DhTableSpec,
-    EulerAnglesSpec,
-    LinkTransformsSpec,
-    MatrixSpec,
-    PartSpec,
-    PositionSpec,
-    RotationSpec,
-    ScrewAxesSpec,
-    TransformSpec,
-    VectorSpec,
-)
-from service.catalogue.screw_robot import FormulaGrid, ScrewRobot, grid_values
+from service.catalogue.schema import CheckSpec
+from service.catalogue.screw_robot import ScrewRobot
+from service.catalogue.variables import Variable
 
 __all__ = [
     "CatalogueError",
     "CheckSpec",
-    "DhRowSpec",
-    "DhTableSpec",
-    "EulerAnglesSpec",
     "Exercise",
     "Fault",
     "FormulaGrid",
     "Joint",
-    "LinkTransformsSpec",
-    "MatrixSpec",
     "PartSpec",
-    "PositionSpec",
+    "PosePartSpec",
     "ReferenceTable",
     "Robot",
-    "RotationSpec",
-    "ScrewAxesSpec",
     "ScrewRobot",
-    "TransformSpec",
     "Variable",
-    "VectorSpec",
     "exercise_files",
     "grid_values",
     "load_catalogue",

@@ -1,33 +1,23 @@
 """Pydantic's findings in an exercise file, with what to write instead."""
 
 import difflib
+import inspect
 from collections.abc import Mapping, Sequence
 from typing import Any, get_args
 
 from pydantic import BaseModel
 
-from service.catalogue.check_schema import CheckSpec, ExpectSpec
+from service.catalogue.parts import SPECS
 from service.catalogue.schema import (
-    ComponentSpec,
+    CheckSpec,
     ExerciseSpec,
-    PartSpec,
+    ExpectSpec,
     RobotSpec,
     ScrewRobotSpec,
-    StepSpec,
     SymbolSpec,
 )
 
 Location = Sequence[int | str]
-
-_PATTERNS: Mapping[str, str] = {
-    "structure": "write one letter for each joint, R if it turns and P if it slides, at most 10",
-    "id": 'write small letters and digits, with - or _ between them, such as "link-2"',
-    "coordinates": 'write the coordinates that are asked for, such as "xy" or "xyz"',
-}
-_PARTS: Mapping[str, type[BaseModel]] = {
-    get_args(spec.model_fields["kind"].annotation)[0]: spec
-    for spec in get_args(get_args(PartSpec)[0])
-}
 
 
 def advised(detail: Mapping[str, Any]) -> str:
@@ -43,9 +33,9 @@ def advised(detail: Mapping[str, Any]) -> str:
         case "missing":
             return f"{reason}: write {last} = …"
         case "string_pattern_mismatch":
-            return f"{reason}: {_PATTERNS.get(str(last), 'write it so')}"
+            return f"{reason}: {_advice(str(last), _model(location[:-1]))}"
         case "union_tag_not_found":
-            return f'{reason}: write kind = "…", one of {", ".join(_PARTS)}'
+            return f'{reason}: write kind = "…", one of {", ".join(SPECS)}'
         case _:
             return reason
 
@@ -57,6 +47,12 @@ def _no_such_key(key: str, model: type[BaseModel]) -> str:
     return f"there is no key {key!r} here; {meant} {', '.join(known)}"
 
 
+def _advice(key: str, model: type[BaseModel]) -> str:
+    field = model.model_fields.get(key)
+    extra = field.json_schema_extra if field else None
+    return str(extra["advice"]) if isinstance(extra, dict) else "write it so"
+
+
 def _model(location: Location) -> type[BaseModel]:
     """The table of the file that a location lies in."""
     match list(location):
@@ -64,15 +60,21 @@ def _model(location: Location) -> type[BaseModel]:
             return ScrewRobotSpec if tag == "screws" else RobotSpec
         case ["symbols", *_]:
             return SymbolSpec
-        case ["parts", int(), _, "steps", *_]:
-            return StepSpec
-        case ["parts", int(), _, "components", *_]:
-            return ComponentSpec
+        case ["parts", int(), str(kind), str(key), int(), *_]:
+            field = SPECS[kind].model_fields.get(key)
+            return _entries(field.annotation if field else None) or SPECS[kind]
         case ["parts", int(), str(kind), *_]:
-            return _PARTS[kind]
+            return SPECS[kind]
         case ["checks", int(), "expect", *_]:
             return ExpectSpec
         case ["checks", *_]:
             return CheckSpec
         case _:
             return ExerciseSpec
+
+
+def _entries(annotation: object) -> type[BaseModel] | None:
+    """The table that a list of tables holds, such as ``list[StepSpec] | None``."""
+    if inspect.isclass(annotation) and issubclass(annotation, BaseModel):
+        return annotation
+    return next(filter(None, map(_entries, get_args(annotation))), None)

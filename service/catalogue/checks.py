@@ -2,8 +2,9 @@
 
 from collections.abc import Sequence
 
-from service.catalogue.reading import FieldError
-from service.catalogue.schema import CheckSpec, PartSpec
+from service.catalogue.formulas import FieldError
+from service.catalogue.part import PartSpec
+from service.catalogue.schema import CheckSpec
 
 
 def check_parts(checks: Sequence[CheckSpec], parts: Sequence[PartSpec]) -> None:

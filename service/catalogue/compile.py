@@ -7,34 +7,35 @@ read, that each row holds its joint variable in the right column, that the range
 import hashlib
 import json
 import math
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from service.catalogue.answers import Reference, part_formulas, screw_robot_formulas
 from service.catalogue.checks import check_parts
-from service.catalogue.exercise import Exercise, Variable
-from service.catalogue.reading import TRIALS, FieldError, no_value, read_formula, trial_values
+from service.catalogue.exercise import Exercise
+from service.catalogue.fields import Formula
+from service.catalogue.formulas import (
+    EXACT,
+    FieldError,
+    FormulaGrid,
+    FormulaReader,
+    screws_of,
+    transform_of,
+)
+from service.catalogue.part import PartSpec
 from service.catalogue.robot import (
+    ROW_QUANTITIES,
     FormulaRow,
     Joint,
-    ReferenceTable,
     Robot,
     tables_in_both_conventions,
 )
-from service.catalogue.schema import (
-    DhTableSpec,
-    ExerciseSpec,
-    Formula,
-    LinkTransformsSpec,
-    RobotSpec,
-    ScrewRobotSpec,
-    SymbolSpec,
-)
-from service.catalogue.screw_robot import ScrewRobot
-from service.expressions import Expression, Kind, Symbol, Vocabulary, read
+from service.catalogue.schema import ExerciseSpec, RobotSpec, ScrewRobotSpec, SymbolSpec
+from service.catalogue.screw_robot import Reference, ScrewRobot
+from service.catalogue.variables import Variable
+from service.expressions import Expression, Kind, Symbol, Vocabulary
 from service.kinematics.chain import COLUMNS, A, D
 
-QUANTITIES: dict[str, Kind] = {"a": "length", "alpha": "angle", "d": "length", "theta": "angle"}
 DEFAULT_RANGES: dict[Kind, tuple[float, float]] = {
     "angle": (-math.pi, math.pi),
     "length": (0.2, 1.0),
@@ -47,17 +48,9 @@ def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
     joints = _joints(spec.robot) if spec.robot is not None else ()
     variables = _variables(joints, spec.symbols)
     vocabulary = _vocabulary(variables)
-    reference = _reference(spec.robot, joints, vocabulary, variables)
-    formulas = part_formulas(spec.parts, reference, vocabulary, variables)
-    for i, part in enumerate(spec.parts):
-        if not isinstance(part, DhTableSpec | LinkTransformsSpec) or part.convention == "either":
-            continue
-        if isinstance(reference, Robot) and part.convention not in reference.tables:
-            raise FieldError(
-                f"parts[{i}].convention",
-                f"the robot has no {part.convention.value} table: its row 1 moves the base frame, "
-                f"and a standard table begins on the axis of joint 1",
-            )
+    reader = FormulaReader(vocabulary, variables)
+    reference = _reference(spec.robot, joints, reader)
+    formulas = _formulas(spec.parts, reference, reader)
     check_parts(spec.checks, spec.parts)
     return Exercise(
         id=exercise_id,
@@ -75,7 +68,21 @@ def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
     )
 
 
-def _length_scale(variables: tuple[Variable, ...], reference: Robot | ScrewRobot | None) -> float:
+def _formulas(
+    parts: Sequence[PartSpec], reference: Reference | None, reader: FormulaReader
+) -> Mapping[str, FormulaGrid]:
+    """The formulas of each part that has its own, by the part's id. Raises FieldError."""
+    found: dict[str, FormulaGrid] = {}
+    for i, part in enumerate(parts):
+        written = part.formulas()
+        if written is None:
+            part.check_reference(f"parts[{i}]", reference)
+        else:
+            found[part.id] = reader.grid(written, f"parts[{i}].")
+    return found
+
+
+def _length_scale(variables: tuple[Variable, ...], reference: Reference | None) -> float:
     """The longest length: of the letters, and of the numbers that the reference's table has."""
     lengths = [max(abs(v.low), abs(v.high)) for v in variables if v.kind == "length"]
     if isinstance(reference, Robot):
@@ -91,8 +98,8 @@ def _version(spec: ExerciseSpec) -> str:
     What the file leaves to the default is left out, so that a new field of the schema does not
     give every exercise a new version.
     """
-    told = spec.model_dump(mode="json", exclude_defaults=True, exclude={"checks"})
-    content = json.dumps(told, sort_keys=True)
+    written = spec.model_dump(mode="json", exclude_defaults=True, exclude={"checks"})
+    content = json.dumps(written, sort_keys=True)
     return hashlib.blake2b(content.encode(), digest_size=6).hexdigest()
 
 
@@ -144,9 +151,9 @@ def _variable(name: str, symbol: SymbolSpec, joint: int | None = None) -> Variab
 def _range(field: str, symbol: SymbolSpec) -> tuple[float, float]:
     if symbol.range is None:
         return DEFAULT_RANGES[symbol.kind]
-    constants = Vocabulary([])
+    constants = FormulaReader(Vocabulary([]), ())
     low, high = (
-        float(read_formula(f"{field}[{i}]", bound, constants, symbol.kind).evaluate({}))
+        float(constants.read(f"{field}[{i}]", bound, symbol.kind).evaluate({}))
         for i, bound in enumerate(symbol.range)
     )
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
@@ -181,49 +188,48 @@ def _joint_aliases(variable: Variable, taken: set[str]) -> tuple[str, ...]:
 
 
 def _reference(
-    spec: RobotSpec | ScrewRobotSpec | None,
-    joints: tuple[Joint, ...],
-    vocabulary: Vocabulary,
-    variables: tuple[Variable, ...],
+    spec: RobotSpec | ScrewRobotSpec | None, joints: tuple[Joint, ...], reader: FormulaReader
 ) -> Reference | None:
-    if spec is None:
-        return None
     if isinstance(spec, RobotSpec):
-        robot = _robot(spec, joints, vocabulary)
-        _check_defined(robot.tables[spec.convention], variables)
-        return robot
-    home, axes = screw_robot_formulas(spec, vocabulary, variables)
+        return _robot(spec, joints, reader)
+    return None if spec is None else _screw_robot(spec, joints, reader)
+
+
+def _robot(spec: RobotSpec, joints: tuple[Joint, ...], reader: FormulaReader) -> Robot:
+    rows = tuple(_row(i, cells, joints, reader) for i, cells in enumerate(spec.table))
+    reader.tried(rows, lambda i, j: f"robot.table[{i}].{COLUMNS[j]}")
+    zero = reader.read("robot.table", 0, "number")
+    tables = tables_in_both_conventions(joints, rows, spec.convention, zero)
+    return Robot(spec.structure, spec.convention, joints, tables)
+
+
+def _screw_robot(
+    spec: ScrewRobotSpec, joints: tuple[Joint, ...], reader: FormulaReader
+) -> ScrewRobot:
+    home = reader.grid(transform_of("robot.home", spec.home))
+    axes = reader.grid(screws_of("robot.screws", spec.screws))
+    omega = reader.tried(axes, lambda i, _: f"robot.screws[{i}]")[:, :3]
+    turns = np.abs(omega).max(axis=(1, 2)) > EXACT
+    for i, (joint, turning) in enumerate(zip(joints, turns.tolist(), strict=True)):
+        if turning == joint.prismatic:
+            moves, should = ("turns", "slides") if turning else ("slides", "turns")
+            raise FieldError(
+                f"robot.screws[{i}]",
+                f"{moves}, but structure {spec.structure!r} says that joint {i + 1} {should}",
+            )
     return ScrewRobot(spec.structure, joints, home, axes)
-
-
-def _check_defined(table: ReferenceTable, variables: tuple[Variable, ...]) -> None:
-    """Every cell has a value wherever the symbols' ranges reach. Raises FieldError."""
-    numbers = table.values(trial_values(variables), TRIALS)
-    for i, j in np.argwhere(~np.isfinite(numbers).all(axis=-1)).tolist():
-        raise FieldError(f"robot.table[{i}].{COLUMNS[j]}", no_value(table.rows[i][j]))
-
-
-def _robot(spec: RobotSpec, joints: tuple[Joint, ...], vocabulary: Vocabulary) -> Robot:
-    rows = tuple(_row(i, cells, joints, vocabulary) for i, cells in enumerate(spec.table))
-    zero = read(0, vocabulary)
-    return Robot(
-        structure=spec.structure,
-        convention=spec.convention,
-        joints=joints,
-        tables=tables_in_both_conventions(joints, rows, spec.convention, zero),
-    )
 
 
 def _row(
     i: int,
     cells: tuple[Formula, Formula, Formula, Formula],
     joints: tuple[Joint, ...],
-    vocabulary: Vocabulary,
+    reader: FormulaReader,
 ) -> FormulaRow:
     field = f"robot.table[{i}]"
     a, alpha, d, theta = (
-        read_formula(f"{field}.{column}", cell, vocabulary, QUANTITIES[column])
-        for column, cell in zip(COLUMNS, cells, strict=True)
+        reader.read(f"{field}.{column}", cell, quantity)
+        for column, cell, quantity in zip(COLUMNS, cells, ROW_QUANTITIES, strict=True)
     )
     row = (a, alpha, d, theta)
     moving = joints[i] if i < len(joints) else None

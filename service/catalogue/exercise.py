@@ -1,29 +1,15 @@
 """An exercise, compiled: its vocabulary, its reference robot, and what its parts ask for."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from service.catalogue.formulas import FormulaField, FormulaGrid, fields_of
+from service.catalogue.part import PartSpec
 from service.catalogue.robot import Joint, Robot
-from service.catalogue.schema import CheckSpec, PartSpec
-from service.catalogue.screw_robot import FormulaGrid, ScrewRobot
-from service.expressions import Kind, Vocabulary
-
-
-@dataclass(frozen=True, slots=True)
-class Variable:
-    """A letter that may stand in an answer, with the range that its test values are drawn from.
-
-    Angles are in radians, lengths in ``unit``. ``joint`` is the joint's number where the letter is
-    a joint variable.
-    """
-
-    name: str
-    kind: Kind
-    unit: str
-    description: str
-    low: float
-    high: float
-    joint: int | None = None
+from service.catalogue.schema import CheckSpec
+from service.catalogue.screw_robot import Reference
+from service.catalogue.variables import Variable
+from service.expressions import Vocabulary
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +28,7 @@ class Exercise:
     statement: str
     variables: tuple[Variable, ...]
     vocabulary: Vocabulary
-    reference: Robot | ScrewRobot | None
+    reference: Reference | None
     formulas: Mapping[str, FormulaGrid]
     parts: tuple[PartSpec, ...]
     length_scale: float
@@ -71,3 +57,13 @@ class Exercise:
     def part(self, part_id: str) -> PartSpec | None:
         """The part with this id, or None."""
         return next((part for part in self.parts if part.id == part_id), None)
+
+    def fields(self) -> Iterator[FormulaField]:
+        """Every formula of the file, with its field and what it is."""
+        if self.reference is not None:
+            yield from self.reference.fields()
+        for i, part in enumerate(self.parts):
+            written = part.formulas()
+            if written is not None:
+                path, grid = f"parts[{i}].{written.path}", self.formulas[part.id]
+                yield from fields_of(path, grid, written.quantities)

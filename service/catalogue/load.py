@@ -9,8 +9,8 @@ from pydantic import ValidationError
 
 from service.catalogue.compile import compile_exercise
 from service.catalogue.exercise import Exercise
+from service.catalogue.formulas import FieldError
 from service.catalogue.lines import line_of, value_lines
-from service.catalogue.reading import FieldError
 from service.catalogue.refusals import refusals
 from service.catalogue.schema import ExerciseSpec
 

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from service.expressions import Expression
+from service.catalogue.formulas import FormulaField
+from service.catalogue.variables import SymbolValues
+from service.expressions import Expression, Kind
 from service.kinematics.chain import (
     COLUMNS,
     Row,
@@ -21,9 +22,10 @@ from service.kinematics.dh import Convention
 from service.kinematics.screws import moved
 from service.kinematics.transforms import Matrices, Numbers, identity
 
-Values = Mapping[str, NDArray[np.float64]]
 FormulaRow = Row[Expression]
 
+# What the cells of a row are, in the order of ``COLUMNS``.
+ROW_QUANTITIES: tuple[Kind, Kind, Kind, Kind] = ("length", "angle", "length", "angle")
 TOOL_ROW = "e"
 
 
@@ -59,7 +61,7 @@ class ReferenceTable:
         fixed = (TOOL_ROW, f"{TOOL_ROW}2")
         return joints + fixed[: len(self.rows) - len(joints)]
 
-    def values(self, values: Values, samples: int) -> Table:
+    def values(self, values: SymbolValues, samples: int) -> Table:
         """The table in numbers, ``(rows, 4, samples)``, at the given values of the symbols."""
         constants, formulas = self._constants_and_formulas
         table = np.repeat(constants[..., None], samples, axis=-1)
@@ -70,7 +72,7 @@ class ReferenceTable:
     @cached_property
     def _constants_and_formulas(
         self,
-    ) -> tuple[NDArray[np.float64], tuple[tuple[int, int, Expression], ...]]:
+    ) -> tuple[Numbers, tuple[tuple[int, int, Expression], ...]]:
         """The cells that are numbers, ``(rows, 4)``, and those that depend on symbols."""
         constants = np.zeros((len(self.rows), len(COLUMNS)))
         formulas = []
@@ -83,7 +85,7 @@ class ReferenceTable:
         return constants, tuple(formulas)
 
 
-def at_home(joints: tuple[Joint, ...], values: Values, samples: int) -> Values:
+def at_home(joints: tuple[Joint, ...], values: SymbolValues, samples: int) -> SymbolValues:
     """The same values with all joint variables 0."""
     return {**values, **{joint.variable: np.zeros(samples) for joint in joints}}
 
@@ -102,19 +104,25 @@ class Robot:
     joints: tuple[Joint, ...]
     tables: Mapping[Convention, ReferenceTable]
 
-    def pose(self, values: Values, samples: int) -> Matrices:
+    def pose(self, values: SymbolValues, samples: int) -> Matrices:
         """The end-effector frame in the base frame, ``(samples, 4, 4)``."""
         table = self.tables[self.convention]
         return pose(table.values(values, samples), table.convention)
 
+    def fields(self) -> Iterator[FormulaField]:
+        """Every formula of the author's table."""
+        for i, row in enumerate(self.tables[self.convention].rows):
+            for column, formula, quantity in zip(COLUMNS, row, ROW_QUANTITIES, strict=True):
+                yield f"robot.table[{i}].{column}", formula, quantity
+
     @property
     def frames(self) -> tuple[int | str, ...]:
-        """What its frames are called, from first to last: "base", numbers, "tool"."""
+        """The names of its frames, from first to last: "base", numbers, "tool"."""
         first = self.joints[0].index
         last = first + len(self.tables[self.convention].rows) - 1
         return ("base", *range(first, last), "tool")
 
-    def frame(self, name: int | str, values: Values, samples: int) -> Matrices:
+    def frame(self, name: int | str, values: SymbolValues, samples: int) -> Matrices:
         """The pose of a frame in the base frame, ``(samples, 4, 4)``.
 
         The last joint's frame answers to its number, too, where no row leads on from it, and the
@@ -130,7 +138,7 @@ class Robot:
         first = self.joints[0].index
         return isinstance(name, str) or first - 1 <= name < first + len(self.joints)
 
-    def _poses(self, values: Values, samples: int) -> Iterator[Matrices]:
+    def _poses(self, values: SymbolValues, samples: int) -> Iterator[Matrices]:
         table = self.tables[self.convention]
         reached = identity((samples,))
         yield reached
@@ -138,7 +146,7 @@ class Robot:
             reached = reached @ link
             yield reached
 
-    def screws(self, values: Values, samples: int) -> Numbers:
+    def screws(self, values: SymbolValues, samples: int) -> Numbers:
         """The screw axis of each joint in the base frame at home, ``(joints, samples, 6)``."""
         poses = list(self._poses(at_home(self.joints, values, samples), samples))
         on_axis = poses if self.convention is Convention.STANDARD else poses[1:]

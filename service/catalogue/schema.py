@@ -1,71 +1,81 @@
-"""The shape of an exercise file: what a tutor may write, checked by pydantic.
-
-A formula is text in the students' own notation (``"l1 + 0.1"``, ``"-90deg"``); that it can be read
-is checked in ``compile.py``, where the exercise's symbols are known.
-"""
+"""The shape of an exercise file: what a tutor may write, checked by pydantic."""
 
 from typing import Annotated, Literal
 
 from pydantic import (
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
     Discriminator,
     Field,
-    StrictInt,
+    JsonValue,
+    StrictBool,
     StringConstraints,
     Tag,
     model_validator,
 )
 
-from service.catalogue.check_schema import CheckSpec as CheckSpec
+from service.catalogue.fields import Formula, Four, Homogeneous, Screw, StrictModel, Text
+from service.catalogue.parts import SPECS, AnyPartSpec
 from service.expressions import Kind
 from service.kinematics.dh import Convention
 
-
-def _no_truth_value(value: object) -> object:
-    if isinstance(value, bool):
-        raise ValueError(f"is {str(value).lower()}; write a number or a formula")
-    return value
-
-
-_NotBool = BeforeValidator(_no_truth_value)
-Formula = Annotated[str | float, _NotBool]
-Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
-Identifier = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9]*(?:[-_][a-z0-9]+)*$")]
-Freedom = Literal["given", "free"]
-Axis = Literal["x", "y", "z"]
-Frame = Literal["base", "tool"] | Annotated[StrictInt, Field(ge=0)]
-
-Triple = tuple[Formula, Formula, Formula]
-Four = tuple[Formula, Formula, Formula, Formula]
-Homogeneous = tuple[Four, Four, Four, Four]
-Screw = tuple[Formula, Formula, Formula, Formula, Formula, Formula]
-
-
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+Structure = Annotated[
+    str,
+    StringConstraints(pattern=r"^[RP]{1,10}$"),
+    Field(
+        description="One letter for each joint: R turns, P slides; at most 10.",
+        examples=["RRP"],
+        json_schema_extra={
+            "advice": "write one letter for each joint, R if it turns and P if it slides, at most "
+            "10"
+        },
+    ),
+]
+Joints = Annotated[
+    list[Text],
+    Field(
+        min_length=1,
+        description="The joint variables in order. A number in the first one is the number of the "
+        "first joint.",
+        examples=[["theta1", "theta2", "d3"]],
+    ),
+]
 
 
-class SymbolSpec(_Strict):
-    """A letter that may stand in an answer, and the range that its values are drawn from."""
+class SymbolSpec(StrictModel):
+    """A letter that may stand in an answer, and the range that its values are drawn from.
 
-    kind: Kind
-    description: Text
-    unit: str = ""
-    range: tuple[Formula, Formula] | None = None
-
-
-class RobotSpec(_Strict):
-    """The reference mechanism as a table; ``table`` has one row [a, alpha, d, theta] per joint.
-
-    One row more than joints is the fixed end-effector row "e".
+    A joint variable needs no entry, but may have one that says more about it.
     """
 
-    structure: Annotated[str, StringConstraints(pattern=r"^[RP]{1,10}$")]
-    convention: Convention
-    joints: Annotated[list[Text], Field(min_length=1)]
-    table: list[Four]
+    kind: Kind = Field(description="What it is.")
+    description: Text = Field(description="Its meaning.", examples=["length of link 1"])
+    unit: str = Field(
+        "",
+        description='Its unit, as students are told; without one "rad" for an angle and "m" for a '
+        "length.",
+        examples=["m"],
+    )
+    range: tuple[Formula, Formula] | None = Field(
+        None,
+        description="The least and the greatest test value; without it −π to π for an angle, 0.2 "
+        "to 1 for a length, 0.5 to 2 for a number.",
+        examples=[[0.3, 0.9]],
+    )
+
+
+class RobotSpec(StrictModel):
+    """The reference robot by its Denavit-Hartenberg table."""
+
+    structure: Structure
+    convention: Convention = Field(
+        description='The convention of the table: "standard" (distal) or "modified" (proximal).'
+    )
+    joints: Joints
+    table: list[Four] = Field(
+        description="A row [a, alpha, d, theta] for each joint, and one more where a fixed tool "
+        'row "e" follows. The joint variable stands in theta (R) or d (P), alone or plus a '
+        "constant; every other cell is constant.",
+        examples=[[["l1", "0", "0", "theta1"], ["l2", "180deg", "d2", "0"]]],
+    )
 
     @model_validator(mode="after")
     def _fits_together(self) -> "RobotSpec":
@@ -83,17 +93,20 @@ class RobotSpec(_Strict):
         return self
 
 
-class ScrewRobotSpec(_Strict):
-    """The reference mechanism by its product of exponentials.
+class ScrewRobotSpec(StrictModel):
+    """The reference robot by its product of exponentials."""
 
-    ``home`` is the pose M of the tool with all joint variables 0, ``screws`` holds the axis (ω; v)
-    of each joint there, seen from the base (the space frame).
-    """
-
-    structure: Annotated[str, StringConstraints(pattern=r"^[RP]{1,10}$")]
-    joints: Annotated[list[Text], Field(min_length=1)]
-    home: Homogeneous
-    screws: list[Screw]
+    structure: Structure
+    joints: Joints
+    home: Homogeneous = Field(
+        description="The pose of the tool in the base frame with all joint variables 0, 4×4, row "
+        "by row."
+    )
+    screws: list[Screw] = Field(
+        description="The screw axis (ω; v) of each joint with all joint variables 0, seen from the "
+        "base frame (the space frame).",
+        examples=[[["0", "0", "1", "0", "0", "0"], ["0", "0", "0", "1", "0", "0"]]],
+    )
 
     @model_validator(mode="after")
     def _fits_together(self) -> "ScrewRobotSpec":
@@ -107,268 +120,100 @@ class ScrewRobotSpec(_Strict):
         return self
 
 
-def _how_the_robot_is_given(robot: object) -> str:
+def _form_of(robot: object) -> str:
     by_screws = isinstance(robot, ScrewRobotSpec) or (
         isinstance(robot, dict) and not robot.keys().isdisjoint({"screws", "home"})
     )
     return "screws" if by_screws else "table"
 
 
-# The key that is written decides, so that a fault is told of the one form that was meant.
+# The key that is written decides, so that a fault is told of the one form that was intended.
 AnyRobotSpec = Annotated[
     Annotated[RobotSpec, Tag("table")] | Annotated[ScrewRobotSpec, Tag("screws")],
-    Discriminator(_how_the_robot_is_given),
+    Discriminator(_form_of),
 ]
 
 
-class _PartSpec(_Strict):
-    """What every part has.
+class ExpectSpec(StrictModel):
+    """What must become of one part; at least one key, and what is left out may be anything."""
 
-    ``follows`` names an earlier part: what is wrong, but right for the student's own answer there,
-    earns its points, if that answer earned at least the share ``follows_from`` of its own.
-    """
-
-    id: Identifier
-    title: Text
-    prompt: str = ""
-    points: Annotated[float, Field(gt=0, le=1000), _NotBool] = 1.0
-    all_or_nothing: bool = False
-    follows: Identifier | None = None
-    follows_from: Annotated[float, Field(ge=0, le=1), _NotBool] = 0.5
-
-
-class DhTableSpec(_PartSpec):
-    """A Denavit-Hartenberg table of the robot.
-
-    ``frames`` says whose choice the frames on the joints are. Where they are free, ``base`` and
-    ``tool`` say the same of the first and the last frame, ``directions`` of each joint's positive
-    sense. With the convention "either" the answer says which it uses.
-    """
-
-    kind: Literal["dh_table"]
-    convention: Convention | Literal["either"]
-    frames: Freedom = "given"
-    base: Freedom = "given"
-    tool: Freedom = "given"
-    directions: Freedom = "given"
+    points: Annotated[float, Field(ge=0, strict=True)] | None = Field(
+        None, description="The points that it must get.", examples=[5.5]
+    )
+    verdict: Literal["correct", "partial", "incorrect", "unreadable", "missing"] | None = Field(
+        None, description="The verdict that it must get."
+    )
+    codes: list[Text] | None = Field(
+        None,
+        description="The codes of messages that must be told; others may be told, too.",
+        examples=[["sign"]],
+    )
+    follow_through: StrictBool | None = Field(
+        None,
+        description="Whether it must earn its points as following from the student's own earlier "
+        "answer.",
+        examples=[True],
+    )
 
     @model_validator(mode="after")
-    def _freedoms_go_together(self) -> "DhTableSpec":
-        free = [name for name in ("base", "tool", "directions") if getattr(self, name) == "free"]
-        if self.frames == "given" and free:
+    def _expects_something(self) -> "ExpectSpec":
+        if not self.model_fields_set:
+            raise ValueError("expects nothing; write points, verdict, codes or follow_through")
+        return self
+
+
+class CheckSpec(StrictModel):
+    """One answer to the exercise, graded whenever the file is checked."""
+
+    title: Text = Field(description="Its title.", examples=["x1 the other way round, in degrees"])
+    kind: Literal["right", "equivalent", "wrong"] = Field(
+        description='"right" and "equivalent" must get full marks unless ``expect`` says '
+        'otherwise; "wrong" must lose some, as ``expect`` says.'
+    )
+    answers: Annotated[dict[str, JsonValue], Field(min_length=1)] = Field(
+        description="An answer for each part answered, by the part's id, as a submission has it; "
+        "a table or matrix may be pasted text.",
+    )
+    angle_unit: Literal["radians", "degrees"] = Field(
+        "radians", description="The unit of bare numbers where an angle is asked for."
+    )
+    expect: dict[str, ExpectSpec] = Field(
+        {}, description="What must become of a part, by the part's id."
+    )
+
+    @model_validator(mode="after")
+    def _says_what_is_wrong(self) -> "CheckSpec":
+        if self.kind == "wrong" and not self.expect:
             raise ValueError(
-                f'{free[0]} = "free" says nothing where frames = "given"; '
-                f'write frames = "free" or leave {free[0]} out'
+                "a wrong answer needs an expectation, or it may be wrong for another reason than "
+                'you think; write expect.PART = { points = …, verdict = "…", codes = ["…"] }'
             )
         return self
 
 
-class LinkTransformsSpec(_PartSpec):
-    """The link transforms A_1 … A_n that the rows of a table stand for.
-
-    Where ``frames`` are free they may belong to any valid table; to the student's own, where the
-    part follows a table.
-    """
-
-    kind: Literal["link_transforms"]
-    convention: Convention
-    frames: Freedom = "given"
-
-
-class _PoseSpec(_PartSpec):
-    """Something that a pose of the robot has: that of frame ``to`` seen from frame ``from``.
-
-    A frame is "base", "tool" or a number of the robot's own table. ``home`` takes all joint
-    variables as 0. A part of another robot, or of none, gives its answer as ``expected``.
-    """
-
-    start: Frame = Field("base", alias="from")
-    to: Frame = "tool"
-    home: bool = False
-
-    @property
-    def given_as(self) -> str | None:
-        """The field that holds the answer itself; None where it is the robot's pose."""
-        return next((name for name in ("expected", "steps") if getattr(self, name, None)), None)
-
-    @model_validator(mode="after")
-    def _is_given_once(self) -> "_PoseSpec":
-        given = [name for name in ("expected", "steps") if getattr(self, name, None)]
-        names = {"start": "from", "to": "to", "home": "home"}
-        given += [name for field, name in names.items() if field in self.model_fields_set]
-        if len(given) > 1 and given[0] in ("expected", "steps"):
-            raise ValueError(f"{given[0]} says what is right; leave {given[1]} out")
-        return self
-
-
-class TransformSpec(_PoseSpec):
-    """A homogeneous transform; without more, from the base frame to the end-effector frame."""
-
-    kind: Literal["transform"]
-    expected: Homogeneous | None = None
-
-
-class StepSpec(_Strict):
-    """One turn of a composite rotation, about an axis of the fixed or of the moving frame."""
-
-    axis: Axis
-    angle: Formula
-    about: Literal["fixed", "moving"] = "moving"
-
-
-class RotationSpec(_PoseSpec):
-    """A rotation matrix, 3×3: of a pose, by its entries, or by the turns that it is made of."""
-
-    kind: Literal["rotation"]
-    expected: tuple[Triple, Triple, Triple] | None = None
-    steps: Annotated[list[StepSpec], Field(min_length=1, max_length=6)] | None = None
-
-
-class PositionSpec(_PoseSpec):
-    """The coordinates of a point: of a frame's origin, or ``expected``."""
-
-    kind: Literal["position"]
-    coordinates: Annotated[str, StringConstraints(pattern=r"^(x?y?z?)$", min_length=2)] = "xyz"
-    expected: list[Formula] | None = None
-
-    @model_validator(mode="after")
-    def _one_for_each(self) -> "PositionSpec":
-        if self.expected is not None and len(self.expected) != len(self.coordinates):
-            raise ValueError(
-                f"expected has {len(self.expected)} entries, but coordinates are "
-                f"{self.coordinates!r}; write one for each"
-            )
-        return self
-
-
-class EulerAnglesSpec(_PoseSpec):
-    """Three angles that describe a rotation, in the order in which ``sequence`` names the axes.
-
-    "RPY" is Rz(α) Ry(β) Rx(γ), answered as α, β, γ: the same as "ZYX" about moving axes.
-    ``expected`` is one triple that is right; all others of the same rotation are right, too.
-    """
-
-    kind: Literal["euler_angles"]
-    sequence: Literal[
-        "RPY", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX", "XYX", "XZX", "YXY", "YZY", "ZXZ", "ZYZ"
-    ]
-    axes: Literal["moving", "fixed"] = "moving"
-    expected: Triple | None = None
-
-    @property
-    def turns(self) -> str:
-        """The sequence by its three axes."""
-        return "ZYX" if self.sequence == "RPY" else self.sequence
-
-    @model_validator(mode="after")
-    def _rpy_is_about_moving_axes(self) -> "EulerAnglesSpec":
-        if self.sequence == "RPY" and self.axes == "fixed":
-            raise ValueError(
-                'sequence "RPY" is answered as Rz(α) Ry(β) Rx(γ); write sequence = "XYZ" with '
-                'axes = "fixed" for roll, pitch, yaw in this order'
-            )
-        return self
-
-
-class MatrixSpec(_PartSpec):
-    """A matrix of any meaning, up to 6×6; ``quantity`` is what its entries are, or each column."""
-
-    kind: Literal["matrix"]
-    expected: Annotated[
-        list[Annotated[list[Formula], Field(min_length=1, max_length=6)]],
-        Field(min_length=1, max_length=6),
-    ]
-    quantity: Kind | list[Kind] = "number"
-
-    @property
-    def quantities(self) -> tuple[tuple[Kind, ...], ...]:
-        """What each entry is."""
-        columns = len(self.expected[0])
-        row = (self.quantity,) * columns if isinstance(self.quantity, str) else self.quantity
-        return (tuple(row),) * len(self.expected)
-
-    @model_validator(mode="after")
-    def _is_rectangular(self) -> "MatrixSpec":
-        columns = len(self.expected[0])
-        for i, row in enumerate(self.expected):
-            if len(row) != columns:
-                raise ValueError(
-                    f"row {i + 1} of expected has {len(row)} entries, row 1 has {columns}; write "
-                    f"rows of one length"
-                )
-        if not isinstance(self.quantity, str) and len(self.quantity) != columns:
-            raise ValueError(
-                f"quantity names {len(self.quantity)} columns, but expected has {columns}; write "
-                f"one for all or one for each column"
-            )
-        return self
-
-
-class ComponentSpec(_Strict):
-    """One component of a vector: what it is called, what it is, and what is right."""
-
-    name: Text
-    quantity: Kind
-    expected: Formula
-
-
-class VectorSpec(_PartSpec):
-    """A list of values, each a length, an angle or a number, such as (p_x, p_y, φ)."""
-
-    kind: Literal["vector"]
-    components: Annotated[list[ComponentSpec], Field(min_length=1, max_length=12)]
-
-
-class ScrewAxesSpec(_PartSpec):
-    """The screw axis (ω; v) of each joint with all joint variables 0.
-
-    ``frame`` says whether it is seen from the base ("space") or from the tool ("body"). Where
-    ``directions`` are free, an axis may be reversed. Without a robot the axes are ``expected``.
-    """
-
-    kind: Literal["screw_axes"]
-    frame: Literal["space", "body"]
-    directions: Freedom = "given"
-    expected: Annotated[list[Screw], Field(min_length=1, max_length=12)] | None = None
-
-
-class DhRowSpec(_PartSpec):
-    """The row of a transform in the DH table, or that it has none."""
-
-    kind: Literal["dh_row"]
-    convention: Convention = Convention.STANDARD
-    transform: Homogeneous
-
-
-PartSpec = Annotated[
-    DhTableSpec
-    | LinkTransformsSpec
-    | TransformSpec
-    | RotationSpec
-    | MatrixSpec
-    | PositionSpec
-    | VectorSpec
-    | EulerAnglesSpec
-    | ScrewAxesSpec
-    | DhRowSpec,
-    Field(discriminator="kind"),
-]
-
-
-# The kinds whose answer is a chain that a later part can follow from.
-CARRYING = ("dh_table", "link_transforms", "transform")
-
-
-class ExerciseSpec(_Strict):
+class ExerciseSpec(StrictModel):
     """One exercise file."""
 
-    title: Text
-    source: Text
-    statement: Text
-    robot: AnyRobotSpec | None = None
-    symbols: dict[Text, SymbolSpec] = {}
-    parts: Annotated[list[PartSpec], Field(min_length=1)]
-    checks: list[CheckSpec] = []
+    title: Text = Field(description="The title of the exercise.", examples=["Elbow arm"])
+    source: Text = Field(
+        description="Where the exercise comes from, with a page; students see it.",
+        examples=["Spong, Hutchinson, Vidyasagar, Robot Modeling and Control, 3.2"],
+    )
+    statement: Text = Field(
+        description="All that a student has to know, without a figure.",
+    )
+    robot: AnyRobotSpec | None = Field(
+        None, description="The reference robot; without one every part gives its own answer."
+    )
+    symbols: dict[Text, SymbolSpec] = Field(
+        {}, description="The letters that may stand in an answer, by their names."
+    )
+    parts: Annotated[list[AnyPartSpec], Field(min_length=1)] = Field(
+        description="What is asked for, one ``[[parts]]`` for each."
+    )
+    checks: list[CheckSpec] = Field(
+        [], description="Answers to try whenever the file is checked, one ``[[checks]]`` for each."
+    )
 
     @model_validator(mode="after")
     def _part_ids_are_unique(self) -> "ExerciseSpec":
@@ -380,12 +225,14 @@ class ExerciseSpec(_Strict):
 
     @model_validator(mode="after")
     def _parts_follow_earlier_ones(self) -> "ExerciseSpec":
-        earlier: dict[str, str] = {}
+        earlier: set[str] = set()
         for part in self.parts:
-            if part.follows is not None and earlier.get(part.follows) not in CARRYING:
+            if part.follows is not None and part.follows not in earlier:
+                kinds = [kind for kind, spec in SPECS.items() if spec.can_be_followed]
                 raise ValueError(
                     f"part {part.id!r} follows {part.follows!r}, which is no earlier part of kind "
-                    f"{', '.join(CARRYING)}; name one, or leave follows out"
+                    f"{', '.join(kinds)}; name one, or leave follows out"
                 )
-            earlier[part.id] = part.kind
+            if part.can_be_followed:
+                earlier.add(part.id)
         return self

@@ -1,24 +1,22 @@
 """The reference robot by its product of exponentials: its home pose and its screw axes."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from service.catalogue.robot import Joint, Values
-from service.expressions import Expression
+from service.catalogue.formulas import (
+    HOMOGENEOUS,
+    SCREW,
+    FormulaField,
+    FormulaGrid,
+    fields_of,
+    grid_values,
+)
+from service.catalogue.robot import Joint, Robot
+from service.catalogue.variables import SymbolValues
 from service.kinematics.screws import product_in_space
 from service.kinematics.transforms import Matrices, Numbers
-
-FormulaGrid = tuple[tuple[Expression, ...], ...]
-
-
-def grid_values(grid: FormulaGrid, values: Values, samples: int) -> Numbers:
-    """The numbers that formulas give, ``(rows, columns, samples)``."""
-    numbers = np.empty((len(grid), len(grid[0]), samples))
-    for i, row in enumerate(grid):
-        for j, formula in enumerate(row):
-            numbers[i, j] = formula.evaluate(values)
-    return numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,16 +28,21 @@ class ScrewRobot:
     home: FormulaGrid
     axes: FormulaGrid
 
+    def fields(self) -> Iterator[FormulaField]:
+        """Every formula that its author has written."""
+        yield from fields_of("robot.home[{i}][{j}]", self.home, HOMOGENEOUS)
+        yield from fields_of("robot.screws[{i}][{j}]", self.axes, (SCREW,) * len(self.axes))
+
     @property
     def frames(self) -> tuple[int | str, ...]:
-        """What its frames are called: the base (space) frame and the tool (body) frame."""
+        """The names of its frames: the base (space) frame and the tool (body) frame."""
         return ("base", "tool")
 
     def has_frame(self, name: int | str) -> bool:
         """Whether ``frame`` knows it."""
         return name in self.frames
 
-    def frame(self, name: int | str, values: Values, samples: int) -> Matrices:
+    def frame(self, name: int | str, values: SymbolValues, samples: int) -> Matrices:
         """The pose of a frame in the base frame, ``(samples, 4, 4)``."""
         if name == "base":
             return np.broadcast_to(np.eye(4), (samples, 4, 4))
@@ -47,6 +50,9 @@ class ScrewRobot:
         amounts = np.array([values[joint.variable] for joint in self.joints])
         return product_in_space(self.screws(values, samples), amounts, home)
 
-    def screws(self, values: Values, samples: int) -> Numbers:
+    def screws(self, values: SymbolValues, samples: int) -> Numbers:
         """The screw axis of each joint in the base frame at home, ``(joints, samples, 6)``."""
         return np.swapaxes(grid_values(self.axes, values, samples), 1, 2)
+
+
+Reference = Robot | ScrewRobot

@@ -11,6 +11,7 @@ from rich.text import Text
 
 from service.catalogue import Exercise
 from service.cli import check, new
+from service.cli.solution import write_solution
 from service.cli.terminal import catalogue_or_exit, give_up, stdout
 from service.submissions import UnknownExerciseError, find_exercise
 
@@ -43,10 +44,7 @@ def show_exercise(
         give_up(f"{error} Known are: {', '.join(error.known)}.")
     console = stdout()
     if solution or latex:
-        # Only here: SymPy takes half a second to import.
-        from service.cli.solution import write
-
-        write(exercise, console, latex=latex)
+        write_solution(exercise, console, latex=latex)
         return
     console.print(Text(exercise.title, "bold"))
     name = ", ".join(filter(None, (exercise.id, exercise.structure)))
@@ -58,14 +56,12 @@ def show_exercise(
     console.print(Padding(_symbols(exercise), (0, 0, 0, 2), expand=False))
     console.print()
     console.print(Text("Parts", "bold"))
-    # Only here: FastAPI takes a third of a second to import.
-    from service.api.exercises import shape
-    from service.cli.shapes import in_words
-
     for part in exercise.parts:
         heading = f"{part.id}: {part.title} ({part.kind}, {part.points:g} points)"
         console.print(Padding(Text(heading), (0, 0, 0, 2), expand=False))
-        for text in filter(None, (part.prompt, f"Answer: {in_words(shape(part, exercise))}.")):
+        for text in filter(
+            None, (part.prompt, f"Answer: {part.shape(exercise.reference).in_words()}.")
+        ):
             console.print(Padding(Text(text, "dim"), (0, 0, 0, 4), expand=False))
 
 

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from service.cli import exercises, grade, serve
+from service.kinds_check import check_kinds
 
 program = typer.Typer(
     name="dh-grader",
@@ -38,6 +39,7 @@ def _options(
 
 def main() -> None:
     """Run the command line of this process."""
+    check_kinds()
     # What a stream cannot show is replaced, not a reason to stop half-way through a report.
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):

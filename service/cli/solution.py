@@ -6,13 +6,14 @@ from rich.console import Console
 from rich.text import Text
 
 from service.catalogue import Exercise
-from service.solutions import Shown, Solution, solve
+from service.solutions import ModelSolution, Shown, solve
 
 
-def write(exercise: Exercise, console: Console, *, latex: bool) -> None:
+def write_solution(exercise: Exercise, console: Console, *, latex: bool) -> None:
     """Print what is right in each part, each link transform and the pose."""
     solution = solve(exercise)
-    for heading, shown in _sections(solution):
+    links = not any(part.holds_links for part in exercise.parts)
+    for heading, shown in _sections(solution, links=links):
         console.print(Text(heading, "bold"))
         # Unbroken, so that it can be copied and pasted.
         console.print(Text(shown.latex if latex else shown.text), soft_wrap=True)
@@ -23,12 +24,11 @@ def write(exercise: Exercise, console: Console, *, latex: bool) -> None:
             console.print(Text(f"{name} = {meaning}"))
 
 
-def _sections(solution: Solution) -> Iterator[tuple[str, Shown]]:
+def _sections(solution: ModelSolution, *, links: bool) -> Iterator[tuple[str, Shown]]:
     for part in solution.parts:
-        yield f"{part.part}: {part.title} ({part.kind})", part.shown
-    answered = [part.shown.text for part in solution.parts]
-    if not any(part.kind == "link_transforms" for part in solution.parts):
-        for label, shown in solution.links.items():
-            yield f"Link transform A{label}", shown
+        yield f"{part.part}: {part.title} ({part.kind})", part
+    if links:
+        yield from ((f"Link transform A{link.label}", link) for link in solution.links)
+    answered = [part.text for part in solution.parts]
     if solution.pose is not None and solution.pose.text not in answered:
         yield "Pose of the tool in the base frame", solution.pose

@@ -1,13 +1,13 @@
-"""What a student writes -> syntax tree -> numbers, text, LaTeX, MathML. Knows nothing of robots."""
+"""Formula as typed -> syntax tree -> numbers, text, LaTeX, MathML. Knows nothing of robots."""
 
 from service.expressions.errors import ExpressionError, Note
 from service.expressions.limits import LIMITS, Limits
-from service.expressions.reader import AngleUnits, Expression, evaluate_all, read
+from service.expressions.reader import AngleUnit, Expression, evaluate_all, read
 from service.expressions.vocabulary.symbols import Kind, Symbol, Vocabulary, joint_variable
 
 __all__ = [
     "LIMITS",
-    "AngleUnits",
+    "AngleUnit",
     "Expression",
     "ExpressionError",
     "Kind",

@@ -1,39 +1,101 @@
-"""What the reader tells a student: one error that stops, and notes that do not."""
+"""Errors and notes on a text that is read.
+
+    TextError            code, message, span
+    ├─ ExpressionError   a formula that cannot be read, and its repaired text where one is near
+    └─ GridError         a pasted text that is no table or matrix (service/grids)
+
+    UnreadableError      the place where the reader stopped; it never leaves the package, for
+                         ``repairs.explain`` makes an ExpressionError of it
+    Note                 no error: a text was read, but others might read it otherwise
+
+Spans are [from, to) in the text that the student typed.
+"""
 
 from dataclasses import dataclass
+from typing import Any, Literal
 
 Span = tuple[int, int]
+
+Cause = Literal[
+    "ambiguous_number",
+    "ambiguous_shorthand",
+    "ambiguous_unit",
+    "argument",
+    "arguments",
+    "beyond",
+    "boolean",
+    "character",
+    "command",
+    "cube_root",
+    "degrees",
+    "empty",
+    "function_power",
+    "grammar",
+    "index",
+    "invalid_shorthand",
+    "invisible",
+    "look_alike",
+    "mismatch",
+    "mixed_number",
+    "name",
+    "not_finite",
+    "plus_minus",
+    "raised_zero",
+    "subscript",
+    "transpose",
+    "two_units",
+    "unclosed",
+    "unit_on_variable",
+    "values",
+]
 
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """Something worth knowing about how a text was read.
-
-    `span` is [from, to) in the text that the student typed.
-    """
+    """A remark on how a text was read; ``code`` is stable."""
 
     code: str
     message: str
     span: Span
 
 
-class ExpressionError(Exception):
-    """A text that cannot be read.
+class TextError(Exception):
+    """A text that cannot be read. ``code`` is stable, so that a class can be counted."""
 
-    `code` is stable, so that a class can be counted. `span` is [from, to) in the text that the
-    student typed. `suggestion` is the whole repaired text where one is near, else None.
-    """
-
-    def __init__(self, code: str, message: str, span: Span, suggestion: str | None = None) -> None:
-        super().__init__(code, message, span, suggestion)
+    def __init__(self, code: str, message: str, span: Span, *details: object) -> None:
+        super().__init__(code, message, span, *details)
         self.code = code
         self.message = message
         self.span = span
-        self.suggestion = suggestion
 
     def __str__(self) -> str:
         return self.message
 
+
+class ExpressionError(TextError):
+    """A formula that cannot be read.
+
+    ``suggestion`` is the whole repaired text where one is near, else None.
+    """
+
+    def __init__(self, code: str, message: str, span: Span, suggestion: str | None = None) -> None:
+        super().__init__(code, message, span, suggestion)
+        self.suggestion = suggestion
+
     def again(self) -> "ExpressionError":
-        """Return an equal error without a traceback, so that a remembered one can be raised."""
+        """An equal error without a traceback, so that a remembered one can be raised."""
         return ExpressionError(self.code, self.message, self.span, self.suggestion)
+
+
+class UnreadableError(Exception):
+    """The place where the reader stopped.
+
+    ``cause`` names what the reader found there, ``details`` holds what the repairs of that cause
+    need besides.
+    """
+
+    def __init__(self, cause: Cause, span: Span, **details: Any) -> None:
+        super().__init__(cause, span, details)
+        self.cause = cause
+        self.span = span
+        self.details = details

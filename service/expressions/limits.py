@@ -1,4 +1,4 @@
-"""What one expression may cost, checked before the work that it bounds."""
+"""Bounds on the cost of one expression, checked before the work that they bound."""
 
 from dataclasses import dataclass
 

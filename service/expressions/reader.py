@@ -1,4 +1,4 @@
-"""What a student wrote -> an expression: characters, tokens, grammar, tree."""
+"""Formula as typed -> expression: characters, tokens, syntax tree, program."""
 
 import math
 import re
@@ -9,47 +9,52 @@ from typing import Any, Final, Literal, NamedTuple
 import numpy as np
 
 from service.expressions.characters.normalise import normalise
-from service.expressions.errors import ExpressionError, Note
-from service.expressions.evaluation.samples import Samples, compile_tree
+from service.expressions.errors import ExpressionError, Note, UnreadableError
+from service.expressions.evaluation.samples import SampleArray, SymbolValues, compile_tree
 from service.expressions.limits import LIMITS
 from service.expressions.parsing.degrees import in_degrees, without_degree_functions
 from service.expressions.parsing.lexer import tokenise
-from service.expressions.parsing.parser import Table, UnexpectedTokenError
+from service.expressions.parsing.parser import parse
 from service.expressions.parsing.tree_builder import Builder
 from service.expressions.printing.latex import to_latex
 from service.expressions.printing.mathml import to_mathml
 from service.expressions.printing.text import to_text
 from service.expressions.repairs import Failure, explain
-from service.expressions.tree import Binary, Node, Number, Variable, children
-from service.expressions.unreadable import UnreadableError
+from service.expressions.tree import Binary, Node, Number, SymbolNode, children
 from service.expressions.vocabulary.symbols import Kind, Vocabulary
 
-AngleUnits = Literal["radians", "degrees"]
+AngleUnit = Literal["radians", "degrees"]
 
-_TABLE: Final = Table(Builder)
 _REMEMBERED: Final = 8192
 # Whoever grades asks for the tree soon after reading, if at all.
 _TREES: Final = 128
 _SETS_OF_SYMBOLS: Final = 1024
-# What may stand to the left of an operator without brackets, and in one run with it.
+# The operators of a left operand that stands without brackets, in one run with its operator.
 _RUNS: Final = {"+": "+-", "-": "+-", "*": "*/", "/": "*/", "^": "^"}
 _DECIMAL: Final = re.compile(r"\d\.|\.\d")
-# How many repaired texts may be tried on one that cannot be read, before there is none to offer.
+# How many repaired texts may be tried for one that cannot be read.
 _ATTEMPTS: Final = 6
 # A JSON number is one whatever the symbols are called: 1e-7 is no product of 1 and e.
 _NO_SYMBOLS: Final = Vocabulary([])
 
 
-# How a text is read: the names it may use, whether all of it is an angle, whether angles are in
-# degrees.
-Manner = tuple[Vocabulary, bool, bool]
+class ReadingOptions(NamedTuple):
+    """How a text is read.
+
+    ``is_angle`` tells whether the whole entry is an angle, ``degrees`` whether angles are in
+    degrees.
+    """
+
+    vocabulary: Vocabulary
+    is_angle: bool
+    degrees: bool
 
 
 class Expression:
     """A text that was read. Immutable.
 
-    `notes` are on how it was read, `symbols` holds the canonical names used, and `has_decimal`
-    tells whether a decimal number was written.
+    ``notes`` are on how it was read, ``symbols`` holds the canonical names used, and
+    ``has_decimal`` tells whether a decimal number was written.
 
     Thousands of texts are remembered, each as a program and a handful of other objects. Their trees
     are not: together they are a million objects, and the garbage collector would look at every one
@@ -67,37 +72,37 @@ class Expression:
         tree: Node,
         notes: tuple[Note, ...],
         symbols: frozenset[str],
-        manner: Manner | None = None,
+        options: ReadingOptions | None = None,
     ) -> None:
-        """With a `manner` of reading that gives this tree, the tree itself is not kept."""
+        """With the ``options`` that read ``source`` as ``tree``, the tree itself is not kept."""
         self.source: Final = source
         self.notes: Final = notes
         self.symbols: Final = symbols
         self.has_decimal: Final = "." in source and _DECIMAL.search(source) is not None
         self._program: Final = compile_tree(tree)
-        # A tuple of them would be one more object for each text.
-        self._vocabulary: Final = manner and manner[0]
-        self._is_angle: Final = manner is not None and manner[1]
-        self._degrees: Final = manner is not None and manner[2]
-        self._tree: Final = tree if manner is None else None
+        # The options as one tuple would be one more object for each text.
+        self._vocabulary: Final = options and options.vocabulary
+        self._is_angle: Final = options is not None and options.is_angle
+        self._degrees: Final = options is not None and options.degrees
+        self._tree: Final = tree if options is None else None
 
     @property
     def tree(self) -> Node:
-        """The syntax tree, with the units that degrees imply. It must not be written to."""
+        """The syntax tree, with the units that degrees imply. It must not be changed."""
         if self._tree is not None:
             return self._tree
         assert self._vocabulary is not None
         return _parsed(self.source, self._vocabulary, self._is_angle, self._degrees).tree
 
     def evaluate(
-        self, values: Mapping[str, Samples], memo: dict[str, Any] | None = None
-    ) -> Samples | float:
-        """Return the value for each sample, or a float where no symbol is used.
+        self, values: SymbolValues, memo: dict[str, Any] | None = None
+    ) -> SampleArray | float:
+        """The value for each sample, of shape (samples,), or a float where no symbol is used.
 
-        `values` gives each symbol of `symbols` as an array of shape (samples,), angles in radians.
-        Where the expression is undefined the value is nan or infinite; nothing warns. Expressions
-        evaluated at the same `values` may share a `memo`. The result must not be written to: it
-        may be one of `values`, or kept in the memo.
+        ``values`` gives each symbol of ``symbols`` as an array of shape (samples,), angles in
+        radians. Where the expression is undefined the value is nan or infinite; nothing warns.
+        Expressions evaluated at the same ``values`` may share a ``memo``. The result must not be
+        changed: it may be one of ``values``, or kept in the memo.
         """
         program = self._program
         if isinstance(program, float):
@@ -105,19 +110,19 @@ class Expression:
         if program.symbol is not None:
             return values[program.symbol]
         with np.errstate(all="ignore"):
-            result: Samples = program(values, {} if memo is None else memo)
+            result: SampleArray = program(values, {} if memo is None else memo)
         return result
 
     def text(self) -> str:
-        """Return normal text, which reads back to the same tree."""
+        """Normal text, which reads back to the same tree."""
         return to_text(self.tree)
 
     def latex(self) -> str:
-        """Return LaTeX for math mode, as typed and not rearranged."""
+        """LaTeX for math mode, as typed and not rearranged."""
         return to_latex(self.tree)
 
     def mathml(self) -> str:
-        """Return one presentation <math> element, as typed and not rearranged."""
+        """One presentation ``<math>`` element, as typed and not rearranged."""
         return to_mathml(self.tree)
 
     def __repr__(self) -> str:
@@ -125,9 +130,11 @@ class Expression:
 
 
 def evaluate_all(
-    expressions: Iterable[Expression | None], values: Mapping[str, Samples], memo: dict[str, Any]
-) -> list[Samples | float]:
-    """Return what each `evaluate` gives, in less time; nan where there is no expression."""
+    expressions: Iterable[Expression | None],
+    values: Mapping[str, SampleArray],
+    memo: dict[str, Any],
+) -> list[SampleArray | float]:
+    """The results of each ``evaluate``, in less time; nan where there is no expression."""
     with np.errstate(all="ignore"):
         programs = [math.nan if each is None else each._program for each in expressions]
         return [each if isinstance(each, float) else each(values, memo) for each in programs]
@@ -138,33 +145,33 @@ def read(
     vocabulary: Vocabulary,
     *,
     quantity: Kind = "number",
-    angle_unit: AngleUnits = "radians",
+    angle_unit: AngleUnit = "radians",
     repairs: bool = True,
 ) -> Expression:
-    """Return the expression that `source` is, in the names of `vocabulary`.
+    """The expression that ``source`` is, in the names of ``vocabulary``.
 
-    With `angle_unit` in degrees, bare numbers are degrees inside sin, cos and tan, and in the
-    whole entry if `quantity` is "angle". What was read, or why it could not be, is remembered.
-    Without `repairs`, repaired texts are not tried, which costs more than all else.
+    With ``angle_unit`` in degrees, bare numbers are degrees inside sin, cos and tan, and in the
+    whole entry if ``quantity`` is "angle". The result, or the error, is remembered. Without
+    ``repairs``, no repaired text is tried; trying them costs more than all else.
     Raises ExpressionError, and nothing else, whatever the text or number.
     """
     if isinstance(source, str):
         text = source
     else:
-        text, vocabulary = _written(source), _NO_SYMBOLS
+        text, vocabulary = _number_as_text(source), _NO_SYMBOLS
     if len(text) > LIMITS.characters:
         span = (LIMITS.characters, len(text))
-        stop = UnreadableError("beyond", span, limit="characters", length=len(text))
-        raise _explained(text, stop, vocabulary)
-    manner = (vocabulary, quantity == "angle", angle_unit == "degrees")
-    result = _remembered(text, *manner, _ATTEMPTS if repairs else 0)
+        error = UnreadableError("beyond", span, limit="characters", length=len(text))
+        raise _explained(text, error, vocabulary)
+    options = (vocabulary, quantity == "angle", angle_unit == "degrees")
+    result = _remembered(text, *options, _ATTEMPTS if repairs else 0)
     if isinstance(result, ExpressionError):
         raise result.again()
     return result
 
 
-def _written(number: int | float) -> str:
-    """Return a JSON number as text."""
+def _number_as_text(number: int | float) -> str:
+    """A JSON number as text."""
     if isinstance(number, bool):
         raise _explained("", UnreadableError("boolean", (0, 0)), _NO_SYMBOLS)
     # Python refuses to write out an integer of several thousand digits.
@@ -174,9 +181,9 @@ def _written(number: int | float) -> str:
     return str(number) if isinstance(number, int) else repr(float(number))
 
 
-def _explained(text: str, stop: UnreadableError, vocabulary: Vocabulary) -> ExpressionError:
-    """Return the error for a text that is not even tried."""
-    return explain(Failure(text, vocabulary, stop, lambda _: None))
+def _explained(text: str, error: UnreadableError, vocabulary: Vocabulary) -> ExpressionError:
+    """The error for a text that is not even tried."""
+    return explain(Failure(text, vocabulary, error, lambda _: None))
 
 
 @lru_cache(maxsize=_REMEMBERED)
@@ -184,34 +191,34 @@ def _remembered(
     text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool, attempts: int
 ) -> Expression | ExpressionError:
     # An error is kept without its traceback, which would hold every frame of the parse.
-    return _Attempts((vocabulary, is_angle, degrees), attempts).read(text)
+    return _Reading(ReadingOptions(vocabulary, is_angle, degrees), attempts).read(text)
 
 
-class _Attempts:
+class _Reading:
     """The reading of a text and, where it cannot be read, of a few repaired ones."""
 
-    def __init__(self, manner: Manner, attempts: int) -> None:
-        self.manner = manner
-        self.left = attempts
+    def __init__(self, options: ReadingOptions, attempts: int) -> None:
+        self.options = options
+        self.attempts = attempts
 
     def read(self, text: str) -> Expression | ExpressionError:
         try:
-            parsed = _parsed(text, *self.manner)
-        except UnreadableError as stop:
-            return explain(Failure(text, self.manner[0], stop, self.repaired))
-        return Expression(text, parsed.tree, parsed.notes, parsed.symbols, self.manner)
+            parsed = _parsed(text, *self.options)
+        except UnreadableError as error:
+            return explain(Failure(text, self.options.vocabulary, error, self.repaired))
+        return Expression(text, parsed.tree, parsed.notes, parsed.symbols, self.options)
 
     def repaired(self, text: str) -> str | None:
-        """Return `text` where it can be read, else what it would be repaired to, if anything."""
-        if not self.left or len(text) > LIMITS.characters:
+        """``text`` where it can be read, else its own repaired text, if it has one."""
+        if not self.attempts or len(text) > LIMITS.characters:
             return None
-        self.left -= 1
+        self.attempts -= 1
         result = self.read(text)
         return text if isinstance(result, Expression) else result.suggestion
 
 
 class _Parsed(NamedTuple):
-    """What a text was read as."""
+    """A text's syntax tree, the notes on it and the canonical names in it."""
 
     tree: Node
     notes: tuple[Note, ...]
@@ -220,19 +227,15 @@ class _Parsed(NamedTuple):
 
 @lru_cache(maxsize=_TREES)
 def _parsed(text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool) -> _Parsed:
-    """Return what `text` is. Raises UnreadableError."""
+    """The syntax tree of ``text`` and its notes. Raises UnreadableError."""
     characters = normalise(text)
     if not characters.text or characters.text.isspace():
         raise UnreadableError("empty", (0, len(text)))
     notes: list[Note] = []
     tokens = tokenise(text, characters, vocabulary, degrees=degrees, notes=notes)
     builder = Builder(text, notes, degrees=degrees)
-    try:
-        tree: Node = _TABLE.parse(tokens, builder)
-    except UnexpectedTokenError as unexpected:
-        at = unexpected.index
-        raise UnreadableError("grammar", tokens[at][2:], tokens=tokens, index=at) from None
-    symbols = _shared(_measure(tree))
+    tree = parse(tokens, builder)
+    symbols = _shared(_used_symbols(tree))
     if degrees:
         tree = in_degrees(tree, is_angle=is_angle, notes=notes)
     elif builder.degree_functions:
@@ -242,12 +245,12 @@ def _parsed(text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool) ->
 
 @lru_cache(maxsize=_SETS_OF_SYMBOLS)
 def _shared(symbols: frozenset[str]) -> frozenset[str]:
-    """Return the same set for every text that uses the same symbols."""
+    """One and the same set for all texts that use the same symbols."""
     return symbols
 
 
-def _measure(tree: Node) -> frozenset[str]:
-    """Return the symbols used. Raises UnreadableError for too large or too deep a tree.
+def _used_symbols(tree: Node) -> frozenset[str]:
+    """The canonical names in ``tree``. Raises UnreadableError where it is too large or too deep.
 
     A run of sums, or of products, counts as one level, for that is how it is written.
     """
@@ -258,22 +261,22 @@ def _measure(tree: Node) -> frozenset[str]:
         below: list[Any] = []
         for node in nodes:
             kind = type(node)
-            if kind is Variable:
+            if kind is SymbolNode:
                 symbols.add(node.symbol.name)
             elif kind is Binary:
-                (nodes if _runs_on(node) else below).append(node.left)
+                (nodes if _is_run(node) else below).append(node.left)
                 below.append(node.right)
             elif kind is not Number:
                 below += children(node)
         count, depth = count + len(nodes), depth + 1
         if count > LIMITS.nodes or depth > LIMITS.depth:
-            raise UnreadableError("beyond", (tree.start, tree.end), limit=_broken(tree))
+            raise UnreadableError("beyond", (tree.start, tree.end), limit=_broken_limit(tree))
         nodes = below
     return frozenset(symbols)
 
 
-def _broken(tree: Node) -> str:
-    """Return the limit that is met first on the way from right to left: a student is told one."""
+def _broken_limit(tree: Node) -> str:
+    """The limit that is broken first on the way from right to left: a student is told of one."""
     count = 0
     pending: list[tuple[Any, int]] = [(tree, 1)]
     while pending:
@@ -284,11 +287,11 @@ def _broken(tree: Node) -> str:
         if count > LIMITS.nodes:
             break
         pending.extend((child, depth + 1) for child in children(node))
-        if type(node) is Binary and _runs_on(node):
+        if type(node) is Binary and _is_run(node):
             pending[-2] = node.left, depth
     return "nodes"
 
 
-def _runs_on(node: Binary) -> bool:
-    """Tell whether the operand on the left is in one run with `node`."""
+def _is_run(node: Binary) -> bool:
+    """Whether the operand on the left is in one run with ``node``."""
     return type(node.left) is Binary and node.left.operator in _RUNS[node.operator]

@@ -1,15 +1,15 @@
 """The syntax tree of an expression.
 
-    Number 90 | Pi | Variable theta1
+    Number 90 | Pi | SymbolNode theta1
     Unit deg ─ operand            90deg, 90°, deg(90)
     Negation ─ operand            -q1
     Binary + ┬ left               q1 + q2, l1*c1, 1/2, x^2
              └ right
     Call cos ─ arguments          cos(q1), c1, atan2(y, x)
 
-Brackets, spelling and the c12 shorthand leave no trace: equal trees mean equal mathematics as
-typed. `start` and `end` are offsets in the text that the student typed, brackets included, and
-take no part in equality. The classes are not frozen because a frozen dataclass takes four times
+Brackets, spelling and the c12 shorthand leave no trace in it, so that equal trees are equal
+formulas as typed. ``start`` and ``end`` are offsets in the text as typed, brackets included, and
+do not count for equality. The classes are not frozen, because a frozen dataclass takes four times
 as long to construct; nothing changes a tree after the reader has built it.
 """
 
@@ -18,13 +18,13 @@ from typing import Literal
 
 from service.expressions.vocabulary.symbols import Symbol
 
-AngleUnit = Literal["deg", "rad"]
+UnitName = Literal["deg", "rad"]
 Operator = Literal["+", "-", "*", "/", "^"]
 
 
 @dataclass(slots=True)
 class Number:
-    """A numeric constant, never negative; `literal` is its text."""
+    """A numeric constant, never negative; ``literal`` is its text."""
 
     value: float
     literal: str = field(compare=False)
@@ -41,7 +41,7 @@ class Pi:
 
 
 @dataclass(slots=True)
-class Variable:
+class SymbolNode:
     """A declared symbol."""
 
     symbol: Symbol
@@ -54,7 +54,7 @@ class Unit:
     """An operand with an explicit angle unit."""
 
     operand: "Node"
-    unit: AngleUnit
+    unit: UnitName
     start: int = field(default=0, compare=False)
     end: int = field(default=0, compare=False)
 
@@ -89,11 +89,11 @@ class Call:
     end: int = field(default=0, compare=False)
 
 
-Node = Number | Pi | Variable | Unit | Negation | Binary | Call
+Node = Number | Pi | SymbolNode | Unit | Negation | Binary | Call
 
 
 def children(node: Node) -> tuple[Node, ...]:
-    """Return the operands or arguments of `node`, left to right."""
+    """The operands or arguments of ``node``, left to right."""
     kind = type(node)
     if kind is Binary:
         return (node.left, node.right)  # type: ignore[union-attr]

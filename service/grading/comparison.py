@@ -1,6 +1,6 @@
 """When two columns of numbers are the same answer.
 
-Arrays are ``(..., samples)``, one for each sample; a thing holds over all samples or not at all.
+Arrays are ``(..., samples)``; what is asked of them must hold at all samples.
 """
 
 import math
@@ -9,16 +9,9 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from service.grading.tolerances import EXACT_VALUE, ROUNDED_VALUE
+from service.kinematics.tolerances import LARGEST_ANGLE, LARGEST_LENGTH
 from service.kinematics.transforms import Numbers
-
-# Far above what rounding does to a formula of 200 operations, far below any slip.
-EXACT = 1e-9
-# Three figures: 1.57 for π/2, 0.707 for 1/√2.
-ROUNDED = 1e-3
-# How many times its scale a number of the robot's own may be: an angle goes up to π, a length
-# hardly beyond the longest link.
-LARGEST_ANGLE = 4.0
-LARGEST_LENGTH = 1.5
 
 
 class Match(IntEnum):
@@ -46,33 +39,33 @@ def matches(
 ) -> NDArray[np.int_]:
     """The Match of each entry ``(...)``, from ``(..., samples)``.
 
-    ``rounded`` says which entries may be off by what rounding a number to three figures does. That
-    is measured against the entry's size, but no more than what the robot's own numbers reach: a
-    student's own large offset must not widen what is let through.
-    ``scale`` is what the quantity is measured against: 1 for angles and direction cosines, a
-    typical length for lengths. It gives the tolerance an absolute floor, so that sin² + cos² − 1 is
-    0 every time; the floor is far too low for a wrong constant to hide beside a large entry.
+    ``rounded`` says which entries may differ by what rounding to three figures does to a number of
+    the entry's size, or of the largest size that the robot's own numbers have, if that is smaller:
+    a student's own large offset must not widen what is let through.
+    ``scale`` is the unit of the tolerance: 1 for angles and direction cosines, a typical length for
+    lengths. It gives the tolerance an absolute floor, so that sin² + cos² − 1 is 0 every time; the
+    floor is far too low for a wrong constant to hide beside a large entry.
     """
     with np.errstate(invalid="ignore", over="ignore"):
         error = np.abs(difference(actual, expected, angle)).max(axis=-1)
         size = np.sqrt(np.mean(expected * expected, axis=-1))
         largest = np.where(np.any(angle, axis=-1), LARGEST_ANGLE, LARGEST_LENGTH) * scale
-        near = (error <= ROUNDED * np.minimum(size, largest)) & rounded
+        near = (error <= ROUNDED_VALUE * np.minimum(size, largest)) & rounded
         found = np.where(near, Match.ROUNDED, Match.DIFFERENT)
-        found = np.where(error <= EXACT * np.maximum(size, scale), Match.EXACT, found)
+        found = np.where(error <= EXACT_VALUE * np.maximum(size, scale), Match.EXACT, found)
     return np.where(np.isfinite(actual).all(axis=-1), found, Match.UNDEFINED)
 
 
 def same(actual: Numbers, expected: Numbers, scale: float = 1.0, angle: bool = False) -> bool:
     """Whether two single entries ``(samples,)`` are equal, or equal but for rounding.
 
-    The same question as ``matches``, at a fifth of its price.
+    It asks the same as ``matches``, for a fifth of its cost.
     """
     error = actual - expected
     if angle:
         error -= 2 * np.pi * np.round(error / (2 * np.pi))
     size = math.sqrt(float(expected @ expected) / expected.size)
     largest = (LARGEST_ANGLE if angle else LARGEST_LENGTH) * scale
-    tolerance = max(ROUNDED * min(size, largest), EXACT * max(size, scale))
-    # What is not a number is not within any tolerance.
+    tolerance = max(ROUNDED_VALUE * min(size, largest), EXACT_VALUE * max(size, scale))
+    # NaN is not within any tolerance.
     return bool(np.abs(error).max() <= tolerance) and math.isfinite(size)

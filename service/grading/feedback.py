@@ -7,7 +7,7 @@ from service.grading.report import Feedback, Severity
 
 
 class FeedbackLevel(StrEnum):
-    """How much a report tells: everything, all but the correction, or only what could be read."""
+    """The amount that a report tells: all, all but the correction, or only the reading."""
 
     FULL = "full"
     VERDICTS = "verdicts"
@@ -16,10 +16,11 @@ class FeedbackLevel(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A message in two sentences: what to look at, and the correction itself.
+    """A message in two sentences: a hint where to look, and the correction itself.
 
-    ``code`` is stable, so that a class can be counted. ``reading`` marks what concerns the reading
-    of the text and not its worth: it gives nothing away and is told at every level.
+    ``code`` is stable, so that a class can be counted. ``values`` is a counterexample. ``reading``
+    marks a finding on the reading of a text and not on its worth: it gives nothing away and is
+    visible at every level. ``suggestion`` is the repaired text of one that cannot be read.
     """
 
     code: str
@@ -29,6 +30,7 @@ class Finding:
     span: tuple[int, int] | None = None
     values: dict[str, float | str] | None = None
     reading: bool = False
+    suggestion: str | None = None
 
     def visible(
         self, level: FeedbackLevel, row: str | None = None, cell: str | None = None

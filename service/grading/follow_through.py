@@ -15,13 +15,9 @@ from service.grading.joint_motion import changes
 from service.grading.part import Grading, StudentChain
 from service.grading.report import PartReport, Severity
 from service.grading.samples import HALF, SAMPLES, Samples
+from service.grading.tolerances import DEPENDS_ON_JOINTS, JOINT_STEP, NO_MOTION
+from service.kinematics.jacobian import rank
 from service.kinematics.transforms import Matrices, Numbers, inverse
-
-# A joint's small motion, and what is small beside a chain's larger motions.
-NUDGE = 1e-5
-SMALL = 1e-3
-# A value that changes by less than this when the joints move does not move.
-MOVES = 1e-9
 
 
 def can_follow_through(
@@ -43,30 +39,31 @@ def can_follow_through(
 
 
 def _freedom(tool_at: Callable[[Samples], Matrices | None], grading: Grading) -> int:
-    """In how many ways the joints move a pose: the rank of its Jacobian, by small differences."""
-    twists = []
+    """In how many ways the joints move a pose: the rank of its Jacobian, by small differences.
+
+    The pose need not be rigid, so its Jacobian has all twelve entries, ``(HALF, 12, joints)``.
+    """
+    columns = []
     for joint in grading.exercise.joints:
         moved = tool_at(_nudged(grading.samples, joint.variable))
         if moved is None or np.isnan(moved).any():
             return 0
         twist = inverse(moved[:HALF]) @ moved[HALF:] - np.eye(4)
-        twists.append(twist[:, :3].reshape(HALF, -1) / NUDGE)
-    sizes = np.linalg.svd(np.array(twists).swapaxes(0, 1), compute_uv=False)
-    ranks = np.sort((sizes > SMALL * sizes.max(initial=1.0)).sum(axis=-1))
-    return int(ranks[len(ranks) // 2])
+        columns.append(twist[:, :3].reshape(HALF, -1) / JOINT_STEP)
+    return rank(np.stack(columns, axis=-1), NO_MOTION)
 
 
 def _nudged(samples: Samples, variable: str) -> Samples:
     """Samples whose second half differs from the first in one joint only."""
     values = {name: np.tile(numbers[:HALF], 2) for name, numbers in samples.values.items()}
-    values[variable][HALF:] += NUDGE
+    values[variable][HALF:] += JOINT_STEP
     return Samples(values)
 
 
 def stands_still(values: Numbers) -> bool:
     """Whether no value ``(..., SAMPLES)`` changes with the joints."""
     # NaN is not larger than anything.
-    return not (np.abs(changes(values)) > MOVES).any()
+    return not (np.abs(changes(values)) > DEPENDS_ON_JOINTS).any()
 
 
 STANDS_STILL = Finding(

@@ -1,4 +1,4 @@
-"""A value of which only the numbers are known, as the formula that a student would write."""
+"""The formula that a student would write for values of which only the numbers are known."""
 
 from collections.abc import Iterator
 from fractions import Fraction
@@ -9,17 +9,15 @@ from service.catalogue import Exercise
 from service.grading.comparison import difference
 from service.grading.joint_motion import coefficients
 from service.grading.samples import HALF, Samples
+from service.grading.tolerances import CONSTANT, WHOLE_MULTIPLE
 from service.kinematics.transforms import Numbers
-
-EXACT = 1e-9
-WHOLE = 1e-6
 
 
 def formula_text(values: Numbers, angle: bool, exercise: Exercise, samples: Samples) -> str:
     """``values`` ``(SAMPLES,)`` as a sum of multiples of the exercise's letters and a constant.
 
-    That is the form that table cells have: ``theta2 + pi/2``, ``-d2``, ``l1 + l2``. Empty where the
-    values are of another form.
+    That is the form of table cells: ``theta2 + pi/2``, ``-d2``, ``l1 + l2``. The text is empty if
+    the values are of another form.
     """
     (counts,) = coefficients(values[None], exercise.joints, samples, np.array([angle]))
     return sum_text(values, counts, angle, exercise, samples)
@@ -32,7 +30,7 @@ def sum_text(
     exercise: Exercise,
     samples: Samples,
 ) -> str:
-    """The same where it is known how often each joint variable is contained, if at all."""
+    """``formula_text`` where the multiples of the joint variables are known, or are none (None)."""
     if counts is None:
         return ""
     moving = [joint.variable for joint in exercise.joints]
@@ -50,10 +48,10 @@ def multiples(
 ) -> tuple[list[tuple[int, str]], float] | None:
     """Whole multiples of letters and a remainder that add up to ``constant`` ``(HALF,)``.
 
-    None where there are no such. Letters with a share of 0 are left out.
+    None if there are none. Letters with a share of 0 are left out.
     """
     first = constant[0]
-    if np.abs(difference(constant, np.full_like(constant, first), angle)).max() < EXACT:
+    if np.abs(difference(constant, np.full_like(constant, first), angle)).max() < CONSTANT:
         return [], float(first)
     kind = "angle" if angle else "length"
     letters = [v.name for v in exercise.variables if v.joint is None and v.kind == kind]
@@ -62,7 +60,7 @@ def multiples(
     basis, solver = samples.cached(("letters", kind), lambda: _basis(letters, samples))
     shares = np.round(constant @ solver)[:-1]
     rest = constant - shares @ basis[:-1]
-    if np.ptp(rest) > WHOLE:
+    if np.ptp(rest) > WHOLE_MULTIPLE:
         return None
     found = zip(shares.astype(np.int_).tolist(), letters, strict=True)
     return [(share, letter) for share, letter in found if share], float(rest.mean())
@@ -75,14 +73,14 @@ def _basis(letters: list[str], samples: Samples) -> tuple[Numbers, Numbers]:
 
 
 def _constant(value: float, angle: bool) -> str:
-    """A number as text; an angle as a fraction of pi where it is one, else in degrees."""
+    """A number as text, an angle as a fraction of pi or else in degrees; empty if it is 0."""
     if not angle:
-        return "" if abs(value) < WHOLE else f"{value:.6g}"
+        return "" if abs(value) < WHOLE_MULTIPLE else f"{value:.6g}"
     turned = float(difference(np.array(value), np.array(0.0), angle=True))
-    if abs(turned) < WHOLE:
+    if abs(turned) < WHOLE_MULTIPLE:
         return ""
     share = Fraction(turned / np.pi).limit_denominator(12)
-    if abs(float(share) * np.pi - turned) > WHOLE:
+    if abs(float(share) * np.pi - turned) > WHOLE_MULTIPLE:
         return f"{np.degrees(turned):.6g}deg"
     if share == -1:
         share = Fraction(1)

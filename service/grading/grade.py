@@ -5,11 +5,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from service.catalogue import Exercise, PartSpec
+from service.expressions import AngleUnit
 from service.grading.feedback import FeedbackLevel, UnreadableAnswerError
 from service.grading.follow_through import STANDS_STILL, can_follow_through, follows_from
 from service.grading.kinds import KINDS
 from service.grading.part import Grading, Judged, StudentChain, part_report, unjudged_report
-from service.grading.reading.entry import AngleUnit, Reader
+from service.grading.reading.entry import Reader
 from service.grading.report import PartReport, Report, Verdict, rounded_points
 from service.grading.samples import draw
 

@@ -1,4 +1,4 @@
-"""What a cell owes to the joints, and what to the links."""
+"""How values change with the joints, at the same links."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -6,9 +6,8 @@ from numpy.typing import ArrayLike, NDArray
 from service.catalogue import Joint
 from service.grading.comparison import difference
 from service.grading.samples import Samples
+from service.grading.tolerances import SAME_MOTION
 from service.kinematics.transforms import Numbers
-
-TOLERANCE = 1e-6
 
 
 def halves(values: Numbers) -> tuple[Numbers, Numbers]:
@@ -26,12 +25,12 @@ def changes(values: Numbers) -> Numbers:
 def moves_with(values: Numbers, motion: Numbers, angle: ArrayLike) -> NDArray[np.bool_]:
     """Which values ``(..., samples)`` change with the joints as ``motion`` does, or its opposite.
 
-    ``motion`` is ``(..., samples / 2)``. Where a value is not a number it does not.
+    ``motion`` is ``(..., samples / 2)``. NaN does not.
     """
-    either_sense = np.array([motion, -motion])
+    either_sign = np.array([motion, -motion])
     shape = (2, *[1] * (values.ndim - motion.ndim), *motion.shape)
-    off = np.abs(difference(changes(values), either_sense.reshape(shape), angle)).max(axis=-1)
-    return np.asarray(off.min(axis=0) < TOLERANCE)
+    error = np.abs(difference(changes(values), either_sign.reshape(shape), angle)).max(axis=-1)
+    return np.asarray(error.min(axis=0) < SAME_MOTION)
 
 
 def joint_counts(
@@ -40,11 +39,10 @@ def joint_counts(
     """Whole numbers k with ``values = Σ k_j q_j + constant``, for each cell.
 
     ``values`` is ``(cells, SAMPLES)``, ``angle`` ``(cells,)``. Returns the counts ``(cells,
-    joints)`` and which cells are of that form ``(cells,)``; an angle need be so only up to whole
-    turns.
+    joints)`` and which cells are of that form ``(cells,)``, an angle up to whole turns.
 
-    One least-squares problem for all cells: the two halves of the samples differ in the joints
-    only.
+    It is one least-squares problem for all cells: the two halves of the samples differ in the
+    joints only.
     """
     if not joints:
         return np.zeros((len(values), 0), np.int_), np.asarray(np.isfinite(values).all(axis=-1))
@@ -54,32 +52,33 @@ def joint_counts(
     change = np.where(finite[:, None], change, 0.0)
     counts = np.round(change @ solver)
     counts = np.clip(counts, -99, 99)
-    linear = finite & (np.abs(counts @ moves - change).max(axis=-1) < TOLERANCE)
-    wound = np.flatnonzero(finite & ~linear & angle)
-    if len(wound):
-        either_way = np.array([moves, -moves])
-        turned = difference(change[wound, None, None], either_way, angle=True)
-        found = np.abs(turned).max(axis=-1) < TOLERANCE
-        for k, way, joint in np.argwhere(found):
-            counts[wound[k]], linear[wound[k]] = 0, True
-            counts[wound[k], joint] = 1 - 2 * way
+    linear = finite & (np.abs(counts @ moves - change).max(axis=-1) < SAME_MOTION)
+    # Whole turns hide the share of a joint from least squares; then one joint alone is tried.
+    turned = np.flatnonzero(finite & ~linear & angle)
+    if len(turned):
+        either_sign = np.array([moves, -moves])
+        error = difference(change[turned, None, None], either_sign, angle=True)
+        found = np.abs(error).max(axis=-1) < SAME_MOTION
+        for k, negative, joint in np.argwhere(found):
+            counts[turned[k]], linear[turned[k]] = 0, True
+            counts[turned[k], joint] = 1 - 2 * negative
     return counts.astype(np.int_), linear
 
 
 def coefficients(
     values: Numbers, joints: tuple[Joint, ...], samples: Samples, angle: NDArray[np.bool_]
 ) -> list[tuple[int, ...] | None]:
-    """How often each joint variable is contained in each cell; None where not linearly."""
+    """The counts of ``joint_counts`` for each cell; None for a cell of another form."""
     counts, linear = joint_counts(values, joints, samples, angle)
     found = zip(counts.tolist(), linear.tolist(), strict=True)
     return [tuple(cell) if is_linear else None for cell, is_linear in found]
 
 
 def _solver(names: tuple[str, ...], samples: Samples) -> tuple[Numbers, Numbers]:
-    """How the joints move between the halves, and the pseudo-inverse that tells their shares."""
+    """How the joints move between the halves, and the pseudo-inverse of that."""
 
-    def taken_apart() -> tuple[Numbers, Numbers]:
+    def compute() -> tuple[Numbers, Numbers]:
         moves = changes(np.array([samples.values[name] for name in names]))
         return moves, np.asarray(np.linalg.pinv(moves), dtype=np.float64)
 
-    return samples.cached(names, taken_apart)
+    return samples.cached(names, compute)

@@ -83,7 +83,7 @@ class Judged:
 
 
 class AnswerKind(Protocol):
-    """How answers of one kind are read and judged.
+    """The reading and the judging of answers of one kind.
 
     Pure: the same part, answer and samples, the same result.
     """

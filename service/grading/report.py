@@ -1,6 +1,6 @@
-"""The report: what a grading says, in the shape that the HTTP contract names.
+"""The report: the result of a grading, in the shape that the HTTP contract names.
 
-Plain frozen dataclasses; whoever sends them on leaves out the fields that are None.
+Plain frozen dataclasses. A field that is None is left out where a report is sent.
 """
 
 from collections.abc import Iterable
@@ -9,7 +9,7 @@ from enum import StrEnum
 
 
 class Verdict(StrEnum):
-    """What became of a cell, a row or a part."""
+    """The verdict on a cell, a row or a part."""
 
     CORRECT = "correct"
     PARTIAL = "partial"
@@ -19,7 +19,7 @@ class Verdict(StrEnum):
 
 
 class Severity(StrEnum):
-    """How much a message matters: an error costs points, an info costs nothing."""
+    """The weight of a message: an error costs points, an info costs nothing."""
 
     ERROR = "error"
     WARNING = "warning"

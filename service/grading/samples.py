@@ -1,7 +1,7 @@
-"""The values that answers are compared at: drawn anew for each submission, the same each time.
+"""The values that answers are compared at, drawn for each submission.
 
-The draw is a hash of exercise version and answers, so a student cannot foresee it, and a regrade
-repeats it to the last bit on every machine and with every version of numpy.
+The seed is a hash of exercise version and answers, so that a student cannot foresee the draw and a
+regrade repeats it to the last bit, on every machine and with every version of numpy.
 """
 
 import hashlib
@@ -20,7 +20,7 @@ from service.kinematics.transforms import Numbers
 HALF = 16
 SAMPLES = 2 * HALF
 
-T = TypeVar("T")
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True)
@@ -28,8 +28,8 @@ class Samples:
     """Values of every symbol, each of shape ``(SAMPLES,)``.
 
     Samples 0..15 are drawn freely. Samples 16..31 repeat their link parameters with other joint
-    values, so that what a cell owes to the joints can be told from what it owes to the links.
-    ``in_degrees`` are the angles that the student reckons in degrees.
+    values, so that a change between the halves is due to the joints alone. ``in_degrees`` are the
+    angles whose values a student reads in degrees.
     """
 
     values: Mapping[str, Numbers]
@@ -37,21 +37,21 @@ class Samples:
 
     @cached_property
     def memo(self) -> dict[str, Numbers]:
-        """Where expressions keep the sines and cosines that they share at these samples."""
+        """The sines and cosines that expressions share at these samples."""
         return {}
 
     @cached_property
-    def _known(self) -> dict[Hashable, Any]:
+    def _cache(self) -> dict[Hashable, Any]:
         return {}
 
-    def cached(self, what: Hashable, compute: Callable[[], T]) -> T:
-        """What the exercise alone makes of these samples, computed when it is first asked for.
+    def cached(self, key: Hashable, compute: Callable[[], _T]) -> _T:
+        """What depends on the exercise and these samples alone, computed on first use.
 
-        Whoever asks must not write to it.
+        It must not be written to.
         """
-        if what not in self._known:
-            self._known[what] = compute()
-        found: T = self._known[what]
+        if key not in self._cache:
+            self._cache[key] = compute()
+        found: _T = self._cache[key]
         return found
 
     @property
@@ -70,7 +70,7 @@ class Samples:
 
     @staticmethod
     def subset_of(values: Numbers, count: int) -> Numbers:
-        """Those samples of values ``(..., SAMPLES)``."""
+        """The samples of ``subset`` of values ``(..., SAMPLES)``."""
         return np.concatenate([values[..., :count], values[..., HALF : HALF + count]], axis=-1)
 
     def at(self, sample: int, names: Set[str]) -> dict[str, float]:
@@ -106,8 +106,8 @@ def draw(exercise: Exercise, answers: object, *, degrees: bool = False) -> Sampl
 def _canonical(answers: object) -> str:
     """The answers as text that does not depend on the order of keys.
 
-    What JSON itself refuses (nested beyond all bounds, a number of thousands of digits) has no
-    readable cell in that place; all of it shares one seed.
+    Answers that JSON refuses (nested beyond all bounds, a number of thousands of digits) have no
+    readable cell in that place; all of them share one seed.
     """
     try:
         return json.dumps(answers, sort_keys=True, separators=(",", ":"))

@@ -13,10 +13,10 @@ MAX_REPAIRS = 12
 
 @dataclass(slots=True)
 class WorkBudget:
-    """What is left for a submission: one object for all its parts, pasted texts and units.
+    """The work left for a submission: one object for all its parts, pasted texts and units.
 
-    ``characters`` may still be read; for ``repairs`` unreadable texts a repaired one may be looked
-    for.
+    ``characters`` counts those that may still be read, ``repairs`` the unreadable texts for which
+    a repaired one may still be looked for.
     """
 
     characters: int = MAX_CHARACTERS

@@ -11,7 +11,7 @@ from typing import Final
 from service.expressions.vocabulary.functions import SPELLINGS
 from service.grids.limits import GRID_LIMITS
 from service.grids.pairs import pairs
-from service.grids.source_text import Traced
+from service.grids.source_text import SourceText
 
 _SIGNS: Final = "+-−–"
 _BINARY: Final = "*/^×·⋅∙∗•÷="
@@ -27,15 +27,15 @@ _MOST: Final = 2 * GRID_LIMITS.columns
 class Blanked:
     """The elements of one row; ``signs`` are those that a sign with no blank behind it began."""
 
-    elements: tuple[Traced, ...]
-    signs: tuple[Traced, ...]
+    elements: tuple[SourceText, ...]
+    signs: tuple[SourceText, ...]
 
 
-def split_blanks(row: Traced) -> Blanked:
+def split_blanks(row: SourceText) -> Blanked:
     """The elements of a row, by MATLAB's rule for blanks. What is in brackets stays together."""
     words = _words(row.text)
-    elements: list[Traced] = []
-    signs: list[Traced] = []
+    elements: list[SourceText] = []
+    signs: list[SourceText] = []
     if not words:
         return Blanked((), ())
     start, end = words[0]

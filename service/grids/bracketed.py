@@ -4,38 +4,38 @@ from typing import Final
 
 from service.expressions.errors import Note
 from service.grids import lists, matlab
-from service.grids.grid import Format, Grid, GridError, grid
-from service.grids.program_text import looks_like_a_snippet, text_around, unwrap
-from service.grids.source_text import Traced
+from service.grids.grid import Grid, GridError, GridFormat, grid
+from service.grids.program_text import begins_as_matrix, text_around, unwrap
+from service.grids.source_text import SourceText
 
 # Functions of MATLAB, or of both, and no function at all.
 _OF_MATLAB: Final = frozenset({"", "sym", "simplify"})
 
 
-def _parse(source: Traced) -> Grid:
-    snippet = unwrap(source)
+def _parse(source: SourceText) -> Grid:
+    written = unwrap(source)
     notes: tuple[Note, ...] = ()
-    if len(snippet.groups) == 1:
-        [content] = snippet.groups
+    if len(written.groups) == 1:
+        [content] = written.groups
         lines = lists.lines_of(content)
         if lines is not None:
             rows = lists.rows(lines)
-        elif snippet.maker not in _OF_MATLAB and ";" not in content.text:
-            rows = lists.flat(content, snippet)
+        elif written.maker not in _OF_MATLAB and ";" not in content.text:
+            rows = lists.flat(content, written)
         else:
             rows, notes = matlab.rows(content)
     else:
         # print() of MATLAB's symbolic matrices: each row in brackets of its own.
-        for group in snippet.groups:
+        for group in written.groups:
             if any(letter in ";\n" for letter in group.text):
-                raise text_around(snippet.groups[1])
-        rows = lists.rows(list(snippet.groups))
+                raise text_around(written.groups[1])
+        rows = lists.rows(list(written.groups))
     _refuse_objects(rows)
     unquoted = [[lists.unquoted(cell.strip()) for cell in row] for row in rows]
     return grid("brackets", unquoted, source.whole, notes)
 
 
-def _refuse_objects(rows: list[list[Traced]]) -> None:
+def _refuse_objects(rows: list[list[SourceText]]) -> None:
     for row in rows:
         for cell in row:
             inner = cell.strip()
@@ -48,4 +48,4 @@ def _refuse_objects(rows: list[list[Traced]]) -> None:
                 )
 
 
-FORMAT: Final = Format("brackets", looks_like_a_snippet, _parse)
+FORMAT: Final = GridFormat("brackets", begins_as_matrix, _parse)

@@ -6,8 +6,8 @@ from typing import Final
 
 from service.expressions.errors import Note
 from service.grids.blanks import goes_on, split_blanks
-from service.grids.grid import Format, Grid, GridError, grid
-from service.grids.source_text import Traced
+from service.grids.grid import Grid, GridError, GridFormat, grid
+from service.grids.source_text import SourceText
 
 _GAP: Final = re.compile(r"[^\S\r\n]{2,}")
 _DASHES: Final = frozenset("-=_─━═")
@@ -19,7 +19,7 @@ def _matches(text: str) -> bool:
     return len(lines) > 1 and all(any(c.isspace() for c in line) for line in lines)
 
 
-def _parse(source: Traced) -> Grid:
+def _parse(source: SourceText) -> Grid:
     lines = [line.strip() for line in source.lines()]
     lines = [line for line in lines if line.text and not _is_rule(line.text)]
     wide = [_at_gaps(line) for line in lines]
@@ -41,9 +41,9 @@ def _is_rule(line: str) -> bool:
     return len(line) > 2 and set(line) - {" "} <= _DASHES
 
 
-def _at_gaps(line: Traced) -> list[Traced]:
+def _at_gaps(line: SourceText) -> list[SourceText]:
     """The pieces between two or more blanks; nothing where one of them is half a value."""
-    pieces: list[Traced] = []
+    pieces: list[SourceText] = []
     start = 0
     for gap in _GAP.finditer(line.text):
         pieces.append(line.cut(start, gap.start()))
@@ -53,16 +53,16 @@ def _at_gaps(line: Traced) -> list[Traced]:
     return [] if halves else pieces
 
 
-def _is_table(rows: list[list[Traced]]) -> bool:
+def _is_table(rows: list[list[SourceText]]) -> bool:
     return len({len(row) for row in rows}) == 1 and len(rows[0]) > 1
 
 
-def _notes(rows: list[list[Traced]]) -> tuple[Note, ...]:
+def _notes(rows: list[list[SourceText]]) -> tuple[Note, ...]:
     message = f"Blanks were read as the ends of columns: {len(rows[0])} values in each line."
     return (Note("blank_columns", message, rows[0][0].whole),)
 
 
-def _uneven(lines: list[Traced], rows: list[list[Traced]]) -> GridError:
+def _uneven(lines: list[SourceText], rows: list[list[SourceText]]) -> GridError:
     at = next((i for i, row in enumerate(rows) if len(row) != len(rows[0])), 0)
     return GridError(
         "ambiguous_columns",
@@ -72,4 +72,4 @@ def _uneven(lines: list[Traced], rows: list[list[Traced]]) -> GridError:
     )
 
 
-FORMAT: Final = Format("columns", _matches, _parse)
+FORMAT: Final = GridFormat("columns", _matches, _parse)

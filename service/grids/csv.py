@@ -3,9 +3,9 @@
 from typing import Final
 
 from service.grids.delimited import split_cells
-from service.grids.grid import Format, Grid, grid
+from service.grids.grid import Grid, GridFormat, grid
 from service.grids.pairs import pairs
-from service.grids.source_text import Traced
+from service.grids.source_text import SourceText
 
 
 def _matches(text: str) -> bool:
@@ -18,8 +18,8 @@ def _matches(text: str) -> bool:
     return False
 
 
-def _parse(source: Traced) -> Grid:
+def _parse(source: SourceText) -> Grid:
     return grid("CSV", split_cells(source, ",", brackets=True), source.whole)
 
 
-FORMAT: Final = Format("CSV", _matches, _parse)
+FORMAT: Final = GridFormat("CSV", _matches, _parse)

@@ -2,12 +2,12 @@
 
 from service.grids.grid import GridError
 from service.grids.pairs import pairs
-from service.grids.source_text import Traced, joined
+from service.grids.source_text import SourceText, joined
 
 _LINE_ENDS = "\r\n\x85\u2028\u2029"
 
 
-def split_cells(source: Traced, separator: str, *, brackets: bool) -> list[list[Traced]]:
+def split_cells(source: SourceText, separator: str, *, brackets: bool) -> list[list[SourceText]]:
     """The cells of each line. With ``brackets`` a separator inside brackets separates nothing.
 
     A cell that begins with " ends with the next single ", as spreadsheets write it. Raises
@@ -15,7 +15,7 @@ def split_cells(source: Traced, separator: str, *, brackets: bool) -> list[list[
     """
     text = source.text
     ends = pairs(text) if brackets else {}
-    rows: list[list[Traced]] = [[]]
+    rows: list[list[SourceText]] = [[]]
     i = 0
     while True:
         cell, i = _cell(source, i, separator, ends)
@@ -27,7 +27,9 @@ def split_cells(source: Traced, separator: str, *, brackets: bool) -> list[list[
         i += 1
 
 
-def _cell(source: Traced, start: int, separator: str, ends: dict[int, int]) -> tuple[Traced, int]:
+def _cell(
+    source: SourceText, start: int, separator: str, ends: dict[int, int]
+) -> tuple[SourceText, int]:
     """The cell that begins at ``start``, and the place of the separator or line end behind it."""
     text = source.text
     stops = separator + _LINE_ENDS
@@ -41,9 +43,9 @@ def _cell(source: Traced, start: int, separator: str, ends: dict[int, int]) -> t
     return source.cut(start, i), i
 
 
-def _quoted(source: Traced, start: int, stops: str) -> tuple[Traced, int]:
+def _quoted(source: SourceText, start: int, stops: str) -> tuple[SourceText, int]:
     text = source.text
-    pieces: list[Traced] = []
+    pieces: list[SourceText] = []
     i = start + 1
     while True:
         close = text.find('"', i)

@@ -2,8 +2,8 @@
 
 from typing import Final
 
-from service.grids.grid import Format, Grid, GridError
-from service.grids.source_text import Traced
+from service.grids.grid import Grid, GridError, GridFormat
+from service.grids.source_text import SourceText
 
 _PIECES: Final = frozenset("⎡⎢⎣⎤⎥⎦⎛⎜⎝⎞⎟⎠⎧⎨⎩⎫⎬⎭")
 
@@ -12,7 +12,7 @@ def _matches(text: str) -> bool:
     return not _PIECES.isdisjoint(text)
 
 
-def _parse(source: Traced) -> Grid:
+def _parse(source: SourceText) -> Grid:
     at = next(i for i, letter in enumerate(source.text) if letter in _PIECES)
     raise GridError(
         "drawn_matrix",
@@ -22,4 +22,4 @@ def _parse(source: Traced) -> Grid:
     )
 
 
-FORMAT: Final = Format("drawing", _matches, _parse)
+FORMAT: Final = GridFormat("drawing", _matches, _parse)

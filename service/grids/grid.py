@@ -3,25 +3,16 @@
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from service.expressions.errors import Note, Span
+from service.expressions.errors import Note, Span, TextError
 from service.grids.limits import GRID_LIMITS
-from service.grids.source_text import Traced
+from service.grids.source_text import SourceText
 
-Cell = Traced
-Rows = Sequence[Sequence[Cell]]
+GridCell = SourceText
+Rows = Sequence[Sequence[GridCell]]
 
 
-class GridError(Exception):
-    """A text that is no grid. ``span`` is [from, to) in the text as pasted; ``code`` is stable."""
-
-    def __init__(self, code: str, message: str, span: Span) -> None:
-        super().__init__(code, message, span)
-        self.code = code
-        self.message = message
-        self.span = span
-
-    def __str__(self) -> str:
-        return self.message
+class GridError(TextError):
+    """A text that is no table or matrix, or more than one. ``span`` is in the text as pasted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +20,7 @@ class Grid:
     """Rows of cells, not always equally long. ``format`` is what the text was taken for."""
 
     format: str
-    rows: tuple[tuple[Cell, ...], ...]
+    rows: tuple[tuple[GridCell, ...], ...]
     notes: tuple[Note, ...] = ()
 
     @property
@@ -41,7 +32,7 @@ class Grid:
 
 
 @dataclass(frozen=True, slots=True)
-class Format:
+class GridFormat:
     """One way to write a grid.
 
     ``matches`` tells at a glance whether a text means to be written so, and raises nothing;
@@ -50,7 +41,7 @@ class Format:
 
     name: str
     matches: Callable[[str], bool]
-    parse: Callable[[Traced], Grid]
+    parse: Callable[[SourceText], Grid]
 
 
 def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid:
@@ -79,7 +70,7 @@ def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid
     return Grid(name, tuple(map(tuple, filled)), tuple(notes))
 
 
-def tidy(cell: Cell) -> Cell:
+def tidy(cell: GridCell) -> GridCell:
     """The cell without blanks around it and without the marks that only style it: $…$, `…`."""
     cell = cell.strip()
     for mark in ("`", "**"):
@@ -89,13 +80,13 @@ def tidy(cell: Cell) -> Cell:
                 cell = inner.strip()
     if "$" in cell.text and cell.text.count("$") % 2 == 0 and "\\$" not in cell.text:
         # A blank in its place keeps $a$$b$ from becoming one name.
-        cell = Traced(cell.text.replace("$", " "), cell.starts, cell.ends, cell.at).strip()
+        cell = SourceText(cell.text.replace("$", " "), cell.starts, cell.ends, cell.at).strip()
     if cell.text.startswith("\\(") and cell.text.endswith("\\)"):
         cell = cell.cut(2, len(cell.text) - 2).strip()
     return cell
 
 
-def _without_empty_columns(rows: list[list[Cell]]) -> list[list[Cell]]:
+def _without_empty_columns(rows: list[list[GridCell]]) -> list[list[GridCell]]:
     """The rows without cells at the right, and a column at the left, that are empty throughout."""
     while all(row and not row[-1].text for row in rows if len(row) == max(map(len, rows))):
         widest = max(map(len, rows))

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from html import unescape
 from typing import Final
 
-from service.grids.grid import Format, Grid, GridError, grid
-from service.grids.source_text import Traced, joined
+from service.grids.grid import Grid, GridError, GridFormat, grid
+from service.grids.source_text import SourceText, joined
 
 _START: Final = re.compile(r"<(?:table|tbody|thead|tr)(?![A-Za-z0-9-])", re.IGNORECASE)
 _NAME: Final = re.compile(r"</?([A-Za-z][A-Za-z0-9-]{0,30})")
@@ -35,8 +35,8 @@ _DEGREE_SIGNS: Final = frozenset({"o", "O", "0", "°", "º", "∘", "˚"})
 class _Table:
     """What has been read of the table so far."""
 
-    rows: list[list[Traced]] = field(default_factory=list)
-    pieces: list[Traced] = field(default_factory=list)
+    rows: list[list[SourceText]] = field(default_factory=list)
+    pieces: list[SourceText] = field(default_factory=list)
     cell_at: int | None = None
     tables: int = 0
     depth: int = 0
@@ -48,7 +48,7 @@ def _matches(text: str) -> bool:
     return _START.search(text) is not None
 
 
-def _parse(source: Traced) -> Grid:
+def _parse(source: SourceText) -> Grid:
     text = source.text
     table = _Table()
     i = 0
@@ -65,7 +65,7 @@ def _parse(source: Traced) -> Grid:
     return grid("HTML", table.rows, source.whole)
 
 
-def _behind_tag(source: Traced, start: int) -> int:
+def _behind_tag(source: SourceText, start: int) -> int:
     """The place behind a tag's >, those in quoted attributes left aside."""
     text = source.text
     i = start
@@ -82,7 +82,7 @@ def _behind_tag(source: Traced, start: int) -> int:
     )
 
 
-def _tag(source: Traced, table: _Table, tag: re.Match[str], end: int) -> int:
+def _tag(source: SourceText, table: _Table, tag: re.Match[str], end: int) -> int:
     """Take in one tag; return where to go on."""
     name, start = tag[1].lower(), tag.start()
     closes = source.text[start + 1] == "/"
@@ -113,7 +113,7 @@ def _tag(source: Traced, table: _Table, tag: re.Match[str], end: int) -> int:
     return end
 
 
-def _behind_element(source: Traced, name: str, start: int) -> int:
+def _behind_element(source: SourceText, name: str, start: int) -> int:
     close = re.compile(rf"</{name}\s{{0,8}}>", re.IGNORECASE).search(source.text, start)
     return close.end() if close else len(source.text)
 
@@ -131,7 +131,7 @@ def _table_tag(table: _Table, place: tuple[int, int], *, closes: bool) -> None:
         raise GridError("two_tables", "There are two tables here; paste one of them.", place)
 
 
-def _refuse_span(source: Traced, start: int, end: int) -> None:
+def _refuse_span(source: SourceText, start: int, end: int) -> None:
     for span in _SPAN.finditer(source.text, start, end):
         if span[1] != "1":
             raise GridError(
@@ -142,7 +142,7 @@ def _refuse_span(source: Traced, start: int, end: int) -> None:
             )
 
 
-def _raise_or_lower(source: Traced, table: _Table, name: str, start: int, end: int) -> None:
+def _raise_or_lower(source: SourceText, table: _Table, name: str, start: int, end: int) -> None:
     if name:
         table.raised, table.raised_from = name, len(table.pieces)
         return
@@ -164,7 +164,7 @@ def _raise_or_lower(source: Traced, table: _Table, name: str, start: int, end: i
     table.raised = ""
 
 
-def _text(source: Traced, table: _Table, start: int) -> int:
+def _text(source: SourceText, table: _Table, start: int) -> int:
     """Take in text up to the next tag or entity, or one entity; return where to go on."""
     text = source.text
     if entity := _ENTITY.match(text, start):
@@ -179,10 +179,10 @@ def _text(source: Traced, table: _Table, start: int) -> int:
     return end
 
 
-def _end_cell(source: Traced, table: _Table) -> None:
+def _end_cell(source: SourceText, table: _Table) -> None:
     if table.cell_at is not None:
         table.rows[-1].append(joined(table.pieces, source.span(table.cell_at)[0]))
     table.pieces, table.cell_at, table.raised = [], None, ""
 
 
-FORMAT: Final = Format("HTML", _matches, _parse)
+FORMAT: Final = GridFormat("HTML", _matches, _parse)

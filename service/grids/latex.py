@@ -3,9 +3,9 @@ r"""LaTeX: tabular, array, bmatrix and their kin, or their rows alone (``a & b \
 import re
 from typing import Final
 
-from service.grids.grid import Format, Grid, GridError, grid
+from service.grids.grid import Grid, GridError, GridFormat, grid
 from service.grids.program_text import text_around
-from service.grids.source_text import Traced, joined
+from service.grids.source_text import SourceText, joined
 
 # How many {…} stand behind \begin{…}.
 _ARGUMENTS: Final = {
@@ -48,7 +48,7 @@ def _matches(text: str) -> bool:
     return "\\\\" in text and "&" in text
 
 
-def _parse(source: Traced) -> Grid:
+def _parse(source: SourceText) -> Grid:
     source = _without_comments(source)
     body = _body(source)
     rows = _rows(body)
@@ -57,9 +57,9 @@ def _parse(source: Traced) -> Grid:
     return grid("LaTeX", rows, source.whole)
 
 
-def _without_comments(source: Traced) -> Traced:
+def _without_comments(source: SourceText) -> SourceText:
     text = source.text
-    pieces: list[Traced] = []
+    pieces: list[SourceText] = []
     start = i = 0
     while i < len(text):
         if text[i] == "\\":
@@ -73,7 +73,7 @@ def _without_comments(source: Traced) -> Traced:
     return joined([*pieces, source.cut(start, len(text))], source.whole[0])
 
 
-def _body(source: Traced) -> Traced:
+def _body(source: SourceText) -> SourceText:
     """What stands inside the environment; the whole text where only its rows were pasted."""
     text = source.text
     marks = [mark for mark in _BEGIN.finditer(text) if mark[2] in _ARGUMENTS]
@@ -100,19 +100,19 @@ def _body(source: Traced) -> Traced:
     return source.cut(_behind_arguments(source, first), last.start())
 
 
-def _not_a_matrix(source: Traced, mark: re.Match[str]) -> GridError:
+def _not_a_matrix(source: SourceText, mark: re.Match[str]) -> GridError:
     message = "This is a determinant or another form that is no plain matrix; use bmatrix."
     return GridError("not_a_matrix", message, source.span(*mark.span()))
 
 
-def _check_in_front(front: Traced) -> None:
+def _check_in_front(front: SourceText) -> None:
     """Raise GridError for a factor before the matrix. The left side of an equation is its name."""
     if _behind_wrappers(front.text) == len(front.text):
         return
     _check_wrapper(front.cut(front.text.rfind("=") + 1, len(front.text)))
 
 
-def _check_wrapper(around: Traced) -> None:
+def _check_wrapper(around: SourceText) -> None:
     """Raise GridError where there is more around the matrix than what sets it on the page."""
     end = _behind_wrappers(around.text)
     if end < len(around.text):
@@ -129,7 +129,7 @@ def _behind_wrappers(text: str) -> int:
     return at
 
 
-def _behind_arguments(source: Traced, begin: re.Match[str]) -> int:
+def _behind_arguments(source: SourceText, begin: re.Match[str]) -> int:
     text, at = source.text, begin.end()
     wanted = _ARGUMENTS[begin[2]]
     optional = wanted > 0 or begin[2].endswith("*")
@@ -145,7 +145,7 @@ def _behind_arguments(source: Traced, begin: re.Match[str]) -> int:
             return at
 
 
-def _behind_brace(source: Traced, start: int) -> int:
+def _behind_brace(source: SourceText, start: int) -> int:
     depth = 0
     for i in range(start, len(source.text)):
         depth += {"{": 1, "}": -1}.get(source.text[i], 0)
@@ -154,11 +154,11 @@ def _behind_brace(source: Traced, start: int) -> int:
     raise GridError("unbalanced_bracket", "This { is never closed.", source.span(start, start + 1))
 
 
-def _rows(body: Traced) -> list[list[Traced]]:
+def _rows(body: SourceText) -> list[list[SourceText]]:
     r"""The cells between & of the rows between \\; those in braces are left alone."""
     text = body.text
-    rows: list[list[Traced]] = [[]]
-    pieces: list[Traced] = []
+    rows: list[list[SourceText]] = [[]]
+    pieces: list[SourceText] = []
     start = i = depth = 0
 
     def end_cell(end: int) -> None:
@@ -192,10 +192,10 @@ def _rows(body: Traced) -> list[list[Traced]]:
     return rows
 
 
-def _without_sizes(cell: Traced) -> Traced:
+def _without_sizes(cell: SourceText) -> SourceText:
     if "\\" not in cell.text:
         return cell
-    pieces: list[Traced] = []
+    pieces: list[SourceText] = []
     start = 0
     for size in _SIZES.finditer(cell.text):
         pieces.append(cell.cut(start, size.start()))
@@ -203,4 +203,4 @@ def _without_sizes(cell: Traced) -> Traced:
     return joined([*pieces, cell.cut(start, len(cell.text))], cell.at) if pieces else cell
 
 
-FORMAT: Final = Format("LaTeX", _matches, _parse)
+FORMAT: Final = GridFormat("LaTeX", _matches, _parse)

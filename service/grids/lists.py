@@ -7,22 +7,22 @@ from service.grids.blanks import split_blanks
 from service.grids.grid import GridError
 from service.grids.limits import GRID_LIMITS
 from service.grids.pairs import CLOSES, split, strict_pairs
-from service.grids.program_text import Snippet
-from service.grids.source_text import Traced, joined
+from service.grids.program_text import WrittenMatrix
+from service.grids.source_text import SourceText, joined
 
 _BETWEEN: Final = " \t\r\n,;"
 _ESCAPE: Final = re.compile(r"\\(?:u([0-9A-Fa-f]{4})|([\\\"'/]))")
 _COLUMN_MAKERS: Final = frozenset({"Matrix", "ImmutableMatrix", "MutableDenseMatrix"})
 
 
-def lines_of(content: Traced) -> list[Traced] | None:
+def lines_of(content: SourceText) -> list[SourceText] | None:
     """The contents of the brackets in ``content``, or None where it is no list of lists.
 
     Raises GridError for unbalanced brackets, and more of them than a grid has rows.
     """
     ends = strict_pairs(content)
     text = content.text
-    lines: list[Traced] = []
+    lines: list[SourceText] = []
     i = 0
     while i < len(text):
         if text[i] in CLOSES:
@@ -42,7 +42,7 @@ def lines_of(content: Traced) -> list[Traced] | None:
     return lines or None
 
 
-def rows(lines: list[Traced]) -> list[list[Traced]]:
+def rows(lines: list[SourceText]) -> list[list[SourceText]]:
     """The values of each line: between commas, or between blanks where it has no comma.
 
     Raises GridError for a list of matrices.
@@ -59,16 +59,16 @@ def rows(lines: list[Traced]) -> list[list[Traced]]:
     return found
 
 
-def flat(content: Traced, snippet: Snippet) -> list[list[Traced]]:
+def flat(content: SourceText, written: WrittenMatrix) -> list[list[SourceText]]:
     """One list given to a function: cut into rows where a shape is named.
 
     SymPy makes a column of a plain list, NumPy a row. Raises GridError where the shape does not
     fit.
     """
     values = _values(content)
-    if snippet.shape is None:
-        return [[value] for value in values] if snippet.maker in _COLUMN_MAKERS else [values]
-    height, width = snippet.shape
+    if written.shape is None:
+        return [[value] for value in values] if written.maker in _COLUMN_MAKERS else [values]
+    height, width = written.shape
     if height * width != len(values):
         raise GridError(
             "wrong_count",
@@ -78,7 +78,7 @@ def flat(content: Traced, snippet: Snippet) -> list[list[Traced]]:
     return [values[i * width : (i + 1) * width] for i in range(height)]
 
 
-def _values(line: Traced) -> list[Traced]:
+def _values(line: SourceText) -> list[SourceText]:
     pieces = split(line, ",", strict_pairs(line))
     if len(pieces) == 1:
         # NumPy prints its arrays with blanks.
@@ -88,7 +88,7 @@ def _values(line: Traced) -> list[Traced]:
     return pieces
 
 
-def unquoted(cell: Traced) -> Traced:
+def unquoted(cell: SourceText) -> SourceText:
     r"""The cell without the quotation marks of a string and the escapes in it.
 
     Only escapes that cannot be the beginning of a LaTeX command are: "\theta" stays \theta, though
@@ -98,7 +98,7 @@ def unquoted(cell: Traced) -> Traced:
     if quote not in {"'", '"'} or len(cell.text) < 2 or not cell.text.endswith(quote):
         return cell
     inner = cell.cut(1, len(cell.text) - 1)
-    pieces: list[Traced] = []
+    pieces: list[SourceText] = []
     start = 0
     for escape in _ESCAPE.finditer(inner.text):
         pieces.append(inner.cut(start, escape.start()))

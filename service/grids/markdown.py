@@ -3,8 +3,8 @@
 import re
 from typing import Final
 
-from service.grids.grid import Format, Grid, GridError, grid
-from service.grids.source_text import Traced
+from service.grids.grid import Grid, GridError, GridFormat, grid
+from service.grids.source_text import SourceText
 
 _BARS: Final = "|│┃║"
 _BAR: Final = re.compile(rf"[{_BARS}]")
@@ -17,9 +17,9 @@ def _matches(text: str) -> bool:
     return len(barred) > 1 or sum(text.count(bar) for bar in _BARS) > 2
 
 
-def _parse(source: Traced) -> Grid:
+def _parse(source: SourceText) -> Grid:
     rows = []
-    for line in map(Traced.strip, source.lines()):
+    for line in map(SourceText.strip, source.lines()):
         if not line.text or _is_rule(line.text):
             continue
         cells = _cells(line)
@@ -37,10 +37,10 @@ def _is_rule(line: str) -> bool:
     return _RULE.fullmatch(line) is not None and any(c in "-=_─━═" for c in line)
 
 
-def _cells(line: Traced) -> list[Traced]:
+def _cells(line: SourceText) -> list[SourceText]:
     r"""The cells of a line; \| is a bar inside one."""
     text = line.text
-    pieces: list[Traced] = []
+    pieces: list[SourceText] = []
     start = 0
     for bar in _BAR.finditer(text):
         if text[bar.start() - 1 : bar.start()] == "\\":
@@ -55,4 +55,4 @@ def _cells(line: Traced) -> list[Traced]:
     return pieces
 
 
-FORMAT: Final = Format("Markdown", _matches, _parse)
+FORMAT: Final = GridFormat("Markdown", _matches, _parse)

@@ -4,10 +4,10 @@ from service.expressions.errors import Note
 from service.grids.blanks import split_blanks
 from service.grids.grid import GridError
 from service.grids.pairs import split, strict_pairs
-from service.grids.source_text import Traced
+from service.grids.source_text import SourceText
 
 
-def rows(content: Traced) -> tuple[list[list[Traced]], tuple[Note, ...]]:
+def rows(content: SourceText) -> tuple[list[list[SourceText]], tuple[Note, ...]]:
     """The values of each row, and what was understood where two readings are possible.
 
     Raises GridError where commas and blanks separate values and either reading makes a matrix.
@@ -33,11 +33,13 @@ def rows(content: Traced) -> tuple[list[list[Traced]], tuple[Note, ...]]:
     return by_commas, (Note("commas_separate", message, content.whole),)
 
 
-def _by_blanks(by_commas: list[list[Traced]]) -> tuple[list[list[Traced]], list[Traced]]:
-    found: list[list[Traced]] = []
-    signs: list[Traced] = []
+def _by_blanks(
+    by_commas: list[list[SourceText]],
+) -> tuple[list[list[SourceText]], list[SourceText]]:
+    found: list[list[SourceText]] = []
+    signs: list[SourceText] = []
     for row in by_commas:
-        elements: list[Traced] = []
+        elements: list[SourceText] = []
         for piece in row:
             blanked = split_blanks(piece)
             elements += blanked.elements or (piece,)
@@ -46,15 +48,15 @@ def _by_blanks(by_commas: list[list[Traced]]) -> tuple[list[list[Traced]], list[
     return found, signs
 
 
-def _without_last_empty(row: list[Traced]) -> list[Traced]:
+def _without_last_empty(row: list[SourceText]) -> list[SourceText]:
     return row[:-1] if len(row) > 1 and not row[-1].text.strip() else row
 
 
-def _is_rectangle(found: list[list[Traced]]) -> bool:
+def _is_rectangle(found: list[list[SourceText]]) -> bool:
     return len({len(row) for row in found}) == 1
 
 
-def _sign_notes(signs: list[Traced]) -> tuple[Note, ...]:
+def _sign_notes(signs: list[SourceText]) -> tuple[Note, ...]:
     if not signs:
         return ()
     sign = signs[0]
@@ -65,7 +67,7 @@ def _sign_notes(signs: list[Traced]) -> tuple[Note, ...]:
     return (Note("blank_before_sign", message, sign.whole),)
 
 
-def _ambiguous(by_commas: list[list[Traced]], by_blanks: list[list[Traced]]) -> GridError:
+def _ambiguous(by_commas: list[list[SourceText]], by_blanks: list[list[SourceText]]) -> GridError:
     at = next(i for i, row in enumerate(by_commas) if len(row) != len(by_blanks[i]))
     few, many = by_commas[at], by_blanks[at]
     return GridError(

@@ -3,8 +3,8 @@
 from typing import Final
 
 from service.grids import matlab
-from service.grids.grid import Format, Grid, grid
-from service.grids.source_text import Traced
+from service.grids.grid import Grid, GridFormat, grid
+from service.grids.source_text import SourceText
 
 
 def _matches(text: str) -> bool:
@@ -13,9 +13,9 @@ def _matches(text: str) -> bool:
     return len(lines) > 1 and not inside and all(line.endswith(";") for line in lines[:-1])
 
 
-def _parse(source: Traced) -> Grid:
+def _parse(source: SourceText) -> Grid:
     rows, notes = matlab.rows(source)
     return grid("rows with semicolons", rows, source.whole, notes)
 
 
-FORMAT: Final = Format("rows with semicolons", _matches, _parse)
+FORMAT: Final = GridFormat("rows with semicolons", _matches, _parse)

@@ -4,7 +4,7 @@ import re
 from typing import Final
 
 from service.grids.grid import GridError
-from service.grids.source_text import Traced
+from service.grids.source_text import SourceText
 
 CLOSES: Final = {"[": "]", "(": ")", "{": "}"}
 _OPENS: Final = {closer: opener for opener, closer in CLOSES.items()}
@@ -31,7 +31,7 @@ def pairs(text: str) -> dict[int, int]:
     return found
 
 
-def strict_pairs(source: Traced) -> dict[int, int]:
+def strict_pairs(source: SourceText) -> dict[int, int]:
     """Where each bracket and each quoted string of program text ends: start -> end, exclusive.
 
     Raises GridError for a bracket without its partner and a string that does not end.
@@ -62,7 +62,7 @@ def strict_pairs(source: Traced) -> dict[int, int]:
     return found
 
 
-def _unbalanced(source: Traced, at: int, stack: list[int]) -> GridError:
+def _unbalanced(source: SourceText, at: int, stack: list[int]) -> GridError:
     bracket = source.text[at]
     if bracket in CLOSES:
         message = f"This {bracket} is never closed; {CLOSES[bracket]} is missing."
@@ -77,13 +77,15 @@ def _unbalanced(source: Traced, at: int, stack: list[int]) -> GridError:
     return GridError("unbalanced_bracket", message, source.span(at, at + 1))
 
 
-def split(source: Traced, separators: str, ends: dict[int, int], offset: int = 0) -> list[Traced]:
+def split(
+    source: SourceText, separators: str, ends: dict[int, int], offset: int = 0
+) -> list[SourceText]:
     """The pieces between ``separators``, leaving alone what stands in brackets or quotes.
 
     ``ends`` may be that of a longer text in which ``source`` begins at ``offset``.
     """
     text = source.text
-    pieces: list[Traced] = []
+    pieces: list[SourceText] = []
     start = i = 0
     while i < len(text):
         if i + offset in ends:

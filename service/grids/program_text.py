@@ -7,7 +7,7 @@ from typing import Final
 from service.grids.grid import GridError
 from service.grids.limits import GRID_LIMITS
 from service.grids.pairs import CLOSES, split, strict_pairs
-from service.grids.source_text import Traced, joined
+from service.grids.source_text import SourceText, joined
 
 # What makes a matrix of its argument and changes nothing in it.
 MAKERS: Final = frozenset(
@@ -29,7 +29,7 @@ _TAIL: Final = " \t\r\n;,."
 
 
 @dataclass(frozen=True, slots=True)
-class Snippet:
+class WrittenMatrix:
     """What stands in the brackets of a matrix, and how it came there.
 
     ``groups`` are the contents of the outermost brackets, one in most texts and several where each
@@ -37,7 +37,7 @@ class Snippet:
     columns that it names.
     """
 
-    groups: tuple[Traced, ...]
+    groups: tuple[SourceText, ...]
     maker: str = ""
     shape: tuple[int, int] | None = None
 
@@ -51,13 +51,13 @@ class _Head:
     inside: int = 0
 
 
-def looks_like_a_snippet(text: str) -> bool:
+def begins_as_matrix(text: str) -> bool:
     """Whether the text begins as a matrix in brackets does, after what may stand in front."""
-    plain = _without_remarks(Traced.of(text)).text
+    plain = _without_remarks(SourceText.of(text)).text
     return _head(plain) is not None
 
 
-def unwrap(source: Traced, calls: int = 3) -> Snippet:
+def unwrap(source: SourceText, calls: int = 3) -> WrittenMatrix:
     """The brackets' contents, at most ``calls`` calls deep.
 
     Raises GridError where the brackets are unbalanced, or are not all of the text.
@@ -70,13 +70,13 @@ def unwrap(source: Traced, calls: int = 3) -> Snippet:
     if head.call:
         return _unwrap_call(source, head, calls)
     ends = strict_pairs(source)
-    return Snippet(tuple(_groups(source, ends)))
+    return WrittenMatrix(tuple(_groups(source, ends)))
 
 
-def _without_remarks(source: Traced) -> Traced:
+def _without_remarks(source: SourceText) -> SourceText:
     """The text with comments and line continuations taken out, those in strings left alone."""
     text = source.text
-    pieces: list[Traced] = []
+    pieces: list[SourceText] = []
     start = i = 0
     quote = ""
     while i < len(text):
@@ -89,7 +89,7 @@ def _without_remarks(source: Traced) -> Traced:
         elif letter in "'\"" and (i == 0 or not (text[i - 1].isalnum() or text[i - 1] in ")]}.'")):
             quote = letter
         elif letter in ".%#" and (remark := _REMARK.match(text, i)):
-            blank = Traced(" ", [source.starts[i]], [source.ends[i]])
+            blank = SourceText(" ", [source.starts[i]], [source.ends[i]])
             pieces += [source.cut(start, i), blank]
             start = i = remark.end()
             continue
@@ -129,9 +129,9 @@ def _ends_the_text(text: str, start: int) -> bool:
     return False
 
 
-def _groups(source: Traced, ends: dict[int, int]) -> list[Traced]:
+def _groups(source: SourceText, ends: dict[int, int]) -> list[SourceText]:
     """The contents of the brackets that follow each other. Raises GridError for anything else."""
-    groups: list[Traced] = []
+    groups: list[SourceText] = []
     i = 0
     while i < len(source.text):
         if source.text[i] in CLOSES:
@@ -147,7 +147,7 @@ def _groups(source: Traced, ends: dict[int, int]) -> list[Traced]:
     return groups
 
 
-def _unwrap_call(source: Traced, head: _Head, calls: int) -> Snippet:
+def _unwrap_call(source: SourceText, head: _Head, calls: int) -> WrittenMatrix:
     call, inside = head.call, head.inside - head.start
     name = call.rpartition(".")[2]
     if name not in MAKERS or not calls:
@@ -173,17 +173,17 @@ def _unwrap_call(source: Traced, head: _Head, calls: int) -> Snippet:
         arguments = arguments[2:]
     if len(arguments) == 1 and _CALL.match(arguments[0].text):
         return unwrap(arguments[0], calls - 1)
-    groups: list[Traced] = []
+    groups: list[SourceText] = []
     for argument in arguments:
         groups += _groups(argument, strict_pairs(argument))
-    return Snippet(tuple(groups), name, shape)
+    return WrittenMatrix(tuple(groups), name, shape)
 
 
 def _is_small(text: str) -> bool:
     return text.isascii() and text.isdigit() and len(text) < 3
 
 
-def text_around(piece: Traced) -> GridError:
+def text_around(piece: SourceText) -> GridError:
     """Something in front of or behind the matrix that may change what it is."""
     piece = piece.strip()
     first = piece.text.split("\n", 1)[0][:30]

@@ -2,32 +2,34 @@
 
 from typing import Final
 
-from service.grids.bracketed import FORMAT as BRACKETED
-from service.grids.columns import FORMAT as COLUMNS
-from service.grids.csv import FORMAT as CSV
-from service.grids.drawn_matrix import FORMAT as PRETTY
-from service.grids.grid import Format, Grid, GridError
-from service.grids.html import FORMAT as HTML
-from service.grids.latex import FORMAT as LATEX
+from service.grids import (
+    bracketed,
+    columns,
+    csv,
+    drawn_matrix,
+    html,
+    latex,
+    markdown,
+    matlab_rows,
+    semicolons,
+    tsv,
+)
+from service.grids.grid import Grid, GridError, GridFormat
 from service.grids.limits import GRID_LIMITS
-from service.grids.markdown import FORMAT as MARKDOWN
-from service.grids.matlab_rows import FORMAT as BARE
-from service.grids.semicolons import FORMAT as SEMICOLONS
-from service.grids.source_text import Traced
-from service.grids.tsv import FORMAT as TSV
+from service.grids.source_text import SourceText
 
 # The surest sign comes first: a tag, a command, a bracket; then separators, blanks last of all.
-FORMATS: Final[tuple[Format, ...]] = (
-    HTML,
-    LATEX,
-    PRETTY,
-    BRACKETED,
-    MARKDOWN,
-    BARE,
-    TSV,
-    SEMICOLONS,
-    CSV,
-    COLUMNS,
+FORMATS: Final[tuple[GridFormat, ...]] = (
+    html.FORMAT,
+    latex.FORMAT,
+    drawn_matrix.FORMAT,
+    bracketed.FORMAT,
+    markdown.FORMAT,
+    matlab_rows.FORMAT,
+    tsv.FORMAT,
+    semicolons.FORMAT,
+    csv.FORMAT,
+    columns.FORMAT,
 )
 
 _SEPARATORS: Final = (*",;&|│┃║\t\n\r\x85\u2028\u2029", "<t", "<T", "\\\\")
@@ -44,7 +46,7 @@ def read_grid(text: str) -> Grid:
             f"This has {len(text)} characters; a pasted text may have {GRID_LIMITS.characters}.",
             (GRID_LIMITS.characters, len(text)),
         )
-    source = Traced.of(text).strip("\ufeff")
+    source = SourceText.of(text).strip("\ufeff")
     if not source.text.strip():
         raise GridError("empty", "Nothing is written here.", (0, len(text)))
     if sum(map(text.count, _SEPARATORS)) > GRID_LIMITS.separators:

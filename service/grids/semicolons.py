@@ -6,16 +6,16 @@ A decimal comma in a cell is left standing: whoever reads the cell names it.
 from typing import Final
 
 from service.grids.delimited import split_cells
-from service.grids.grid import Format, Grid, GridError, grid
+from service.grids.grid import Grid, GridError, GridFormat, grid
 from service.grids.pairs import pairs
-from service.grids.source_text import Traced
+from service.grids.source_text import SourceText
 
 
 def _matches(text: str) -> bool:
     return ";" in text
 
 
-def _parse(source: Traced) -> Grid:
+def _parse(source: SourceText) -> Grid:
     rows = split_cells(source, ";", brackets=False)
     filled = [row for row in rows if any(cell.text.strip() for cell in row)]
     if len(filled) == 1 and any(_holds_several(cell.text.strip()) for cell in filled[0]):
@@ -39,4 +39,4 @@ def _holds_several(cell: str) -> bool:
     return False
 
 
-FORMAT: Final = Format("CSV with semicolons", _matches, _parse)
+FORMAT: Final = GridFormat("CSV with semicolons", _matches, _parse)

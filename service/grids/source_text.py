@@ -11,7 +11,7 @@ _LINE_END: Final = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
 
 
 @dataclass(frozen=True, slots=True)
-class Traced:
+class SourceText:
     """``text``, and for each of its characters the [start, end) of what was typed for it.
 
     ``at`` is where the piece stands if it is empty.
@@ -23,13 +23,13 @@ class Traced:
     at: int = 0
 
     @staticmethod
-    def of(source: str) -> "Traced":
+    def of(source: str) -> "SourceText":
         """The whole of what was typed."""
-        return Traced(source, range(len(source)), range(1, len(source) + 1))
+        return SourceText(source, range(len(source)), range(1, len(source) + 1))
 
-    def cut(self, start: int, end: int) -> "Traced":
+    def cut(self, start: int, end: int) -> "SourceText":
         """The characters [start, end)."""
-        return Traced(
+        return SourceText(
             self.text[start:end], self.starts[start:end], self.ends[start:end], self.span(start)[0]
         )
 
@@ -50,12 +50,12 @@ class Traced:
         """The place in the text as typed of the whole piece."""
         return self.span(0, len(self.text))
 
-    def strip(self, letters: str | None = None) -> "Traced":
+    def strip(self, letters: str | None = None) -> "SourceText":
         """The piece without blanks (or ``letters``) at either end."""
         left = len(self.text) - len(self.text.lstrip(letters))
         return self.cut(left, max(left, len(self.text.rstrip(letters))))
 
-    def lines(self) -> list["Traced"]:
+    def lines(self) -> list["SourceText"]:
         """The lines, without what ends them."""
         found, start = [], 0
         for end in _LINE_END.finditer(self.text):
@@ -63,16 +63,16 @@ class Traced:
             start = end.end()
         return [*found, self.cut(start, len(self.text))]
 
-    def spelled(self, text: str) -> "Traced":
+    def spelled(self, text: str) -> "SourceText":
         """``text`` in place of the whole piece."""
         start, end = self.whole
-        return Traced(text, (start,) * len(text), (end,) * len(text), start)
+        return SourceText(text, (start,) * len(text), (end,) * len(text), start)
 
 
-def joined(pieces: Iterable[Traced], at: int) -> Traced:
+def joined(pieces: Iterable[SourceText], at: int) -> SourceText:
     """The pieces one after the other; ``at`` is where the result stands if it is empty."""
     kept = [piece for piece in pieces if piece.text]
-    return Traced(
+    return SourceText(
         "".join(piece.text for piece in kept),
         [start for piece in kept for start in piece.starts],
         [end for piece in kept for end in piece.ends],

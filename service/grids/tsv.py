@@ -4,8 +4,8 @@ import re
 from typing import Final
 
 from service.grids.delimited import split_cells
-from service.grids.grid import Format, Grid, grid
-from service.grids.source_text import Traced
+from service.grids.grid import Grid, GridFormat, grid
+from service.grids.source_text import SourceText
 
 # A tab behind a comma or at the beginning of every line only lays the text out.
 _TAB: Final = re.compile(r"[^\s,;][^\S\n\t]*\t")
@@ -15,8 +15,8 @@ def _matches(text: str) -> bool:
     return _TAB.search(text) is not None
 
 
-def _parse(source: Traced) -> Grid:
+def _parse(source: SourceText) -> Grid:
     return grid("TSV", split_cells(source, "\t", brackets=False), source.whole)
 
 
-FORMAT: Final = Format("TSV", _matches, _parse)
+FORMAT: Final = GridFormat("TSV", _matches, _parse)

@@ -1,10 +1,11 @@
-"""What is still open about the base frame when it is the writer's own choice.
+"""The freedom that is left of a base frame of the student's choice, from row to row.
 
-Frame 0 may then be turned and slid along the axis of joint 1 (and moved anywhere, if that joint
-slides). The choice shows only where the chain first leaves that axis, so it is carried along the
-rows as a freedom and spent at the first row that depends on it.
+Where the base is free, frame 0 may be turned about the axis of joint 1 and slid along it (and moved
+anywhere, if that joint slides). The choice shows only where the chain first leaves that axis. So
+the search takes the freedom along from row to row, and uses it up at the first row that depends on
+it.
 
-Shapes: N continuations, L samples; rows are ``(N, 4, L)`` in the column order a, α, d, θ.
+Shapes: N rows that are tried, L samples; rows are ``(N, 4, L)`` in the column order a, α, d, θ.
 """
 
 from dataclasses import dataclass
@@ -12,17 +13,23 @@ from typing import Self
 
 import numpy as np
 
+from service.kinematics.candidate_rows import (
+    AxisRelation,
+    TargetKind,
+    axis_relations,
+    written_or,
+)
 from service.kinematics.chain import THETA, A, D
-from service.kinematics.fit import PARALLEL, Place, Position, positions
+from service.kinematics.tolerances import PARALLEL
 from service.kinematics.transforms import Matrices, Numbers
 
 
 @dataclass(frozen=True, slots=True)
 class BaseFreedom:
-    """The freedom left at a place, in the reference's frame there.
+    """How the student's frame may still be moved, in the reference's frame on the same axis.
 
-    ``turn`` says that the frame may be turned about z; ``slide`` ``(L, 3)`` is the direction that
-    it may be moved along, None for none; ``anywhere`` that it may be moved in all directions.
+    ``turn`` says that it may be turned about z, ``anywhere`` that it may be moved in all
+    directions; ``slide`` ``(L, 3)`` is the one direction that it may be moved along, None for none.
     """
 
     turn: bool = False
@@ -32,58 +39,62 @@ class BaseFreedom:
     @classmethod
     def on_first_axis(cls, prismatic: bool, samples: int) -> Self:
         """The freedom that a free base leaves on the axis of joint 1."""
-        along_z = np.broadcast_to(np.array([0.0, 0.0, 1.0]), (samples, 3))
-        return cls(turn=True, slide=None if prismatic else along_z, anywhere=prismatic)
+        return cls(turn=True, slide=None if prismatic else _along_z(samples), anywhere=prismatic)
 
     @property
-    def spent(self) -> bool:
+    def is_used_up(self) -> bool:
         """Whether nothing is left of it."""
         return not (self.turn or self.anywhere) and self.slide is None
 
-    def beyond(self, reference: Matrices, place: Place, length_scale: float) -> Self:
-        """The freedom left at the next place, ``reference`` ``(L, 4, 4)`` leading there."""
-        position = positions(reference[None], length_scale)[0]
-        same_line = position == Position.COINCIDENT
-        parallel = position != Position.SKEW
-        sliding = place is Place.PRISMATIC
-        turn = self.turn and (same_line or (parallel and (sliding or self.anywhere)))
-        rotation = np.swapaxes(reference[:, :3, :3], -1, -2)
+    def at_next(self, reference: Matrices, kind: TargetKind, length_scale: float) -> Self:
+        """The freedom left at the next target, where ``reference`` ``(L, 4, 4)`` leads."""
+        relation = axis_relations(reference[None], length_scale)[0]
+        parallel = relation != AxisRelation.SKEW
+        sliding = kind is TargetKind.PRISMATIC
+        turn = self.turn and (
+            relation == AxisRelation.COINCIDENT or (parallel and (sliding or self.anywhere))
+        )
         if self.anywhere:
-            along_z = np.broadcast_to(np.array([0.0, 0.0, 1.0]), rotation.shape[:2])
-            return type(self)(turn, None if sliding else along_z, anywhere=sliding)
+            return type(self)(turn, None if sliding else _along_z(len(reference)), anywhere=sliding)
         if self.slide is None:
             return type(self)(turn)
-        slide = (rotation @ self.slide[..., None])[..., 0]
+        slide = (np.swapaxes(reference[:, :3, :3], -1, -2) @ self.slide[..., None])[..., 0]
         still_along_z = np.abs(slide[:, :2]).max() < PARALLEL
         return type(self)(turn, slide if sliding or still_along_z else None)
 
-    def spend(self, rows: Numbers, shifted: Numbers, own: Numbers) -> list[tuple[Numbers, Numbers]]:
-        """Rows that use the freedom up, each with the way ``(N, L)`` along ``slide`` that it takes.
+    def use_up(
+        self, rows: Numbers, rows_beyond: Numbers, written: Numbers
+    ) -> list[tuple[Numbers, Numbers]]:
+        """Rows that use the freedom up, each with the distance ``(N, L)`` moved along ``slide``.
 
-        ``shifted`` is what ``rows`` would be one unit further along ``slide``: lengths depend on
-        the way linearly. The way is chosen so that the row comes to one length that was written.
+        ``rows_beyond`` is ``rows`` for a frame one unit further along ``slide``: lengths depend on
+        the distance linearly. It is chosen so that one length of the row is the ``written`` one.
         """
-        nothing = np.zeros(rows.shape[::2])
+        unmoved = np.zeros(rows.shape[::2])
         if self.anywhere:
             moved = rows.copy()
             for column in (A, D):
-                moved[:, column] = np.where(np.isnan(own[column]), rows[:, column], own[column])
-            return [(moved, nothing)]
+                moved[:, column] = written_or(written[column], rows[:, column])
+            return [(moved, unmoved)]
         if self.slide is None:
-            return [(rows, nothing)]
-        spent = []
+            return [(rows, unmoved)]
+        options = []
         for column in (A, D):
-            rate = shifted[:, column] - rows[:, column]
-            if np.abs(rate).min() < PARALLEL or np.isnan(own[column]).any():
+            rate = rows_beyond[:, column] - rows[:, column]
+            if np.abs(rate).min() < PARALLEL or np.isnan(written[column]).any():
                 continue
-            way = (own[column] - rows[:, column]) / rate
-            spent.append((rows + way[:, None] * (shifted - rows), way))
-        return spent or [(rows, nothing)]
+            distance = (written[column] - rows[:, column]) / rate
+            options.append((rows + distance[:, None] * (rows_beyond - rows), distance))
+        return options or [(rows, unmoved)]
 
-    def as_written(self, rows: Numbers, own: Numbers) -> Numbers:
-        """The rows with the angle that was written, where any angle would do."""
+    def with_written_angle(self, rows: Numbers, written: Numbers) -> Numbers:
+        """The rows with the θ that was written, where any angle would do."""
         if not self.turn:
             return rows
-        written = rows.copy()
-        written[:, THETA] = np.where(np.isnan(own[THETA]), rows[:, THETA], own[THETA])
-        return written
+        turned = rows.copy()
+        turned[:, THETA] = written_or(written[THETA], rows[:, THETA])
+        return turned
+
+
+def _along_z(samples: int) -> Numbers:
+    return np.broadcast_to(np.array([0.0, 0.0, 1.0]), (samples, 3))

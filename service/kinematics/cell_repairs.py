@@ -1,17 +1,18 @@
-"""The cells that a table would only need to have different: one of them, or two.
+"""Other values of one or two cells of a table that make its pose right.
 
 The pose is a product of factors, screws about x and z in turn (``factors``). If one factor alone is
-wrong, it has to be F = P⁻¹ T S⁻¹, where P is the product before it, S that behind it and T the true
-pose. If F is a screw of that factor's axis, its shift and its turn are what the two cells should
-be; where one of them is what was written, the other cell alone mends the table.
+wrong, it has to be F = P⁻¹ T S⁻¹, where P is the product before it, S that after it and T the true
+pose. If F is a screw about that factor's axis, its shift and its turn are what the two cells should
+be; where one of the two is as written, the other cell alone repairs the table.
 
 If one cell is wrong in each of two factors, A(x) M B(y) = N, where N = P⁻¹ T S⁻¹ as before and M is
-what stands between, the cells that are right included; A and B are a turn or a shift. A turn leaves
-a point and a direction of its axis as they are, a shift all directions. So what A must do to what B
-leaves alone gives x; what then remains is B, if it is of its kind at all.
+the product between the wrong cells, the right cells of the two factors included; A and B are a turn
+or a shift. A turn leaves the points and the direction of its axis unchanged, a shift leaves all
+directions unchanged. So the motion that takes what B leaves unchanged from M to N gives x; what
+then remains must be a B.
 
-Shapes: L samples, C candidates; a pose is ``(L, 4, 4)``; angles in radians. Lengths should
-be measured in one that suits the robot, so that one tolerance serves them and angles.
+Shapes: L samples, C pairs of cells; a pose is ``(L, 4, 4)``; angles in radians. Lengths should be
+measured in a unit that suits the robot, so that one tolerance serves them and angles.
 """
 
 from collections.abc import Iterator, Sequence
@@ -23,45 +24,44 @@ from numpy.typing import NDArray
 from service.kinematics.factors import (
     SHIFT,
     TURN,
-    Cell,
+    CellIndex,
     Factors,
     Integers,
     read_screws,
     screws,
 )
+from service.kinematics.tolerances import SAME_POSE
 from service.kinematics.transforms import Matrices, Numbers, inverse
-
-SAME = 1e-7
 
 
 @dataclass(frozen=True, slots=True)
-class Mend:
-    """Other values ``(k, L)`` for k cells, each a row and a column, that make the pose right.
+class CellRepair:
+    """Other values ``(k, L)`` for k cells that make the pose right.
 
-    Whether such a value may stand there (a constant, or the joint variable plus one) is not looked
-    into.
+    Whether such a value may stand in its cell (a constant, or the joint variable plus a constant)
+    is not examined here.
     """
 
-    cells: tuple[Cell, ...]
+    cells: tuple[CellIndex, ...]
     values: Numbers
 
 
-def one_factor_mends(factors: Factors, pose: Matrices) -> list[Mend]:
-    """The ways to mend one factor, by one of its cells or by both: the former come first."""
-    needed = inverse(factors.before[:-1]) @ pose @ inverse(factors.behind[1:])
-    sizes, missed = read_screws(needed, factors.axes)
+def one_factor_repairs(factors: Factors, pose: Matrices) -> list[CellRepair]:
+    """The repairs of one factor: first those by one of its cells, then those by both."""
+    needed = inverse(factors.before[:-1]) @ pose @ inverse(factors.after[1:])
+    sizes, error = read_screws(needed, factors.axes)
     changed = ~_equal(sizes, factors.sizes)
-    mends = []
-    for k in np.flatnonzero((missed.max(axis=-1) < SAME) & changed.any(axis=-1)).tolist():
+    repairs = []
+    for k in np.flatnonzero((error.max(axis=-1) < SAME_POSE) & changed.any(axis=-1)).tolist():
         kinds = np.flatnonzero(changed[k]).tolist()
-        mends.append(Mend(tuple(factors.cell(k, kind) for kind in kinds), sizes[k, kinds]))
-    return sorted(mends, key=lambda mend: len(mend.cells))
+        repairs.append(CellRepair(tuple(factors.cell(k, kind) for kind in kinds), sizes[k, kinds]))
+    return sorted(repairs, key=lambda repair: len(repair.cells))
 
 
-def two_factor_mends(factors: Factors, pose: Matrices) -> Iterator[Mend]:
-    """The ways to mend one cell in each of two factors.
+def two_factor_repairs(factors: Factors, pose: Matrices) -> Iterator[CellRepair]:
+    """The repairs of one cell in each of two factors.
 
-    Most pairs of cells fail in the first sample; the others are looked at in all of them.
+    Most pairs of cells fail in the first sample; only the others are solved in all samples.
     """
     pairs = _all_pairs(len(factors.axes))
     first = slice(0, 1)
@@ -71,70 +71,70 @@ def two_factor_mends(factors: Factors, pose: Matrices) -> Iterator[Mend]:
         return
     values, solved = _solved(factors, pose, pairs)
     for c in np.flatnonzero(solved).tolist():
-        one, other, kind, other_kind = pairs[:, c].tolist()
-        yield Mend((factors.cell(one, kind), factors.cell(other, other_kind)), values[:, c])
+        a, b, kind_a, kind_b = pairs[:, c].tolist()
+        yield CellRepair((factors.cell(a, kind_a), factors.cell(b, kind_b)), values[:, c])
 
 
-def mended(factors: Factors, pose: Matrices, cells: Sequence[Cell]) -> Numbers | None:
+def repaired_values(factors: Factors, pose: Matrices, cells: Sequence[CellIndex]) -> Numbers | None:
     """What these cells, one or two, must be for the pose to be right: ``(k, L)``, or None.
 
-    The same as the values of the Mend with these cells, at other samples.
+    It gives the values of the CellRepair with these cells at other samples.
     """
-    places = [factors.place(cell) for cell in cells]
-    (one, kind), (other, other_kind) = min(places), max(places)
-    if one != other:
-        values, solved = _solved(factors, pose, np.array([[one], [other], [kind], [other_kind]]))
-        values = values[:, 0] if places[0] == (one, kind) else values[::-1, 0]
+    positions = [factors.position(cell) for cell in cells]
+    (a, kind_a), (b, kind_b) = min(positions), max(positions)
+    if a != b:
+        values, solved = _solved(factors, pose, np.array([[a], [b], [kind_a], [kind_b]]))
+        values = values[:, 0] if positions[0] == (a, kind_a) else values[::-1, 0]
         return values if solved[0] else None
-    before, behind = factors.around(one)
-    needed = inverse(before) @ pose @ inverse(behind)
-    sizes, missed = read_screws(needed[None], factors.axes[one : one + 1])
-    if missed.max() >= SAME:
+    before, after = factors.around(a)
+    needed = inverse(before) @ pose @ inverse(after)
+    sizes, error = read_screws(needed[None], factors.axes[a : a + 1])
+    if error.max() >= SAME_POSE:
         return None
-    return sizes[0, [kind for _, kind in places]]
+    return sizes[0, [kind for _, kind in positions]]
 
 
 def _equal(sizes: Numbers, written: Numbers) -> NDArray[np.bool_]:
     """Which shifts and turns ``(K, 2, L)`` are as written: ``(K, 2)``."""
-    off = sizes - written
-    off[:, TURN] -= 2 * np.pi * np.round(off[:, TURN] / (2 * np.pi))
-    return np.asarray(np.abs(off).max(axis=-1) < SAME)
+    error = sizes - written
+    error[:, TURN] -= 2 * np.pi * np.round(error[:, TURN] / (2 * np.pi))
+    return np.asarray(np.abs(error).max(axis=-1) < SAME_POSE)
 
 
-# Pairs of cells are arrays ``(4, C)``: two factors, and of each whether its SHIFT or TURN is wrong.
+# Pairs of cells ``(4, C)``: the factors A and B, and of each whether its SHIFT or TURN is wrong.
 _Pairs = Integers
 
 
 def _all_pairs(count: int) -> _Pairs:
-    one, other = np.triu_indices(count, 1)
-    kinds = np.repeat([[SHIFT, SHIFT, TURN, TURN], [SHIFT, TURN, SHIFT, TURN]], len(one), axis=1)
-    return np.concatenate([np.tile([one, other], 4), kinds])
+    a, b = np.triu_indices(count, 1)
+    kinds = np.repeat([[SHIFT, SHIFT, TURN, TURN], [SHIFT, TURN, SHIFT, TURN]], len(a), axis=1)
+    return np.concatenate([np.tile([a, b], 4), kinds])
 
 
 def _solved(factors: Factors, pose: Matrices, pairs: _Pairs) -> tuple[Numbers, NDArray[np.bool_]]:
-    """X and y of each pair, ``(2, C, L)``, and whether they solve it in all samples, ``(C,)``."""
-    one, other, kind, other_kind = pairs
-    x_turns, y_turns = (kind == TURN)[:, None], (other_kind == TURN)[:, None]
-    near, far = factors.axes[one], factors.axes[other]
-    back = inverse(factors.before)
-    middle = (
-        _right_part(factors, one, x_turns)
-        @ (back[one + 1] @ factors.before[other])
-        @ _right_part(factors, other, y_turns)
+    """The x and y of each pair, ``(2, C, L)``, and whether they are a solution at all samples."""
+    a, b, kind_a, kind_b = pairs
+    a_turns, b_turns = (kind_a == TURN)[:, None], (kind_b == TURN)[:, None]
+    axis_a, axis_b = factors.axes[a], factors.axes[b]
+    inverse_before = inverse(factors.before)
+    m = (
+        _right_part(factors, a, a_turns)
+        @ (inverse_before[a + 1] @ factors.before[b])
+        @ _right_part(factors, b, b_turns)
     )
-    target = back[one] @ pose @ inverse(factors.behind[1:])[other]
-    turn = _carrying_turn(middle, target, near, far, y_turns)
-    shift = _carrying_shift(middle, target, near, far, y_turns)
-    x = np.where(x_turns, turn, shift)
-    undone = screws(near, np.where(x_turns, 0.0, -x), np.where(x_turns, -x, 0.0))
-    left, missed = read_screws(inverse(middle) @ undone @ target, far)
-    y = np.where(y_turns, left[:, TURN], left[:, SHIFT])
-    missed += np.abs(np.where(y_turns, left[:, SHIFT], left[:, TURN]))
-    return np.array([x, y]), np.asarray(missed.max(axis=-1) < SAME)
+    n = inverse_before[a] @ pose @ inverse(factors.after[1:])[b]
+    turn = _turn_of_a(m, n, axis_a, axis_b, b_turns)
+    shift = _shift_of_a(m, n, axis_a, axis_b, b_turns)
+    x = np.where(a_turns, turn, shift)
+    inverse_a = screws(axis_a, np.where(a_turns, 0.0, -x), np.where(a_turns, -x, 0.0))
+    remaining, error = read_screws(inverse(m) @ inverse_a @ n, axis_b)
+    y = np.where(b_turns, remaining[:, TURN], remaining[:, SHIFT])
+    error += np.abs(np.where(b_turns, remaining[:, SHIFT], remaining[:, TURN]))
+    return np.array([x, y]), np.asarray(error.max(axis=-1) < SAME_POSE)
 
 
 def _right_part(factors: Factors, which: Integers, turn_is_wrong: NDArray[np.bool_]) -> Matrices:
-    """Of each factor what its right cell does, ``(C, L, 4, 4)``."""
+    """The factors with their right cell alone, the wrong one at 0: ``(C, L, 4, 4)``."""
     shifts, turns = factors.sizes[which, SHIFT], factors.sizes[which, TURN]
     return screws(
         factors.axes[which],
@@ -143,38 +143,38 @@ def _right_part(factors: Factors, which: Integers, turn_is_wrong: NDArray[np.boo
     )
 
 
-def _carrying_turn(
-    middle: Matrices, target: Matrices, near: Integers, far: Integers, y_turns: NDArray[np.bool_]
+def _turn_of_a(
+    m: Matrices, n: Matrices, axis_a: Integers, axis_b: Integers, b_turns: NDArray[np.bool_]
 ) -> Numbers:
-    """The turn about the near axis that carries what B leaves alone from M to N: ``(C, L)``.
+    """The turn about A's axis that takes what B leaves unchanged from M to N: ``(C, L)``.
 
     For u → v about the axis a it is atan2(a·(u×v), u·v − (a·u)(a·v)); several are summed.
     """
-    here = np.arange(len(near))
-    left_alone = np.where(y_turns, 0.0, [[1.0, 1.0, 1.0, 0.0]])
-    left_alone[here, far] = 1.0
-    left_alone[:, 3] = y_turns[:, 0]
-    carried = (middle[..., :3, :] * left_alone[:, None, None]) @ target[..., :3, :].swapaxes(-1, -2)
-    one, two = (near + 1) % 3, (near + 2) % 3
+    c = np.arange(len(axis_a))
+    unchanged = np.where(b_turns, 0.0, [[1.0, 1.0, 1.0, 0.0]])
+    unchanged[c, axis_b] = 1.0
+    unchanged[:, 3] = b_turns[:, 0]
+    products = (m[..., :3, :] * unchanged[:, None, None]) @ n[..., :3, :].swapaxes(-1, -2)
+    one, two = (axis_a + 1) % 3, (axis_a + 2) % 3
     turns: Numbers = np.arctan2(
-        carried[here, :, one, two] - carried[here, :, two, one],
-        carried[here, :, one, one] + carried[here, :, two, two],
+        products[c, :, one, two] - products[c, :, two, one],
+        products[c, :, one, one] + products[c, :, two, two],
     )
     return turns
 
 
-def _carrying_shift(
-    middle: Matrices, target: Matrices, near: Integers, far: Integers, y_turns: NDArray[np.bool_]
+def _shift_of_a(
+    m: Matrices, n: Matrices, axis_a: Integers, axis_b: Integers, b_turns: NDArray[np.bool_]
 ) -> Numbers:
-    """The shift along the near axis that carries the origin of M to that of N: ``(C, L)``.
+    """The shift along A's axis that takes the origin of M to that of N: ``(C, L)``.
 
-    Where B shifts too, the two shares of the way are told apart by least squares; along parallel
-    axes they cannot be.
+    Where B shifts too, least squares tell the two shares of the way; along parallel axes they
+    cannot be told.
     """
-    here = np.arange(len(near))
-    way = target[..., :3, 3] - middle[..., :3, 3]
-    along_far = middle[here, :, :3, far]
-    cosine = np.where(y_turns, 0.0, along_far[here, :, near])
-    rest = way[here, :, near] - cosine * (along_far * way).sum(axis=-1)
-    shifts: Numbers = rest / np.maximum(1 - cosine * cosine, SAME)
+    c = np.arange(len(axis_a))
+    way = n[..., :3, 3] - m[..., :3, 3]
+    along_b = m[c, :, :3, axis_b]
+    cosine = np.where(b_turns, 0.0, along_b[c, :, axis_a])
+    rest = way[c, :, axis_a] - cosine * (along_b * way).sum(axis=-1)
+    shifts: Numbers = rest / np.maximum(1 - cosine * cosine, SAME_POSE)
     return shifts

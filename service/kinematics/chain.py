@@ -4,9 +4,8 @@ Z_i = Rot_z(θ_i) Trans_z(d_i) and X_i = Trans_x(a_i) Rot_x(α_i); the factors o
 standard table groups the product as (Z_1 X_1)(Z_2 X_2)…, the modified table as (X_0 Z_1)(X_1 Z_2)…,
 so converting a table is moving (a, α) by one row and nothing is solved for.
 
-A numeric table is an array ``(rows, 4, ...)``: the columns are a, α, d, θ in this order, whatever
-follows is the batch; angles in radians. The regrouping itself does not care what a cell is, so that
-it serves numbers and formulas alike.
+A numeric table is an array ``(rows, 4, ...)``: the columns are a, α, d, θ in this order, the axes
+after them are the batch; angles in radians. The regrouping is the same for numbers and formulas.
 """
 
 from collections.abc import Iterable, Sequence
@@ -20,14 +19,14 @@ from service.kinematics.dh import Convention, link_transforms
 from service.kinematics.transforms import Matrices
 
 Table = NDArray[np.float64]
-Cell = TypeVar("Cell")
-Row = tuple[Cell, Cell, Cell, Cell]
+_Cell = TypeVar("_Cell")
+Row = tuple[_Cell, _Cell, _Cell, _Cell]
 
 COLUMNS = ("a", "alpha", "d", "theta")
 A, ALPHA, D, THETA = range(4)
 
 
-def modified_rows(standard: Sequence[Row[Cell]], zero: Cell) -> list[Row[Cell]]:
+def modified_rows(standard: Sequence[Row[_Cell]], zero: _Cell) -> list[Row[_Cell]]:
     """Regroup (Z_1 X_1)…(Z_m X_m) as (X_0 Z_1)…(X_{m-1} Z_m)(X_m), with X_0 the identity.
 
     The last of the ``m + 1`` rows is the fixed end-effector row "e" of the proximal convention.
@@ -37,18 +36,20 @@ def modified_rows(standard: Sequence[Row[Cell]], zero: Cell) -> list[Row[Cell]]:
     return _zip_rows(x, z)
 
 
-def standard_rows(modified: Sequence[Row[Cell]], zero: Cell) -> list[Row[Cell]]:
+def standard_rows(modified: Sequence[Row[_Cell]], zero: _Cell) -> list[Row[_Cell]]:
     """Regroup (X_0 Z_1)…(X_{m-1} Z_m) as (Z_1 X_1)…(Z_m): as many rows, the last without X.
 
-    X_0 is left out: a standard table begins on the axis of joint 1. Whether the chain had an X_0 is
-    for the caller to see.
+    X_0 is left out, since a standard table begins on the axis of joint 1. The caller must see to it
+    that the chain has none.
     """
     x = [*((a, alpha) for a, alpha, _, _ in modified[1:]), (zero, zero)]
     z = [(d, theta) for _, _, d, theta in modified]
     return _zip_rows(x, z)
 
 
-def _zip_rows(x: Iterable[tuple[Cell, Cell]], z: Iterable[tuple[Cell, Cell]]) -> list[Row[Cell]]:
+def _zip_rows(
+    x: Iterable[tuple[_Cell, _Cell]], z: Iterable[tuple[_Cell, _Cell]]
+) -> list[Row[_Cell]]:
     return [(a, alpha, d, theta) for (a, alpha), (d, theta) in zip(x, z, strict=True)]
 
 
@@ -63,7 +64,7 @@ def compound(transforms: Matrices) -> Matrices:
 
 
 def frames(table: Table, convention: Convention) -> Matrices:
-    """The base frame and that behind each row of a table: ``(rows + 1, ...)``."""
+    """The base frame and the frame after each row of a table: ``(rows + 1, ..., 4, 4)``."""
     return products(links(table, convention))
 
 
@@ -77,7 +78,7 @@ def products(transforms: Matrices) -> Matrices:
 
 
 def joint_frames(frames: Matrices, convention: Convention) -> Matrices:
-    """Of all frames those along whose z each row's joint acts: ``(rows, ...)``.
+    """The frames along whose z each row's joint acts: ``(rows, ...)`` of ``(rows + 1, ...)``.
 
     Row i of a standard table acts along z_{i-1}, of a modified one along z_i.
     """

@@ -1,10 +1,13 @@
-"""Walking a written table along a reference chain: where each row leads, and whether it gets there.
+"""Matching a written chain with a reference chain, link by link.
 
 A chain is T(q) = C_0 M_1(q_1) C_1 … M_n(q_n) C_n with constant links C_i. Two tables describe one
 mechanism if and only if constant transforms g_i exist with C_i(written) = g_i⁻¹ C_i(reference)
-g_{i+1}, where g_i keeps joint axis i. ``g`` is the pose of the writer's frame in the reference's.
+g_{i+1}, where g_i keeps joint axis i (docs/frame-choice.md). So g_{i+1} follows from g_i and the
+written link, and must keep its axis. In the code g_i is the *relative pose*: the pose of the
+writer's frame on an axis as seen from the reference's frame there.
 
-Shapes: L samples; a row is ``(4, L)`` in the column order a, α, d, θ; angles in radians.
+Shapes: L samples; a row is ``(4, L)`` in the column order a, α, d, θ and stands for the product
+Z X that leads from one target to the next; angles in radians.
 """
 
 from collections.abc import Sequence
@@ -13,139 +16,141 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from service.kinematics.candidate_rows import TargetKind
 from service.kinematics.dh import standard_link
-from service.kinematics.fit import Place
+from service.kinematics.tolerances import SAME_POSE
 from service.kinematics.transforms import Matrices, Numbers, identity, inverse
-
-SAME = 1e-7
 
 
 @dataclass(frozen=True, slots=True)
-class Stop:
-    """A place that a row leads to.
+class Target:
+    """What a row leads to.
 
-    ``reference`` is the transform ``(L, 4, 4)`` to this place's frame from that of the last joint,
+    ``reference`` is the transform ``(L, 4, 4)`` to this target's frame from that of the last joint,
     both the reference's; None for a fixed frame that the reference does not have.
     """
 
-    place: Place
+    kind: TargetKind
     reference: Matrices | None
 
     @property
     def rebases(self) -> bool:
-        """Whether the reference has a frame here that what follows is seen from."""
-        return self.reference is not None and self.place is not Place.FIXED
+        """Whether the reference's frame here is the one that the next target is seen from."""
+        return self.reference is not None and self.kind is not TargetKind.FIXED
 
 
 @dataclass(frozen=True, slots=True)
-class WrittenRow:
+class RowConstants:
     """The constants of a row as written.
 
-    ``own`` is ``(4, L)``, NaN where there is no usable number; ``judged`` ``(4,)`` says which cells
-    can be right or wrong; ``spoiled`` which are wrong whatever the frames; ``absent`` which cells
-    the table has no room for (they are 0); ``tolerance`` ``(4,)`` how much of its size each may be
-    off, because it was rounded. ``variable`` is the column of the variable of the joint
-    that the row starts from, None where it starts from none; ``sense`` the sign that it was written
-    with: +1, −1, or 0 where it tells nothing.
+    ``written`` is ``(4, L)``, NaN where there is no usable number. Of the cells ``(4,)``,
+    ``is_gradable`` says which can be right or wrong, ``wrong_regardless`` which are wrong whatever
+    the frames, ``absent`` for which the table has no room (they are 0), and ``tolerance`` how much
+    of its size each may be off because it was rounded. ``variable`` is the column of the variable
+    of the joint that the row starts from, None where it starts from none; ``joint_sign`` the sign
+    of that variable: +1, −1, or 0 where it is not known.
     """
 
-    own: Numbers
-    judged: NDArray[np.bool_]
-    spoiled: NDArray[np.bool_]
+    written: Numbers
+    is_gradable: NDArray[np.bool_]
+    wrong_regardless: NDArray[np.bool_]
     absent: NDArray[np.bool_]
     tolerance: Numbers
     variable: int | None
-    sense: int
+    joint_sign: int
 
 
 @dataclass(frozen=True, slots=True)
-class Nearest:
-    """The valid table nearest to what was written.
+class ChainMatch:
+    """A valid table, and how its frames lie to the reference's.
 
-    ``rows`` is what each row should be, ``(4, L)`` each; ``senses`` the sign that each stop's joint
-    variable should have; ``poses`` where the writer's frame at each stop lies in the reference's,
-    ``(L, 4, 4)`` each; ``cost`` what the way there cost.
+    ``rows`` is what each row should be, ``(4, L)`` each; ``joint_signs`` the sign that the joint
+    variable of each target should have; ``relative_poses`` the relative pose at each target,
+    ``(L, 4, 4)`` each; ``cost`` how far the written table is from this one.
     """
 
     rows: tuple[Numbers, ...]
-    senses: tuple[int, ...]
-    poses: tuple[Matrices, ...]
+    joint_signs: tuple[int, ...]
+    relative_poses: tuple[Matrices, ...]
     cost: float
 
 
-def valid_as_it_stands(
-    written: Sequence[WrittenRow],
-    stops: Sequence[Stop],
+def match_as_written(
+    rows: Sequence[RowConstants],
+    targets: Sequence[Target],
     length_scale: float,
     *,
     directions_given: bool = True,
     start: Matrices | None = None,
-) -> Nearest | None:
-    """The table itself where nothing in it is wrong, found without a search; else None.
+) -> ChainMatch | None:
+    """The written table itself where nothing in it is wrong; else None. ``match_tables`` says how.
 
-    ``start`` as in ``followed``.
+    ``directions_given`` says that each joint's positive sense is.
     """
-    if any(row.spoiled.any() for row in written):
+    if any(row.wrong_regardless.any() for row in rows):
         return None
-    own = np.array([row.own for row in written])
-    senses = np.array([row.sense if directions_given else 0 for row in written])
-    valid, poses = followed(own[None], senses[None], stops, length_scale, start=start)
+    written = np.array([row.written for row in rows])
+    signs = np.array([row.joint_sign if directions_given else 0 for row in rows])
+    valid, poses = match_tables(written[None], signs[None], targets, length_scale, start=start)
     if not valid[0]:
         return None
-    return Nearest(
-        rows=tuple(own),
-        senses=tuple(int(senses_of(pose)[0]) for pose in poses),
-        poses=tuple(pose[0] for pose in poses),
+    return ChainMatch(
+        rows=tuple(written),
+        joint_signs=tuple(int(joint_signs_of(pose)[0]) for pose in poses),
+        relative_poses=tuple(pose[0] for pose in poses),
         cost=0.0,
     )
 
 
-def followed(
-    own: Numbers,
-    senses: NDArray[np.int_],
-    stops: Sequence[Stop],
+def match_tables(
+    written: Numbers,
+    joint_signs: NDArray[np.int_],
+    targets: Sequence[Target],
     length_scale: float,
-    tolerance: float = SAME,
+    tolerance: float = SAME_POSE,
     start: Matrices | None = None,
 ) -> tuple[NDArray[np.bool_], Matrices]:
     """Which of many tables are valid as they stand, without any search.
 
-    ``own`` is ``(tables, rows, 4, L)``, ``senses`` ``(tables, rows)`` as in WrittenRow, 0 where the
-    direction is free. ``start`` ``(L, 4, 4)`` is where the writer's frame 0 lies in the
-    reference's, None for the same place. Returns ``(tables,)``, and where the writer's frame at
-    each stop lies in the reference's, ``(rows, tables, L, 4, 4)``. NaN makes a table invalid.
+    ``written`` is ``(tables, rows, 4, L)``, ``joint_signs`` ``(tables, rows)`` as in RowConstants,
+    0 where the direction is free. ``start`` ``(L, 4, 4)`` is the relative pose of frame 0, None for
+    the identity. Returns ``(tables,)`` and the relative poses at the targets, ``(rows, tables, L,
+    4, 4)``. NaN makes a table invalid.
     """
-    count = own.shape[-1]
-    links = standard_link(*np.moveaxis(own, 2, 0))
-    pose = identity((len(own), count))
+    count = written.shape[-1]
+    links = standard_link(*np.moveaxis(written, 2, 0))
+    pose = identity((len(written), count))
     if start is not None:
         pose[:] = start
-    poses = np.empty((len(stops), *pose.shape))
-    for i, stop in enumerate(stops):
+    poses = np.empty((len(targets), *pose.shape))
+    for i, target in enumerate(targets):
         pose = pose @ links[:, i]
-        if stop.reference is not None and stop.rebases:
-            pose = inverse(stop.reference[:count]) @ pose
+        if target.reference is not None and target.rebases:
+            pose = inverse(target.reference[:count]) @ pose
         poses[i] = pose
-    valid = np.ones(len(own), dtype=np.bool_)
-    for i, stop in enumerate(stops):
-        valid &= _off_place(poses[i], stop, length_scale) <= tolerance
+    valid = np.ones(len(written), dtype=np.bool_)
+    for i, target in enumerate(targets):
+        valid &= _error_at(poses[i], target.kind, length_scale) <= tolerance
         if i > 0:
-            valid &= senses[:, i] * senses_of(poses[i - 1]) >= 0
+            valid &= joint_signs[:, i] * joint_signs_of(poses[i - 1]) >= 0
     return valid, poses
 
 
-def _off_place(pose: Matrices, stop: Stop, length_scale: float) -> Numbers:
-    """By how much frames ``(T, L, 4, 4)`` miss what their place demands: ``(T,)``."""
-    missed: Numbers = np.abs(pose[:, :, :2, 2]).max(axis=(1, 2))
-    if stop.place in (Place.FIXED, Place.OPEN):
-        return np.where(np.isnan(missed), np.nan, 0.0)
-    if stop.place is not Place.PRISMATIC:
-        missed = np.maximum(missed, np.abs(pose[:, :, :2, 3]).max(axis=(1, 2)) / length_scale)
-    if stop.place is Place.TOOL:
-        missed = np.maximum(missed, np.abs(pose - np.eye(4)).max(axis=(1, 2, 3)))
-    return missed
+def _error_at(pose: Matrices, kind: TargetKind, length_scale: float) -> Numbers:
+    """By how much relative poses ``(T, L, 4, 4)`` miss what a target demands: ``(T,)``."""
+    error: Numbers = np.abs(pose[:, :, :2, 2]).max(axis=(1, 2))
+    if kind in (TargetKind.FIXED, TargetKind.OPEN):
+        return np.where(np.isnan(error), np.nan, 0.0)
+    if kind is not TargetKind.PRISMATIC:
+        error = np.maximum(error, np.abs(pose[:, :, :2, 3]).max(axis=(1, 2)) / length_scale)
+    if kind is TargetKind.TOOL:
+        error = np.maximum(error, np.abs(pose - np.eye(4)).max(axis=(1, 2, 3)))
+    return error
 
 
-def senses_of(pose: Matrices) -> NDArray[np.int_]:
-    """+1 where the writer's z points the way of the reference's, −1 where it is turned over."""
+def joint_signs_of(pose: Matrices) -> NDArray[np.int_]:
+    """+1 where the writer's z points the way of the reference's, −1 where it is turned over.
+
+    ``(N,)`` from relative poses ``(N, L, 4, 4)``.
+    """
     return np.where(pose[:, 0, 2, 2] > 0, 1, -1)

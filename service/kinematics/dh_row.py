@@ -8,8 +8,9 @@ modified link transform is a standard one with all four numbers negated, so one 
 
 import numpy as np
 
+from service.kinematics.candidate_rows import row_to_frame
 from service.kinematics.dh import Convention
-from service.kinematics.fit import to_frame
+from service.kinematics.tolerances import X_ALONG_Z
 from service.kinematics.transforms import Matrices, Numbers, inverse
 
 
@@ -17,23 +18,20 @@ def _as_standard(transform: Matrices, convention: Convention) -> Matrices:
     return transform if convention is Convention.STANDARD else inverse(transform)
 
 
-def slant(transform: Matrices, convention: Convention) -> Numbers:
-    """The cosine of the angle between the axes of the first condition, ``(...)``; 0 if it holds."""
+def dh1_residual(transform: Matrices, convention: Convention) -> Numbers:
+    """The cosine of the angle between the axes of DH1, ``(...)``; 0 if it holds."""
     return np.asarray(_as_standard(transform, convention)[..., 2, 0])
 
 
-def gap(transform: Matrices, convention: Convention) -> Numbers:
-    """How far the axes of the second condition pass each other, ``(...)``; 0 if they meet.
-
-    For parallel axes it is their distance.
-    """
+def dh2_residual(transform: Matrices, convention: Convention) -> Numbers:
+    """The distance at which the axes of DH2 pass each other, ``(...)``; 0 if they meet."""
     standard = _as_standard(transform, convention)
     x, y = standard[..., 0, 0], standard[..., 1, 0]
     px, py = standard[..., 0, 3], standard[..., 1, 3]
     norm = np.hypot(x, y)
-    parallel = norm < 1e-9
-    past = (x * py - y * px) / np.where(parallel, 1.0, norm)
-    return np.where(parallel, np.hypot(px, py), past)
+    parallel = norm < X_ALONG_Z
+    passing = (x * py - y * px) / np.where(parallel, 1.0, norm)
+    return np.where(parallel, np.hypot(px, py), passing)
 
 
 def row(transform: Matrices, convention: Convention) -> Numbers:
@@ -43,5 +41,5 @@ def row(transform: Matrices, convention: Convention) -> Numbers:
     >>> row(modified_link(0.5, 0.2, 0.3, 0.7)[None], Convention.MODIFIED)[:, 0]
     array([0.5, 0.2, 0.3, 0.7])
     """
-    found = to_frame(_as_standard(transform, convention)[None])[0]
+    found = row_to_frame(_as_standard(transform, convention)[None])[0]
     return np.asarray(found if convention is Convention.STANDARD else -found)

@@ -23,7 +23,8 @@ X, Z = 0, 2
 # The cells of a factor: how far it shifts and how far it turns.
 SHIFT, TURN = 0, 1
 
-Cell = tuple[int, int]
+# A row and a column of a table.
+CellIndex = tuple[int, int]
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class Factors:
         return products(self.screws)
 
     @cached_property
-    def behind(self) -> Matrices:
+    def after(self) -> Matrices:
         """The product of the factors from the k-th on for k = 0..K: ``(K + 1, L, 4, 4)``."""
         reached = np.empty((len(self.axes) + 1, *self.screws.shape[1:]))
         reached[-1] = np.eye(4)
@@ -57,7 +58,7 @@ class Factors:
         return reached
 
     def around(self, factor: int) -> tuple[Matrices, Matrices]:
-        """The products of the factors before and behind one of them, ``(L, 4, 4)`` each."""
+        """The products of the factors before and after one of them, ``(L, 4, 4)`` each."""
         before = reduce(np.matmul, self.screws[:factor], np.eye(4))
         return before, reduce(np.matmul, self.screws[factor + 1 :], np.eye(4))
 
@@ -77,12 +78,12 @@ class Factors:
         at_end = convention is Convention.MODIFIED
         return self.before[[2 * row + (not z_first) + at_end for row in rows]]
 
-    def cell(self, factor: int, kind: int) -> Cell:
-        """The row and column that the SHIFT or TURN of a factor stands in."""
+    def cell(self, factor: int, kind: int) -> CellIndex:
+        """The cell that holds the SHIFT or TURN of a factor."""
         return factor // 2, (A if self.axes[factor] == X else D) + kind
 
-    def place(self, cell: Cell) -> tuple[int, int]:
-        """The factor of a cell, and whether it is its SHIFT or its TURN."""
+    def position(self, cell: CellIndex) -> tuple[int, int]:
+        """The factor of a cell, and whether the cell is its SHIFT or its TURN."""
         row, column = cell
         in_z = column >= D
         z_first = self.convention is Convention.STANDARD
@@ -105,33 +106,33 @@ def factors_of(table: Table, convention: Convention, unit: float = 1.0) -> Facto
 
 
 def screws(axes: Integers, shifts: Numbers, turns: Numbers) -> Matrices:
-    """A shift along and a turn about an axis: ``(K, L, 4, 4)`` of ``(K,)`` and twice ``(K, L)``."""
-    here = np.arange(len(axes))
+    """The screws ``(K, L, 4, 4)`` about axes ``(K,)`` by shifts and turns ``(K, L)``."""
+    k = np.arange(len(axes))
     one, other = (axes + 1) % 3, (axes + 2) % 3
     cosine, sine = np.cos(turns), np.sin(turns)
     matrices = np.zeros((*shifts.shape, 4, 4))
-    matrices[here, :, axes, axes] = 1.0
+    matrices[k, :, axes, axes] = 1.0
     matrices[..., 3, 3] = 1.0
-    matrices[here, :, one, one] = cosine
-    matrices[here, :, other, other] = cosine
-    matrices[here, :, one, other] = -sine
-    matrices[here, :, other, one] = sine
-    matrices[here, :, axes, 3] = shifts
+    matrices[k, :, one, one] = cosine
+    matrices[k, :, other, other] = cosine
+    matrices[k, :, one, other] = -sine
+    matrices[k, :, other, one] = sine
+    matrices[k, :, axes, 3] = shifts
     return matrices
 
 
 def read_screws(transforms: Matrices, axes: Integers) -> tuple[Numbers, Numbers]:
-    """Shift along and turn about each axis, and by how much a transform is no such screw.
+    """The SHIFT and TURN of each transform about its axis, and how far it is from such a screw.
 
-    From ``(K, L, 4, 4)`` and axes ``(K,)``: sizes ``(K, 2, L)``, and by how much each misses,
-    ``(K, L)``: how far the axis is turned away, or how far the origin lies beside it.
+    From ``(K, L, 4, 4)`` and axes ``(K,)``: the sizes ``(K, 2, L)`` and the errors ``(K, L)``, how
+    far the axis is tilted and how far the origin lies beside it.
     """
-    here = np.arange(len(axes))
+    k = np.arange(len(axes))
     one, other = (axes + 1) % 3, (axes + 2) % 3
     sizes = np.empty((len(axes), 2, transforms.shape[1]))
-    sizes[:, SHIFT] = transforms[here, :, axes, 3]
-    sizes[:, TURN] = np.arctan2(transforms[here, :, other, one], transforms[here, :, one, one])
-    missed = np.abs(transforms[here, :, one, 3]) + np.abs(transforms[here, :, other, 3])
-    missed += np.abs(transforms[here, :, one, axes]) + np.abs(transforms[here, :, other, axes])
-    missed += 1 - transforms[here, :, axes, axes]
-    return sizes, missed
+    sizes[:, SHIFT] = transforms[k, :, axes, 3]
+    sizes[:, TURN] = np.arctan2(transforms[k, :, other, one], transforms[k, :, one, one])
+    error = np.abs(transforms[k, :, one, 3]) + np.abs(transforms[k, :, other, 3])
+    error += np.abs(transforms[k, :, one, axes]) + np.abs(transforms[k, :, other, axes])
+    error += 1 - transforms[k, :, axes, axes]
+    return sizes, error

@@ -1,15 +1,14 @@
 """The valid table nearest to the one that was written.
 
-Denavit-Hartenberg tables are not unique. A chain is T(q) = C_0 M_1(q_1) C_1 … M_n(q_n) C_n with
-constant links C_i. Two tables describe one mechanism if and only if constant transforms g_i exist
-with C_i(written) = g_i⁻¹ C_i(reference) g_{i+1}, where g_i keeps joint axis i. So the rows are
-walked from the base; ``g`` is the pose of the writer's frame in the reference's. At each row every
-value that it could have had under the choices made so far is held against what was written: a wrong
-cell costs 1, a departure from the reference's own choice a little, so that an uncompensated shift
-is blamed where it was made and not where it surfaces. The cheapest few hypotheses are kept.
+Denavit-Hartenberg tables are not unique (``chain_match`` says when two describe one mechanism). So
+the search goes from the base to the tool row by row, and at each row compares what was written with
+every value that it could have had under the choices of frames made so far. A wrong cell costs 1. A
+frame other than the reference's costs a little, so that an uncompensated shift is blamed where it
+was made and not where it surfaces. Only the cheapest hypotheses are kept (a beam search).
 
-Shapes: H hypotheses, N their continuations, L samples; a row is ``(4, L)`` in the column
-order a, α, d, θ; angles in radians.
+Shapes: H hypotheses, N ways to continue them, L samples; a row is ``(4, L)`` in the column order
+a, α, d, θ; angles in radians. A relative pose is the pose of the writer's frame as seen from the
+reference's.
 """
 
 from collections.abc import Sequence
@@ -19,23 +18,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.kinematics.base_freedom import BaseFreedom
+from service.kinematics.candidate_rows import (
+    TargetKind,
+    axis_relations,
+    candidate_rows,
+    is_unreachable,
+)
 from service.kinematics.chain import ALPHA, THETA, A, D
-from service.kinematics.chain_match import SAME, Nearest, Stop, WrittenRow, senses_of
+from service.kinematics.chain_match import ChainMatch, RowConstants, Target, joint_signs_of
 from service.kinematics.dh import standard_link
-from service.kinematics.fit import Place, candidates, misses, positions
+from service.kinematics.tolerances import (
+    EXACT_CELL,
+    LARGEST_ANGLE,
+    LARGEST_LENGTH,
+    SAME_HYPOTHESIS,
+    SAME_POSE,
+)
 from service.kinematics.transforms import Matrices, Numbers, identity, inverse, rot_x
 
-BEAM = 8
-CONTINUATIONS = 20
-# A hypothesis this far behind the best is given up: it would take a table with as many more slips.
-BEHIND = 2.5
-
-# A cell may be off by what rounding does to a number of the robot's own size, and no more.
-LARGEST_ANGLE = 4.0
-LARGEST_LENGTH = 1.5
+BEAM_WIDTH = 8
+MAX_CONTINUATIONS = 20
+# A hypothesis this far behind the best is dropped: it would take a table with as many more slips.
+MAX_COST_BEHIND = 2.5
 
 # What a hypothesis costs. A cell that the table has no room for cannot be blamed on a slip, so that
-# a reading which needs it is a last resort.
+# a hypothesis which needs it is a last resort.
 WRONG_CELL = 1.0
 NO_SUCH_CELL = 3.0
 UNREACHABLE = 3.0
@@ -43,156 +50,159 @@ TURNED_OVER = 0.010
 TURNED_ABOUT = 0.004
 MOVED = 0.020
 
-_Way = tuple[tuple[Numbers, Matrices, int], ...]
+# Each row so far: what it should be, the relative pose that it leads to, and its joint's sign.
+_Path = tuple[tuple[Numbers, Matrices, int], ...]
 
 
 @dataclass(frozen=True, slots=True)
 class _Beam:
-    """H hypotheses: the frame reached, the cost, and the way there."""
+    """H hypotheses: relative poses ``(H, L, 4, 4)``, costs ``(H,)`` and the paths to them."""
 
     pose: Matrices
     cost: Numbers
-    ways: list[_Way]
+    paths: list[_Path]
 
 
 def nearest_table(
-    written: Sequence[WrittenRow],
-    stops: Sequence[Stop],
+    rows: Sequence[RowConstants],
+    targets: Sequence[Target],
     length_scale: float,
     *,
     base_given: bool = True,
     directions_given: bool = True,
-) -> Nearest:
-    """The valid table nearest to ``written``, whose i-th row leads to the i-th of ``stops``.
+) -> ChainMatch:
+    """The valid table nearest to the written ``rows``, the i-th of which leads to the i-th target.
 
     ``base_given`` says that frame 0 is the reference's. ``directions_given`` says that each joint's
     positive sense is, so that a z axis turned over asks for a variable with the opposite sign.
     """
-    samples = written[0].own.shape[-1]
+    samples = rows[0].written.shape[-1]
     if base_given:
         beam, freedom = _Beam(identity((1, samples)), np.zeros(1), [()]), BaseFreedom()
-        remaining = list(zip(written, stops, strict=True))
+        remaining = list(zip(rows, targets, strict=True))
     else:
-        beam, freedom = _from_free_base(written[0], stops[0])
-        remaining = list(zip(written[1:], stops[1:], strict=True))
-    for row, stop in remaining:
-        beam = _advanced(beam, row, stop, length_scale, directions_given, freedom)
-        if stop.reference is not None and stop.rebases and not freedom.spent:
-            freedom = freedom.beyond(stop.reference, stop.place, length_scale)
+        beam, freedom = _from_free_base(rows[0], targets[0])
+        remaining = list(zip(rows[1:], targets[1:], strict=True))
+    for row, target in remaining:
+        beam = _next_beam(beam, row, target, length_scale, directions_given, freedom)
+        if target.reference is not None and target.rebases and not freedom.is_used_up:
+            freedom = freedom.at_next(target.reference, target.kind, length_scale)
     best = int(np.argmin(beam.cost))
-    rows, poses, senses = zip(*beam.ways[best], strict=True)
-    return Nearest(rows, senses, poses, float(beam.cost[best]))
+    valid_rows, poses, signs = zip(*beam.paths[best], strict=True)
+    return ChainMatch(valid_rows, signs, poses, float(beam.cost[best]))
 
 
-def _from_free_base(first: WrittenRow, stop: Stop) -> tuple[_Beam, BaseFreedom]:
-    """On the first axis, z either way: what leads there from a free base is right as it stands."""
-    samples = first.own.shape[-1]
+def _from_free_base(first: RowConstants, target: Target) -> tuple[_Beam, BaseFreedom]:
+    """On the first axis, z either way: from a free base, the row that leads there is right."""
+    samples = first.written.shape[-1]
     poses = np.stack([identity((samples,)), rot_x(np.full(samples, np.pi))])
-    own = np.nan_to_num(first.own)
-    ways: list[_Way] = [((own, pose, sense),) for pose, sense in zip(poses, (1, -1), strict=True)]
-    beam = _Beam(poses, np.array([0.0, TURNED_OVER]), ways)
-    return beam, BaseFreedom.on_first_axis(stop.place is Place.PRISMATIC, samples)
+    row = np.nan_to_num(first.written)
+    paths: list[_Path] = [((row, pose, sign),) for pose, sign in zip(poses, (1, -1), strict=True)]
+    beam = _Beam(poses, np.array([0.0, TURNED_OVER]), paths)
+    return beam, BaseFreedom.on_first_axis(target.kind is TargetKind.PRISMATIC, samples)
 
 
-@dataclass(frozen=True, slots=True)
-class _Continuations:
-    """N ways to go on: whose each is, the row that leads there, and the cells of it.
-
-    ``way`` is how far the frame must be moved along what is left of the base's freedom. ``missed``
-    says that no row leads to the place.
-    """
-
-    parents: NDArray[np.int_]
-    rows: Numbers
-    way: Numbers
-    missed: NDArray[np.bool_]
-
-
-def _advanced(
+def _next_beam(
     beam: _Beam,
-    row: WrittenRow,
-    stop: Stop,
+    row: RowConstants,
+    target: Target,
     length_scale: float,
     directions_given: bool,
     freedom: BaseFreedom,
 ) -> _Beam:
     """The cheapest hypotheses one row further on."""
-    on = _continuations(beam, row, stop, length_scale, freedom)
-    told = freedom.as_written(on.rows, row.own)
-    wrong = _wrong_cells(row, told, length_scale)
+    on = _continuations(beam, row, target, length_scale, freedom)
+    expected = freedom.with_written_angle(on.rows, row.written)
+    wrong = _wrong_cells(row, expected, length_scale)
     if row.variable is not None and directions_given:
-        wrong[:, row.variable] |= row.sense * senses_of(beam.pose)[on.parents] < 0
-    wrong |= row.spoiled
-    cost = beam.cost[on.parents] + WRONG_CELL * (wrong & row.judged).sum(axis=1)
-    cost += NO_SUCH_CELL * (wrong & row.absent).sum(axis=1) + UNREACHABLE * on.missed
-    kept = np.argsort(cost, kind="stable")[:CONTINUATIONS]
-    kept = kept[cost[kept] <= cost[kept[0]] + BEHIND]
-    parents, rows, told, cost = on.parents[kept], on.rows[kept], told[kept], cost[kept]
-    pose = _moved(beam.pose[parents], freedom, on.way[kept]) @ standard_link(*rows.swapaxes(0, 1))
-    if stop.reference is not None and stop.rebases:
-        pose = inverse(stop.reference) @ pose
+        wrong[:, row.variable] |= row.joint_sign * joint_signs_of(beam.pose)[on.parents] < 0
+    wrong |= row.wrong_regardless
+    cost = beam.cost[on.parents] + WRONG_CELL * (wrong & row.is_gradable).sum(axis=1)
+    cost += NO_SUCH_CELL * (wrong & row.absent).sum(axis=1) + UNREACHABLE * on.unreachable
+    kept = np.argsort(cost, kind="stable")[:MAX_CONTINUATIONS]
+    kept = kept[cost[kept] <= cost[kept[0]] + MAX_COST_BEHIND]
+    parents, rows, expected, cost = on.parents[kept], on.rows[kept], expected[kept], cost[kept]
+    start = _slid(beam.pose[parents], freedom, on.distance[kept])
+    pose = start @ standard_link(*rows.swapaxes(0, 1))
+    if target.reference is not None and target.rebases:
+        pose = inverse(target.reference) @ pose
         if freedom.anywhere:
             pose[..., :3, 3] = 0.0
         cost = cost + departure(pose, length_scale)
-    elif stop.reference is not None:
-        cost = cost + departure(inverse(stop.reference) @ pose, length_scale)
+    elif target.reference is not None:
+        cost = cost + departure(inverse(target.reference) @ pose, length_scale)
     kept = _distinct(pose, cost, length_scale)
-    senses = senses_of(pose)
+    signs = joint_signs_of(pose)
     return _Beam(
         pose[kept],
         cost[kept],
-        [(*beam.ways[parents[i]], (told[i], pose[i], int(senses[i]))) for i in kept],
+        [(*beam.paths[parents[i]], (expected[i], pose[i], int(signs[i]))) for i in kept],
     )
 
 
-def _moved(pose: Matrices, freedom: BaseFreedom, way: Numbers) -> Matrices:
-    """Frames moved by ``way`` ``(N, L)`` along what is left of the base's freedom."""
-    if freedom.slide is None:
-        return pose
-    moved = pose.copy()
-    moved[..., :3, 3] += way[..., None] * freedom.slide
-    return moved
+@dataclass(frozen=True, slots=True)
+class _Continuations:
+    """N ways to continue: the hypothesis ``(N,)`` that each continues, and its row ``(N, 4, L)``.
+
+    ``distance`` ``(N, L)`` is how far the frame must be slid along what is left of the base's
+    freedom; ``unreachable`` ``(N,)`` says that no row leads to the target.
+    """
+
+    parents: NDArray[np.int_]
+    rows: Numbers
+    distance: Numbers
+    unreachable: NDArray[np.bool_]
 
 
 def _continuations(
-    beam: _Beam, row: WrittenRow, stop: Stop, length_scale: float, freedom: BaseFreedom
+    beam: _Beam, row: RowConstants, target: Target, length_scale: float, freedom: BaseFreedom
 ) -> _Continuations:
     """Every row that the hypotheses allow."""
-    if stop.reference is None:
-        rows = np.broadcast_to(np.nan_to_num(row.own), (len(beam.pose), *row.own.shape))
+    reference = target.reference
+    if reference is None:
+        rows = np.broadcast_to(np.nan_to_num(row.written), (len(beam.pose), *row.written.shape))
         nowhere = np.zeros((len(rows), rows.shape[-1]))
         return _Continuations(np.arange(len(rows)), rows, nowhere, np.zeros(len(rows), np.bool_))
-    target = inverse(beam.pose) @ stop.reference
-    classes = positions(target, length_scale)
+    seen = inverse(beam.pose) @ reference
+    relations = axis_relations(seen, length_scale)
     found = []
-    for position in sorted(set(classes.tolist())):
-        members = np.flatnonzero(classes == position)
-        here = target[members]
-        offered = candidates(here, row.own, stop.place, length_scale)
-        parents = np.repeat(members, offered.shape[1])
-        rows = offered.reshape(-1, *offered.shape[2:])
+    for relation in sorted(set(relations.tolist())):
+        members = np.flatnonzero(relations == relation)
+        here = seen[members]
+        candidates = candidate_rows(here, row.written, target.kind, length_scale)
+        parents = np.repeat(members, candidates.shape[1])
+        rows = candidates.reshape(-1, *candidates.shape[2:])
         if freedom.slide is None and not freedom.anywhere:
-            ways = [(rows, np.zeros((len(rows), rows.shape[-1])))]
+            options = [(rows, np.zeros((len(rows), rows.shape[-1])))]
         else:
             step = np.ones(here.shape[:2])
-            beyond = inverse(_moved(beam.pose[members], freedom, step)) @ stop.reference
-            shifted = candidates(beyond, row.own, stop.place, length_scale)
+            there = inverse(_slid(beam.pose[members], freedom, step)) @ reference
+            beyond = candidate_rows(there, row.written, target.kind, length_scale)
             # One step aside the axes may lie differently; then there is nothing to compare with.
-            shifted = shifted if shifted.shape == offered.shape else offered
-            ways = freedom.spend(rows, shifted.reshape(rows.shape), row.own)
-        for spent, way in ways:
-            if stop.place is Place.TOOL:
-                reached = inverse(_moved(beam.pose[parents], freedom, way)) @ stop.reference
-                missed = misses(reached, length_scale) & (not freedom.anywhere)
+            beyond = beyond if beyond.shape == candidates.shape else candidates
+            options = freedom.use_up(rows, beyond.reshape(rows.shape), row.written)
+        for chosen, distance in options:
+            if target.kind is TargetKind.TOOL:
+                reached = inverse(_slid(beam.pose[parents], freedom, distance)) @ reference
+                unreachable = is_unreachable(reached, length_scale) & (not freedom.anywhere)
             else:
-                missed = np.zeros(len(parents), np.bool_)
-            found.append((parents, spent, way, missed))
+                unreachable = np.zeros(len(parents), np.bool_)
+            found.append((parents, chosen, distance, unreachable))
     return _Continuations(*(np.concatenate(parts) for parts in zip(*found, strict=True)))
 
 
-def _wrong_cells(row: WrittenRow, rows: Numbers, length_scale: float) -> NDArray[np.bool_]:
+def _slid(pose: Matrices, freedom: BaseFreedom, distance: Numbers) -> Matrices:
+    """Poses ``(N, L, 4, 4)`` slid by ``distance`` ``(N, L)`` along the base's freedom."""
+    if freedom.slide is None:
+        return pose
+    moved = pose.copy()
+    moved[..., :3, 3] += distance[..., None] * freedom.slide
+    return moved
+
+
+def _wrong_cells(row: RowConstants, rows: Numbers, length_scale: float) -> NDArray[np.bool_]:
     """Which cells of the written row differ from each of ``rows``: ``(N, 4)``."""
-    error = np.abs(row.own - rows)
+    error = np.abs(row.written - rows)
     turns = error[:, [ALPHA, THETA]] / (2 * np.pi)
     error[:, [ALPHA, THETA]] = 2 * np.pi * np.abs(turns - np.round(turns))
     size = np.sqrt(np.mean(rows * rows, axis=-1))
@@ -202,24 +212,27 @@ def _wrong_cells(row: WrittenRow, rows: Numbers, length_scale: float) -> NDArray
     largest[[A, D]] = LARGEST_LENGTH * length_scale
     with np.errstate(invalid="ignore"):
         bounded = np.minimum(size, largest)
-        right = error.max(axis=-1) <= np.maximum(row.tolerance * bounded, 1e-9 * scale)
+        right = error.max(axis=-1) <= np.maximum(row.tolerance * bounded, EXACT_CELL * scale)
     return np.asarray(~right)
 
 
 def departure(pose: Matrices, length_scale: float) -> Numbers:
-    """What the writer's own choice of frame costs: next to nothing, but not nothing."""
+    """The cost ``(N,)`` of frames that are not the reference's: small, but not 0.
+
+    ``pose`` are their relative poses ``(N, L, 4, 4)``.
+    """
     cost = np.where(pose[:, 0, 2, 2] < 0, TURNED_OVER, 0.0)
     cost += np.where(pose[:, 0, 0, 0] < 0, TURNED_ABOUT, 0.0)
-    turned = np.abs(pose[:, :, 1, 0]).max(axis=-1) > SAME
-    moved = np.abs(pose[:, :, :3, 3]).max(axis=(-1, -2)) > SAME * length_scale
+    turned = np.abs(pose[:, :, 1, 0]).max(axis=-1) > SAME_POSE
+    moved = np.abs(pose[:, :, :3, 3]).max(axis=(-1, -2)) > SAME_POSE * length_scale
     return np.asarray(cost + MOVED * (turned.astype(np.float64) + moved))
 
 
 def _distinct(pose: Matrices, cost: Numbers, length_scale: float) -> NDArray[np.int_]:
-    """The cheapest BEAM hypotheses of different frames; of equal frames the cheapest is enough."""
+    """The cheapest BEAM_WIDTH hypotheses with different frames; of equal frames the cheapest."""
     order = np.argsort(cost, kind="stable")
     frames = pose[order, 0, :3].reshape(len(order), -1)
-    apart = np.abs(frames[:, None] - frames[None]).max(axis=-1) > 1e-6 * max(1.0, length_scale)
+    difference = np.abs(frames[:, None] - frames[None]).max(axis=-1)
+    equal = ~(difference > SAME_HYPOTHESIS * max(1.0, length_scale))
     earlier = np.tri(len(order), k=-1, dtype=np.bool_)
-    repeated = (~apart & earlier).any(axis=1)
-    return np.asarray(order[~repeated][:BEAM])
+    return np.asarray(order[~(equal & earlier).any(axis=1)][:BEAM_WIDTH])

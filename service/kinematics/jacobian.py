@@ -4,7 +4,8 @@ A screw (ω; v) is a column of six numbers: ω = z and v = −ω × o for a join
 axis z through o, ω = 0 and v = z for one that slides along z; both in the base frame.
 Source: Lynch and Park, *Modern Robotics*, §5.1.1, eq. 5.11.
 
-Shapes: L samples and n joints; a table is ``(rows, 4, L)``, angles in radians.
+Shapes: L samples and n joints; a table is ``(rows, 4, L)``, angles in radians. Lengths should be
+measured in a unit that suits the arm, or they outweigh the angular parts.
 """
 
 from collections.abc import Sequence
@@ -14,12 +15,9 @@ from numpy.typing import NDArray
 
 from service.kinematics.chain import Table, frames, joint_frames
 from service.kinematics.dh import Convention
+from service.kinematics.tolerances import SAME_SCREW, ZERO_SINGULAR_VALUE
 
 Screws = NDArray[np.float64]
-
-# Relative to the largest singular value: far above rounding, far below any arm in generic pose.
-RANK = 1e-7
-SAME = 1e-7
 
 
 def space_jacobian(
@@ -44,17 +42,20 @@ def coincident(jacobian: Screws) -> NDArray[np.bool_]:
     They turn about one line, or slide along one direction, in the same sense or the opposite.
     """
     one, other = jacobian[..., :, None], jacobian[..., None, :]
-    away = np.minimum(np.abs(one - other).max(axis=(0, 1)), np.abs(one + other).max(axis=(0, 1)))
-    return np.asarray((away < SAME) & ~np.eye(len(away), dtype=np.bool_))
+    error = np.minimum(np.abs(one - other).max(axis=(0, 1)), np.abs(one + other).max(axis=(0, 1)))
+    return np.asarray((error < SAME_SCREW) & ~np.eye(len(error), dtype=np.bool_))
 
 
-def rank(jacobian: Screws) -> int:
-    """The rank of ``(L, 6, n)`` at a generic configuration: the highest of all samples.
+def rank(jacobian: Screws, zero: float = ZERO_SINGULAR_VALUE) -> int:
+    """The rank of ``(L, m, n)`` at a generic configuration: the median of that of all samples.
 
-    Lengths should be measured in a unit that suits the arm, or they outweigh the angular parts.
+    So neither a singular configuration nor a badly rounded one decides. A singular value counts as
+    0 up to ``zero`` times the largest of all samples (or times 1, if all are smaller: a joint's
+    screw has an entry of that size).
     """
     singular = np.linalg.svd(jacobian, compute_uv=False)
-    return int((singular > RANK * singular[:, :1]).sum(axis=1).max())
+    ranks = np.sort((singular > zero * singular.max(initial=1.0)).sum(axis=-1))
+    return int(ranks[len(ranks) // 2])
 
 
 def dependent(jacobian: Screws) -> NDArray[np.bool_]:
@@ -66,5 +67,5 @@ def dependent(jacobian: Screws) -> NDArray[np.bool_]:
     n = jacobian.shape[-1]
     padded = np.zeros((len(jacobian), n))
     padded[:, : singular.shape[1]] = singular
-    null = np.where((padded <= RANK * singular[:, :1])[..., None], rows, 0.0)
-    return np.asarray((np.abs(null).max(axis=1) > np.sqrt(RANK)).all(axis=0))
+    null = np.where((padded <= ZERO_SINGULAR_VALUE * singular[:, :1])[..., None], rows, 0.0)
+    return np.asarray((np.abs(null).max(axis=1) > np.sqrt(ZERO_SINGULAR_VALUE)).all(axis=0))

@@ -12,14 +12,12 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from service.kinematics.tolerances import OUTER_AXES_ALIGNED
 from service.kinematics.transforms import Matrices, Numbers, rot_x, rot_y, rot_z
 
 TAIT_BRYAN: Final = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
 PROPER: Final = ("XYX", "XZX", "YXY", "YZY", "ZXZ", "ZYZ")
 SEQUENCES: Final = (*TAIT_BRYAN, *PROPER)
-
-# Where the middle angle's sine (or cosine) is below this, the outer axes are one line.
-SINGULAR: Final = 1e-7
 
 _TURNS = {"X": rot_x, "Y": rot_y, "Z": rot_z}
 
@@ -93,7 +91,7 @@ def to_angles(sequence: str, rotation: Matrices, *, fixed: bool = False) -> Numb
         middle = np.arctan2(even * rotation[..., i, k], outer)
         first = np.arctan2(-even * rotation[..., j, k], rotation[..., k, k])
         last = np.arctan2(-even * rotation[..., i, j], rotation[..., i, i])
-    singular = outer < SINGULAR
+    singular = outer < OUTER_AXES_ALIGNED
     first = np.where(singular, np.arctan2(even * rotation[..., k, j], rotation[..., j, j]), first)
     return np.stack([first, middle, np.where(singular, 0.0, last)], axis=-1)
 
@@ -112,7 +110,7 @@ def is_singular(sequence: str, rotation: Matrices, *, fixed: bool = False) -> ND
     """Where only the sum or difference of the outer angles is determined, ``(...)``."""
     middle = to_angles(sequence, rotation, fixed=fixed)[..., 1]
     outer = np.sin(middle) if sequence[2] == sequence[0] else np.cos(middle)
-    return np.asarray(np.abs(outer) < SINGULAR)
+    return np.asarray(np.abs(outer) < OUTER_AXES_ALIGNED)
 
 
 def last_angle(sequence: str, first_two: Numbers, rotation: Matrices) -> Numbers:

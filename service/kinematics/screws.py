@@ -11,10 +11,8 @@ from functools import reduce
 import numpy as np
 from numpy.typing import ArrayLike
 
+from service.kinematics.tolerances import NO_ROTATION
 from service.kinematics.transforms import Matrices, Numbers, identity
-
-# An ω this short is no axis to turn about, only what rounding has left.
-NO_TURN = 1e-12
 
 
 def skew(vector: Numbers) -> Matrices:
@@ -27,27 +25,6 @@ def skew(vector: Numbers) -> Matrices:
     matrix[..., 0, 1], matrix[..., 0, 2], matrix[..., 1, 2] = -z, y, -x
     matrix[..., 1, 0], matrix[..., 2, 0], matrix[..., 2, 1] = z, -y, x
     return matrix
-
-
-def screw_axis(direction: ArrayLike, point: ArrayLike, pitch: ArrayLike = 0.0) -> Numbers:
-    """The screw axis ``(..., 6)`` along the unit vector ``direction`` through ``point``.
-
-    ``pitch`` is the advance per radian; infinite for a sliding joint. Source: *Modern Robotics*,
-    definition 3.24.
-
-    >>> screw_axis([0, 0, 1], [2, 0, 0]) + 0.0
-    array([ 0.,  0.,  1.,  0., -2.,  0.])
-    """
-    direction, point = np.broadcast_arrays(
-        np.asarray(direction, dtype=np.float64), np.asarray(point, dtype=np.float64)
-    )
-    advance = np.asarray(pitch, dtype=np.float64)[..., None]
-    slides = np.isinf(advance)
-    moment = -np.cross(direction, point) + np.where(slides, 0.0, advance) * direction
-    return np.concatenate(
-        np.broadcast_arrays(np.where(slides, 0.0, direction), np.where(slides, direction, moment)),
-        axis=-1,
-    )
 
 
 def exponential(screw: Numbers, amount: ArrayLike) -> Matrices:
@@ -64,7 +41,7 @@ def exponential(screw: Numbers, amount: ArrayLike) -> Matrices:
     shape = np.broadcast_shapes(screw.shape[:-1], amount.shape)
     screw, amount = np.broadcast_to(screw, (*shape, 6)), np.broadcast_to(amount, shape)
     rate = np.linalg.norm(screw[..., :3], axis=-1)
-    turns = rate > NO_TURN
+    turns = rate > NO_ROTATION
     unit = screw / np.where(turns, rate, 1.0)[..., None]
     angle = np.where(turns, rate * amount, 0.0)[..., None, None]
     omega = skew(unit[..., :3])

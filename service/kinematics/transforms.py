@@ -46,16 +46,6 @@ def _rotation(angle: ArrayLike, first: int, second: int) -> Matrices:
     return matrices
 
 
-def trans(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Matrices:
-    """Translation by ``(x, y, z)``."""
-    x, y, z = np.broadcast_arrays(x, y, z)
-    matrices = identity(x.shape)
-    matrices[..., 0, 3] = x
-    matrices[..., 1, 3] = y
-    matrices[..., 2, 3] = z
-    return matrices
-
-
 def inverse(transform: Matrices) -> Matrices:
     """The inverse [Rᵀ, −Rᵀp; 0 1] of rigid transforms ``(..., 4, 4)``.
 

@@ -16,8 +16,8 @@ from service.expressions.tree import (
     Number,
     Operator,
     Pi,
+    SymbolNode,
     Unit,
-    Variable,
 )
 
 _FUNCTIONS: Mapping[str, sympy.Function] = {
@@ -60,7 +60,7 @@ class Algebra:
                 return sympy.Rational(exact.numerator, exact.denominator)
             case Pi():
                 return sympy.pi
-            case Variable(symbol):
+            case SymbolNode(symbol):
                 return self.symbols[symbol.name]
             case Unit(operand, unit):
                 return self._node(operand) * (sympy.pi / 180 if unit == "deg" else 1)

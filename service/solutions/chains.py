@@ -6,12 +6,11 @@ from itertools import chain
 import sympy
 
 from service.catalogue import Exercise, Robot, ScrewRobot
+from service.catalogue.fields import FrameName
 from service.catalogue.robot import FormulaRow
 from service.kinematics.dh import Convention
 from service.solutions.algebra import Algebra
 from service.solutions.motions import Fixed, Motion, Shift, Turn, X, Z, inverse, rotation_about
-
-Frame = int | str
 
 
 def link(row: FormulaRow, convention: Convention, algebra: Algebra) -> list[Motion]:
@@ -23,7 +22,7 @@ def link(row: FormulaRow, convention: Convention, algebra: Algebra) -> list[Moti
 
 
 def between(
-    exercise: Exercise, start: Frame, end: Frame, algebra: Algebra, *, home: bool = False
+    exercise: Exercise, start: FrameName, end: FrameName, algebra: Algebra, *, home: bool = False
 ) -> list[Motion]:
     """The motions that lead from one frame of the robot to another.
 
@@ -48,7 +47,7 @@ def _steps(exercise: Exercise, algebra: Algebra) -> list[list[Motion]]:
             raise LookupError(f"exercise {exercise.id!r} has no robot")
 
 
-def _place(exercise: Exercise, frame: Frame, steps: int) -> int:
+def _place(exercise: Exercise, frame: FrameName, steps: int) -> int:
     if isinstance(frame, str):
         return {"base": 0, "tool": steps}[frame]
     return frame - exercise.joints[0].index + 1

@@ -1,13 +1,13 @@
 """An answer as it is posted, as text that may be pasted, and as LaTeX."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from service.expressions.printing.latex import to_latex
 from service.expressions.printing.text import to_text
 from service.expressions.tree import Node
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention
+from service.solutions.model_solution import PrintedAnswer, Shown
 
 # As the column is headed: in a modified table a and α carry the index i−1.
 _HEADERS = {
@@ -16,19 +16,7 @@ _HEADERS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Shown:
-    """One answer. ``answer`` is its JSON value; ``text`` and ``latex`` may be pasted instead.
-
-    ``answer`` is None where the answer is longer than what may be handed in.
-    """
-
-    answer: object
-    text: str
-    latex: str
-
-
-def matrix(nodes: Sequence[Sequence[Node]]) -> Shown:
+def matrix(nodes: Sequence[Sequence[Node]]) -> PrintedAnswer:
     """A matrix: nested lists, MATLAB's brackets, and a LaTeX matrix."""
     cells = [[to_text(node) for node in row] for row in nodes]
     widths = [max(map(len, column)) + 2 for column in zip(*cells, strict=True)]
@@ -36,20 +24,19 @@ def matrix(nodes: Sequence[Sequence[Node]]) -> Shown:
         "".join(f"{cell}, ".ljust(width) for cell, width in zip(row, widths, strict=True))
         for row in cells
     ]
-    return Shown(
-        cells, "[" + ";\n ".join(line.rstrip(", ") for line in lines) + "]", _latex_matrix(nodes)
-    )
+    text = "[" + ";\n ".join(line.rstrip(", ") for line in lines) + "]"
+    return PrintedAnswer(text, _latex_matrix(nodes), cells)
 
 
-def listed(nodes: Sequence[Node]) -> Shown:
+def listed(nodes: Sequence[Node]) -> PrintedAnswer:
     """A list of values: in LaTeX a column."""
     cells = list(map(to_text, nodes))
-    return Shown(cells, f"[{', '.join(cells)}]", _latex_matrix([[node] for node in nodes]))
+    return PrintedAnswer(f"[{', '.join(cells)}]", _latex_matrix([[node] for node in nodes]), cells)
 
 
 def table(
     rows: Sequence[Sequence[Node]], labels: Sequence[str], convention: Convention, *, named: bool
-) -> Shown:
+) -> PrintedAnswer:
     """A DH table: rows by column, a Markdown table, and a LaTeX tabular.
 
     The answer names its convention where that is ``named``.
@@ -58,30 +45,33 @@ def table(
     answer: dict[str, object] = {"rows": [dict(zip(COLUMNS, row, strict=True)) for row in cells]}
     if named:
         answer["convention"] = convention.value
-    return Shown(answer, _markdown(labels, cells), _tabular(labels, rows, convention))
+    return PrintedAnswer(_markdown(labels, cells), _tabular(labels, rows, convention), answer)
 
 
-def row(nodes: Sequence[Node], label: str, convention: Convention) -> Shown:
+def row(nodes: Sequence[Node], label: str, convention: Convention) -> PrintedAnswer:
     """One row of a DH table, set as a table of its own."""
     cells = list(map(to_text, nodes))
     answer = dict(zip(COLUMNS, cells, strict=True))
-    return Shown(answer, _markdown([label], [cells]), _tabular([label], [nodes], convention))
+    return PrintedAnswer(
+        _markdown([label], [cells]), _tabular([label], [nodes], convention), answer
+    )
 
 
-def no_row() -> Shown:
+def no_row() -> PrintedAnswer:
     """That a transform has no row."""
-    return Shown({"none": True}, "none", r"\text{none}")
+    return PrintedAnswer("none", r"\text{none}", {"none": True})
 
 
-def too_long() -> Shown:
+def too_long() -> PrintedAnswer:
     """That there is an answer, but none that could be handed in."""
-    return Shown(None, "longer than an answer may be", r"\text{longer than an answer may be}")
+    text = "longer than an answer may be"
+    return PrintedAnswer(text, rf"\text{{{text}}}", None)
 
 
 def product(labels: Sequence[str]) -> Shown:
     """A matrix as the product of link transforms, where written out it would be too long."""
     latex = " ".join(f"A_{{{label}}}" for label in labels)
-    return Shown(None, " ".join(f"A{label}" for label in labels), latex)
+    return Shown(" ".join(f"A{label}" for label in labels), latex)
 
 
 def _markdown(labels: Sequence[str], cells: Sequence[Sequence[str]]) -> str:

@@ -14,7 +14,7 @@ import sympy
 from service.catalogue import Exercise
 from service.expressions import ExpressionError, Symbol, Vocabulary, read
 from service.expressions.printing.text import to_text
-from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, Unit, Variable
+from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
 
 _NAMES: Mapping[type, str] = {
     sympy.sin: "sin",
@@ -35,7 +35,8 @@ _MOST_DECIMALS = 20
 # Beyond this many nodes a formula has more characters than are read of an answer.
 _MOST_NODES = 1000
 
-Place = tuple[int, list[int], bool, str]
+# How the factors of a product are sorted: rank, joints, whether it is a sine, text.
+FactorOrder = tuple[int, list[int], bool, str]
 
 
 class TooLongError(Exception):
@@ -65,7 +66,7 @@ class Writer:
         if isinstance(expression, sympy.Add):
             return _signed_sum(sorted(expression.args, key=self._in_sum), self._node)
         if isinstance(expression, sympy.Symbol):
-            return Variable(self._symbols[expression.name])
+            return SymbolNode(self._symbols[expression.name])
         if isinstance(expression, sympy.Pow):
             return self._power(*expression.args)
         if expression == sympy.pi:
@@ -110,7 +111,7 @@ class Writer:
         """The product of factors that are no fractions, in order."""
         nodes = [
             _number(each) if isinstance(each, sympy.Rational) else self._node(each)
-            for each in sorted(factors, key=self._place)
+            for each in sorted(factors, key=self._factor_order)
         ]
         return reduce(lambda left, right: Binary("*", left, right), nodes or [_number(sympy.S.One)])
 
@@ -130,7 +131,7 @@ class Writer:
         if short is None or not _reads_as(short, call, self._vocabulary):
             return call
         self.used[short] = to_text(call)
-        return Variable(Symbol(short, "number"))
+        return SymbolNode(Symbol(short, "number"))
 
     def _shorthand(self, function: str, terms: Sequence[sympy.Expr]) -> str | None:
         """Such as c12 for the cosine of a sum of joint angles."""
@@ -140,13 +141,13 @@ class Writer:
             return None
         return function[0] + "".join(map(str, sorted(joints)))
 
-    def _in_sum(self, term: sympy.Expr) -> tuple[bool, list[Place], list[int], str]:
+    def _in_sum(self, term: sympy.Expr) -> tuple[bool, list[FactorOrder], list[int], str]:
         """Added before subtracted, lengths alone before others, then by the first joints."""
-        places = sorted(map(self._place, sympy.Mul.make_args(term)))
-        orders = sorted(self._order[symbol.name] for symbol in term.free_symbols)
-        return _negative(term), [place for place in places if place[0] > 1], orders, str(term)
+        factors = sorted(map(self._factor_order, sympy.Mul.make_args(term)))
+        joints = sorted(self._order[symbol.name] for symbol in term.free_symbols)
+        return _negative(term), [each for each in factors if each[0] > 1], joints, str(term)
 
-    def _place(self, factor: sympy.Expr) -> Place:
+    def _factor_order(self, factor: sympy.Expr) -> FactorOrder:
         """Numbers, then symbols, then sines and cosines by their joints, then brackets."""
         base = factor.base if isinstance(factor, sympy.Pow) else factor
         rank = 3

@@ -4,6 +4,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from service.catalogue.parts import posted_forms
 from service.grading import FeedbackLevel, Submission
 
 FeedbackName = Literal["full", "verdicts", "score"]
@@ -15,13 +16,9 @@ class GradeRequest(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     answers: dict[str, Any] = Field(
-        description="One answer for each part, by the part's id; a part left out is missing. "
-        'A `dh_table` is `{"rows": [{"a", "alpha", "d", "theta"}, …]}`; a `transform`, `rotation` '
-        "or other `matrix` a list of rows, each a list of entries; a `position`, a `vector` and "
-        "three `euler_angles` a list of entries; `screw_axes` a list of six-vectors (ω; v); a "
-        '`dh_row` `{"a", "alpha", "d", "theta"}`, or `{"none": true}` where the transform has '
-        "none. An entry is a number or a formula as text; what is written as a table or matrix "
-        "elsewhere may be pasted as one text."
+        description="One answer for each part, by the part's id; a part left out is missing. Its "
+        f"form depends on the kind of the part ({posted_forms()}). An entry is a number or a "
+        "formula as text; what is written as a table or matrix elsewhere may be pasted as one text."
     )
     angle_unit: Literal["radians", "degrees"] = Field(
         "radians", description="What a bare number means where an angle is asked for."

@@ -12,6 +12,7 @@ import pytest
 
 from service.authoring import template
 from tests.api.test_server import ROOT, announced_port
+from tests.guards import ANSWER
 
 
 @pytest.fixture
@@ -44,11 +45,11 @@ def server(folder: Path, log: Path) -> Iterator[httpx.Client]:
     ):
         try:
             address = f"http://127.0.0.1:{announced_port(process, log)}"
-            with httpx.Client(base_url=address, trust_env=False, timeout=20) as client:
+            with httpx.Client(base_url=address, trust_env=False, timeout=ANSWER) as client:
                 yield client
         finally:
             process.terminate()
-            process.wait(timeout=20)
+            process.wait(timeout=ANSWER)
 
 
 def title(server: httpx.Client) -> str:

@@ -12,6 +12,8 @@ from pathlib import Path
 import httpx
 import pytest
 
+from tests.guards import ANSWER
+
 ROOT = Path(__file__).parents[2]
 GRADE = "/v1/exercises/planar-rrr/grade"
 
@@ -30,7 +32,7 @@ def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
             yield announced_port(process, log)
         finally:
             process.terminate()
-            process.wait(timeout=20)
+            process.wait(timeout=ANSWER)
     assert "Traceback" not in log.read_text(encoding="utf-8")
 
 
@@ -48,7 +50,9 @@ def announced_port(process: subprocess.Popen[bytes], log: Path) -> int:
 
 
 def test_it_grades_and_does_not_name_its_server(port: int) -> None:
-    response = httpx.post(f"http://127.0.0.1:{port}{GRADE}", json={"answers": {}}, trust_env=False)
+    response = httpx.post(
+        f"http://127.0.0.1:{port}{GRADE}", json={"answers": {}}, trust_env=False, timeout=ANSWER
+    )
     assert response.status_code == 200
     assert response.json()["exercise"] == "planar-rrr"
     assert "server" not in response.headers
@@ -57,7 +61,7 @@ def test_it_grades_and_does_not_name_its_server(port: int) -> None:
 
 def test_head_has_no_body_on_the_wire(port: int) -> None:
     url = f"http://127.0.0.1:{port}/v1/exercises"
-    with httpx.Client(trust_env=False) as client:
+    with httpx.Client(trust_env=False, timeout=ANSWER) as client:
         length = client.head(url).headers["content-length"]
         assert int(length) == len(client.get(url).content)
 
@@ -71,7 +75,7 @@ def test_twenty_megabytes_are_refused_while_they_are_still_coming(
     piece = b" " * 65536
     if chunked:
         piece = b"10000\r\n" + piece + b"\r\n"
-    with socket.create_connection(("127.0.0.1", port), timeout=20) as connection:
+    with socket.create_connection(("127.0.0.1", port), timeout=ANSWER) as connection:
         head = f"POST {path} HTTP/1.1\r\nHost: x\r\n".encode() + framing + b"\r\n\r\n"
         connection.sendall(head)
         # Five pieces are over the limit; the rest of the 20 MB is never sent.
@@ -98,7 +102,7 @@ def test_a_bad_exercise_file_refuses_the_start(tmp_path: Path) -> None:
     environment = os.environ | {"DH_GRADER_EXERCISES_DIR": str(tmp_path)}
     result = subprocess.run(
         [sys.executable, "-m", "service", "serve", "--port", "0"],
-        cwd=ROOT, env=environment, capture_output=True, text=True, timeout=30, check=False,
+        cwd=ROOT, env=environment, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert result.returncode == 2
     assert "broken.toml: source: Field required" in result.stderr
@@ -109,7 +113,7 @@ def test_so_does_it_under_a_server_of_ones_own(tmp_path: Path) -> None:
     environment = os.environ | {"DH_GRADER_EXERCISES_DIR": str(tmp_path)}
     result = subprocess.run(
         [sys.executable, "-m", "uvicorn", "service.app:app", "--port", "0"],
-        cwd=ROOT, env=environment, capture_output=True, text=True, timeout=30, check=False,
+        cwd=ROOT, env=environment, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert result.returncode != 0
     assert "holds no exercise file" in result.stderr

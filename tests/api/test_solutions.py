@@ -81,9 +81,9 @@ def test_a_solution_is_kept_by_its_version(
 ) -> None:
     solved: list[str] = []
 
-    def solve(exercise: Exercise) -> str:
+    def solve(exercise: Exercise) -> bytes:
         solved.append(exercise.version)
-        return exercise.version
+        return exercise.version.encode()
 
     monkeypatch.setattr("service.api.solutions._solved", solve)
     exercise = catalogue["scara"]
@@ -91,10 +91,10 @@ def test_a_solution_is_kept_by_its_version(
     async def ask() -> None:
         solutions = Solutions()
         asked = [solutions.of(exercise), solutions.of(exercise), solutions.of(exercise)]
-        assert await asyncio.gather(*asked) == [exercise.version] * 3
+        assert await asyncio.gather(*asked) == [exercise.version.encode()] * 3
         assert len(solved) == 1
         for i in range(KEPT):
-            assert await solutions.of(replace(exercise, version=str(i))) == str(i)
+            assert await solutions.of(replace(exercise, version=str(i))) == str(i).encode()
         await solutions.of(replace(exercise, version=str(KEPT - 1)))
         assert len(solved) == 1 + KEPT
         await solutions.of(exercise)
@@ -126,7 +126,7 @@ def test_the_loop_goes_on_while_one_is_worked_out(
 PROGRAM = r"""
 import sys
 import service.app, service.grading, service.cli.program
-print(sorted({"sympy", "service.solutions"} & set(sys.modules)))
+print(sorted({"sympy", "service.solutions.solution"} & set(sys.modules)))
 """
 
 

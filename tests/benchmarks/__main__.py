@@ -1,4 +1,8 @@
-"""Print every figure that has a budget, beside the budget and a plain-numpy floor."""
+"""Print every figure that has a budget, beside the budget and a plain-numpy floor.
+
+With ``--against DIR``, print instead each line as a multiple of the floor here and in another
+checkout, both measured in turn; exit with 1 where a line is slower here by more than 3 %.
+"""
 
 import argparse
 import re
@@ -14,7 +18,7 @@ from service.expressions import read
 from service.grading import Submission, grade
 from service.kinematics.chain import pose
 from service.kinematics.dh import Convention
-from tests.benchmarks import answers, floors, server
+from tests.benchmarks import answers, floors, paired, server
 from tests.benchmarks.timing import median_of_each, median_seconds
 
 ENTRY = "-s1*(d3*s2 + d2*c2) + d2*c1"
@@ -85,11 +89,8 @@ def in_process() -> list[tuple[str, float, float | None]]:
     ]
 
 
-def main() -> None:
-    """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--no-server", action="store_true", help="leave out what needs a server")
-    options = parser.parse_args()
+def print_budgets(*, with_server: bool) -> None:
+    """Print each figure of this checkout beside its budget."""
     figures = in_process()
     floor = figures[0][1]
     printed = Table("what", "median", "× floor", "budget", "")
@@ -101,7 +102,7 @@ def main() -> None:
             f"{budget:.2f} ms" if budget else "",
             "" if budget is None else "ok" if milliseconds <= budget else "over",
         )
-    if not options.no_server:
+    if with_server:
         for what, bodies in server.BODIES.items():
             speed = server.posts_per_second(bodies)
             share = speed["graded"] / speed["trivial"]
@@ -126,5 +127,36 @@ def main() -> None:
     Console(width=120).print(printed)
 
 
+def print_comparison(there: Path, rounds: int, *, with_server: bool) -> bool:
+    """Print each line of this checkout beside that of another; return whether none is slower."""
+    lines = paired.compare(there, rounds, with_server=with_server)
+    printed = Table(f"median of {rounds}, × floor", "here", str(there), "here / there", "")
+    for line in lines:
+        printed.add_row(
+            line.what,
+            f"{line.here:.2f}",
+            f"{line.there:.2f}",
+            f"{line.ratio:.3f}",
+            "slower" if line.slower else "ok",
+        )
+    Console(width=120).print(printed)
+    return not any(line.slower for line in lines)
+
+
+def main() -> int:
+    """Measure and print; return the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--no-server", action="store_true", help="leave out what needs a server")
+    parser.add_argument("--against", type=Path, metavar="DIR", help="another checkout")
+    parser.add_argument("--rounds", type=int, default=7, help="of both checkouts (7)")
+    options = parser.parse_args()
+    with_server = not options.no_server
+    if options.against is None:
+        print_budgets(with_server=with_server)
+        return 0
+    there = options.against.resolve()
+    return 0 if print_comparison(there, options.rounds, with_server=with_server) else 1
+
+
 if __name__ == "__main__":
-    main()
+    raise SystemExit(main())

@@ -7,7 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from service.catalogue import CatalogueError, exercise_files, load_catalogue, open_catalogue
+from service.catalogue import (
+    CatalogueError,
+    exercise_files,
+    load_catalogue,
+    open_catalogue,
+)
 from service.catalogue.live import LiveCatalogue
 from tests.catalogue.test_faults import VALID
 

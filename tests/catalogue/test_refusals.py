@@ -8,8 +8,8 @@ from service.catalogue import CatalogueError, load_exercise
 from tests.catalogue.test_faults import VALID, write
 
 KINDS = (
-    "'dh_table', 'link_transforms', 'transform', 'rotation', 'matrix', 'position', 'vector', "
-    "'euler_angles', 'screw_axes' or 'dh_row'"
+    "'dh_row', 'dh_table', 'euler_angles', 'link_transforms', 'matrix', 'position', 'rotation', "
+    "'screw_axes', 'transform' or 'vector'"
 )
 CONVENTIONS = "'standard', 'modified' or 'either'"
 FRAMES = "'base' or 'tool', or input should be a valid integer"

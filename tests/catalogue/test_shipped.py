@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from service.catalogue import DhTableSpec, Exercise, load_catalogue, load_exercise, shipped_folder
+from service.catalogue import Exercise, load_catalogue, load_exercise, shipped_folder
+from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading import Verdict
 from service.kinematics.dh import Convention
-from tests.grading.submitting import full_marks, handed_in, part, table
+from tests.grading.support.submitting import full_marks, handed_in, part, table
 
 Numbers = NDArray[np.float64]
 FILES = sorted(shipped_folder().glob("*.toml"))

@@ -1,4 +1,5 @@
 import re
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -119,12 +120,18 @@ def test_show_of_an_unknown_one_brings_the_nearest(run: Run) -> None:
     assert "Did you mean 'scara'?" in result.stderr
 
 
-def test_check_accepts_a_file_a_folder_and_by_default_the_catalogue(run: Run) -> None:
-    folder = shipped_folder()
-    one = run("exercises", "check", folder / "scara.toml")
+def test_check_accepts_a_file_a_folder_and_by_default_the_catalogue(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("scara.toml", "simple-twist.toml"):
+        shutil.copy(shipped_folder() / name, tmp_path)
+    one = run("exercises", "check", tmp_path / "scara.toml")
     assert (one.exit_code, one.stdout.split(":")[0]) == (0, "scara")
     assert re.fullmatch(r"scara: ok, \d parts, \d checks\n", one.stdout)
-    assert run("exercises", "check", folder).stdout == run("exercises", "check").stdout
+    monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", str(tmp_path))
+    folder = run("exercises", "check", tmp_path).stdout
+    assert folder == run("exercises", "check").stdout
+    assert folder.endswith("2 exercises: 2 ok\n")
 
 
 @pytest.mark.parametrize("whole_folder", [True, False])

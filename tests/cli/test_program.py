@@ -22,7 +22,6 @@ def process(
         cwd=ROOT,
         env=os.environ | environment,
         capture_output=True,
-        timeout=30,
         check=False,
     )
 

@@ -6,9 +6,7 @@ from collections.abc import Callable
 import pytest
 from typer.testing import Result
 
-from service.api.exercises import shape
 from service.catalogue import load_catalogue, shipped_folder
-from service.cli.shapes import in_words
 
 Run = Callable[..., Result]
 
@@ -64,4 +62,4 @@ def test_what_each_answer_looks_like(exercise_id: str, run: Run) -> None:
 def test_every_part_of_the_catalogue_has_a_sentence() -> None:
     for exercise in load_catalogue(shipped_folder()).values():
         for part in exercise.parts:
-            assert re.fullmatch(r"(?:a|one) [^{}\[\]]+", in_words(shape(part, exercise)))
+            assert re.fullmatch(r"(?:a|one) [^{}\[\]]+", part.shape(exercise.reference).in_words())

@@ -1,4 +1,4 @@
-"""Finds the codes that the program may tell, by reading its source.
+"""Finds the codes of the messages that the program may give, by reading its source.
 
 A code is whatever is handed over as ``code``: to a class that has a field or an argument of that
 name (Finding, Note, ExpressionError …), or to a function that passes it on to one. It must be
@@ -19,7 +19,7 @@ Given = list[tuple[str, ast.expr]]
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class CodeUse:
     """A code, and the file and line where it is handed over."""
 
     code: str
@@ -42,30 +42,32 @@ def sources(folder: Path) -> dict[str, str]:
     }
 
 
-def codes_in(files: Mapping[str, str]) -> list[Told]:
+def codes_in(files: Mapping[str, str]) -> list[CodeUse]:
     """Every code that is handed over in these files. Raises HiddenCodeError."""
     trees = {file: ast.parse(text) for file, text in files.items()}
-    classes = dict(found for tree in trees.values() for found in _classes(tree))
-    functions = dict(found for tree in trees.values() for found in _functions(tree))
+    nodes = {file: list(ast.walk(tree)) for file, tree in trees.items()}
+    classes = dict(found for each in nodes.values() for found in _classes(each))
+    passing_on = {file: dict(_functions(each)) for file, each in nodes.items()}
+    functions = {name: at for found in passing_on.values() for name, at in found.items()}
     constants = [given for tree in trees.values() for given in _given(tree.body)]
-    told: list[Told] = []
+    uses: list[CodeUse] = []
     for file, tree in trees.items():
-        imported = _imported(tree)
+        imported = _imported(nodes[file])
         passing = {name: functions[name] for name in imported & functions.keys()}
-        carriers = {**classes, **passing, **dict(_functions(tree))}
+        carriers = {**classes, **passing, **passing_on[file]}
         known = [given for given in constants if given[0] in imported]
         known += _given(tree.body)
-        for function, call in _calls(tree, None):
+        for function, call in _calls(tree):
             value = _handed_over(call, carriers)
             if value is not None:
                 found = _texts(value, function, known, file)
-                told += [Told(text, file, call.lineno) for text in found]
-    return told
+                uses += [CodeUse(text, file, call.lineno) for text in found]
+    return uses
 
 
-def _classes(tree: ast.Module) -> Iterator[tuple[str, int]]:
+def _classes(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, int]]:
     """The classes that carry a code, each with its place among the arguments."""
-    for node in ast.walk(tree):
+    for node in nodes:
         if not isinstance(node, ast.ClassDef):
             continue
         arguments = [
@@ -80,9 +82,9 @@ def _classes(tree: ast.Module) -> Iterator[tuple[str, int]]:
             yield node.name, arguments.index(CODE)
 
 
-def _functions(tree: ast.Module) -> Iterator[tuple[str, int]]:
+def _functions(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, int]]:
     """The functions and methods that pass a code on, likewise."""
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, Function) and node.name != "__init__" and CODE in _arguments(node):
             yield node.name, _arguments(node).index(CODE)
 
@@ -93,8 +95,8 @@ def _arguments(function: Function) -> list[str]:
     return names[1:] if names[:1] in (["self"], ["cls"]) else names
 
 
-def _imported(tree: ast.Module) -> set[str]:
-    imports = (node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom))
+def _imported(nodes: Iterable[ast.AST]) -> set[str]:
+    imports = (node for node in nodes if isinstance(node, ast.ImportFrom))
     return {alias.name for node in imports for alias in node.names}
 
 
@@ -110,12 +112,15 @@ def _given(nodes: Iterable[ast.AST]) -> Given:
     return given
 
 
-def _calls(node: ast.AST, around: Function | None) -> Iterator[tuple[Function | None, ast.Call]]:
-    """All calls below a node, each with the function that it stands in."""
-    for child in ast.iter_child_nodes(node):
-        if isinstance(child, ast.Call):
-            yield around, child
-        yield from _calls(child, child if isinstance(child, Function) else around)
+def _calls(tree: ast.Module) -> Iterator[tuple[Function | None, ast.Call]]:
+    """All calls, each with the innermost function that it stands in."""
+    waiting: list[tuple[ast.AST, Function | None]] = [(tree, None)]
+    while waiting:
+        node, around = waiting.pop()
+        if isinstance(node, ast.Call):
+            yield around, node
+        inside = node if isinstance(node, Function) else around
+        waiting += [(child, inside) for child in ast.iter_child_nodes(node)]
 
 
 def _handed_over(call: ast.Call, carriers: Mapping[str, int]) -> ast.expr | None:

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 _CODE = re.compile(r"^```.*?^```$", re.DOTALL | re.MULTILINE)
 _LINK = re.compile(r"\]\(([^)#\s]+)[^)]*\)")
 
@@ -16,17 +16,22 @@ def prose(page: Path) -> str:
     return _CODE.sub("", page.read_text(encoding="utf-8"))
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_a_page_names_others_by_links(page: Path) -> None:
     assert re.findall(r"`[\w/-]+\.md`", prose(page)) == []
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_a_link_leads_to_a_file(page: Path) -> None:
     targets = [target for target in _LINK.findall(prose(page)) if "://" not in target]
     assert [target for target in targets if not (page.parent / target).is_file()] == []
 
 
-def test_there_are_links() -> None:
-    linked = {Path(target).name for page in PAGES for target in _LINK.findall(prose(page))}
-    assert {page.name for page in PAGES} - linked == {"README.md"}
+def test_every_page_is_linked_from_another() -> None:
+    linked = {
+        (page.parent / target).resolve()
+        for page in PAGES
+        for target in _LINK.findall(prose(page))
+        if "://" not in target
+    }
+    assert set(PAGES) - linked == set()

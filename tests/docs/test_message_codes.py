@@ -1,9 +1,10 @@
-"""docs/messages.md lists every code that the program tells, in its place, and no other."""
+"""docs/messages.md lists every code that the program gives, in its place, and no other."""
 
 import json
 import re
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -16,15 +17,14 @@ from service.grading.reading.preview import preview_pasted
 from service.grading.reading.table import MAX_ROWS
 from service.grading.work_budget import MAX_CHARACTERS
 from service.grids import GRID_LIMITS
-from tests.docs.codes import HiddenCodeError, codes_in, sources
+from tests.docs.codes import CodeUse, HiddenCodeError, codes_in, sources
 from tests.expressions.corpus_files import ROBOT
-from tests.grading.exercise_texts import told
-from tests.grading.robots import COLUMNS, EXACT, STANFORD
-from tests.grading.submitting import as_data, handed_in, part, table
+from tests.grading.support.exercise_texts import all_codes
+from tests.grading.support.robots import COLUMNS, EXACT, STANFORD
+from tests.grading.support.submitting import as_data, handed_in, part, table
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "messages.md").read_text(encoding="utf-8")
-PROGRAM = codes_in(sources(ROOT / "service"))
 
 UNREAD = "A formula that cannot be read"
 NOTED = "A formula that is read, with a note"
@@ -127,17 +127,23 @@ LINES = lines(PAGE)
 # --- the page and the program
 
 
+@cache
+def program() -> Sequence[CodeUse]:
+    """Every code in the program; found on first use, for it takes a second."""
+    return codes_in(sources(ROOT / "service"))
+
+
 def test_every_code_of_the_program_is_on_the_page() -> None:
-    assert {told.code for told in PROGRAM} - {line.code for line in LINES} == set()
+    assert {use.code for use in program()} - {line.code for line in LINES} == set()
 
 
 def test_every_code_on_the_page_is_one_of_the_programs() -> None:
-    assert {line.code for line in LINES} - {told.code for told in PROGRAM} == set()
+    assert {line.code for line in LINES} - {use.code for use in program()} == set()
 
 
 def test_every_file_that_tells_codes_has_its_section() -> None:
     files = tuple(file for _, files in PLACES for file in files)
-    assert {told.file for told in PROGRAM if not told.file.startswith(files)} == set()
+    assert {use.file for use in program() if not use.file.startswith(files)} == set()
 
 
 @pytest.mark.parametrize(("sections", "files"), PLACES, ids=lambda names: names[0])
@@ -145,7 +151,7 @@ def test_a_section_lists_what_its_files_tell(
     sections: tuple[str, ...], files: tuple[str, ...]
 ) -> None:
     listed = {line.code for line in LINES if line.section in sections}
-    assert listed == {told.code for told in PROGRAM if told.file.startswith(files)}
+    assert listed == {use.code for use in program() if use.file.startswith(files)}
 
 
 def test_a_section_lists_a_code_once() -> None:
@@ -164,7 +170,7 @@ def test_a_line_of_the_page_without_its_example() -> None:
 def codes_of(exercise: Exercise, part_id: str, answer: object) -> tuple[set[str], set[str]]:
     """The codes that an answer draws, at the level full and at the level score."""
     full, verdicts, score = (
-        told(part(handed_in(exercise, {part_id: answer}, feedback=level), part_id))
+        all_codes(part(handed_in(exercise, {part_id: answer}, feedback=level), part_id))
         for level in (FeedbackLevel.FULL, FeedbackLevel.VERDICTS, FeedbackLevel.SCORE)
     )
     assert full == verdicts
@@ -322,7 +328,7 @@ ERROR = "class E(Exception):\n    def __init__(self, code: str, span: int) -> No
     ],
 )
 def test_codes_are_found(text: str, codes: set[str]) -> None:
-    assert {told.code for told in codes_in({"a.py": f"{CARRIER}{ERROR}{text}\n"})} == codes
+    assert {use.code for use in codes_in({"a.py": f"{CARRIER}{ERROR}{text}\n"})} == codes
 
 
 def test_codes_are_found_across_files() -> None:
@@ -332,7 +338,7 @@ def test_codes_are_found_across_files() -> None:
         "b.py": 'from carrier import info\ninfo("two")\n',
         "c.py": 'def info(text): ...\ninfo("three")\n',
     }
-    assert {(told.code, told.file, told.line) for told in codes_in(files)} == {
+    assert {(use.code, use.file, use.line) for use in codes_in(files)} == {
         ("one", "a.py", 2),
         ("two", "b.py", 2),
     }

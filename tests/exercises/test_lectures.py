@@ -12,8 +12,8 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import PartReport, Verdict
-from tests.grading.robots import AngleUnit
-from tests.grading.submitting import full_marks, handed_in, not_correct, part, table
+from tests.grading.support.robots import AngleUnit
+from tests.grading.support.submitting import full_marks, handed_in, not_correct, part, table
 
 
 def pasted(head: str, *rows: str) -> str:

@@ -14,7 +14,7 @@ import sympy as sp
 
 from service.catalogue import Exercise
 from service.grading import Verdict
-from tests.grading.submitting import full_marks, graded_pose, not_correct
+from tests.grading.support.submitting import full_marks, graded_pose, not_correct
 
 Matrix = list[list[str]]
 

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import pytest
 
 from service.catalogue import Exercise
-from tests.grading.robots import ROBOTS, SPELLINGS, Robot, Spelling
-from tests.grading.submitting import full_marks, graded_table
+from tests.grading.support.robots import ROBOTS, SPELLINGS, Robot, Spelling
+from tests.grading.support.submitting import full_marks, graded_table
 
 
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.exercise)

@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 
 from service.catalogue import Exercise
-from tests.grading.submitting import full_marks, handed_in, part
+from tests.grading.support.submitting import full_marks, handed_in, part
 
 four, five, six = sp.symbols("theta4 theta5 theta6")
 

@@ -1,8 +1,9 @@
-"""The written cases in corpus/*.txt, and the robot that they are about."""
+"""The written cases in corpus/, and the robot that they are about."""
 
+import ast
 import re
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from service.expressions import Symbol, Vocabulary, joint_variable
 
@@ -15,6 +16,8 @@ ROBOT = Vocabulary(
         Symbol("k", "number"),
     ]
 )
+_PYTHON = "python: "
+_REFUSED = re.compile(r"(.+) \| ([a-z_]+) \| ([0-9]+-[0-9]+)(?: (.+))? \| (.+)")
 _NUMBER = re.compile(r"(\w+) = (-?[0-9.]+)")
 
 
@@ -36,6 +39,69 @@ def cases(name: str) -> list[Case]:
             text, *answers = line.rsplit(" | ", columns)
             found.append(Case(text, tuple(answers), f"{name}.txt:{number}"))
     return found
+
+
+class RepairCase(NamedTuple):
+    """A text that a rule refuses, or, without a ``code``, a near one that is read as ``answer``.
+
+    ``span`` is from-to, ``part`` what stands there (empty where the text is written in Python),
+    ``answer`` the repaired text, None where there is none.
+    """
+
+    text: str | float
+    code: str
+    span: str
+    part: str
+    answer: str | None
+    place: str
+
+
+def repairs() -> list[str]:
+    """The repairs that have cases."""
+    return sorted(file.stem for file in (FOLDER / "repairs").glob("*.txt"))
+
+
+def repair_cases(repair: str) -> list[RepairCase]:
+    """The cases of corpus/repairs/``repair``.txt.
+
+    A text in Python begins with ``python:``: letters that cannot be seen, and JSON's numbers.
+    """
+    found = []
+    lines = (FOLDER / "repairs" / f"{repair}.txt").read_text("utf-8").split("\n")
+    for number, line in enumerate(lines, 1):
+        place = f"{repair}.txt:{number}"
+        if refused := _REFUSED.fullmatch(line):
+            text, code, span, part, suggestion = refused.groups("")
+            answer = None if suggestion == "-" else suggestion
+            found.append(RepairCase(_typed(text), code, span, part, answer, place))
+        elif line and not line.startswith("# "):
+            text, meaning = line.rsplit(" | ", 1)
+            found.append(RepairCase(_typed(text), "", "", "", meaning, place))
+    return found
+
+
+def _typed(text: str) -> str | float:
+    if not text.startswith(_PYTHON):
+        return text
+    return python_text(text.removeprefix(_PYTHON))
+
+
+def python_text(line: str) -> str | float:
+    """The value of a literal, of repetitions of one, or of several joined by +."""
+    value: str | float = _joined(ast.parse(line, mode="eval").body)
+    return value
+
+
+def _joined(node: ast.expr) -> Any:
+    match node:
+        case ast.Constant(value=value):
+            return value
+        case ast.BinOp(left=left, op=ast.Add(), right=right):
+            return _joined(left) + _joined(right)
+        case ast.BinOp(left=left, op=ast.Mult(), right=ast.Constant(value=int() as times)):
+            return _joined(left) * times
+        case _:
+            raise ValueError(ast.dump(node))
 
 
 def numbers(name: str) -> dict[str, float]:

@@ -1,6 +1,5 @@
 """Texts that nobody wrote, and what must hold for each of them."""
 
-import ast
 import time
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
@@ -11,7 +10,7 @@ import numpy as np
 
 from service.expressions import Expression, ExpressionError, read, reader
 from service.expressions.parsing import words
-from tests.expressions.corpus_files import FOLDER, ROBOT, cases, names
+from tests.expressions.corpus_files import FOLDER, ROBOT, cases, names, python_text
 
 Fingerprint = tuple[object, ...]
 
@@ -130,24 +129,7 @@ def seeds() -> list[str]:
 def hostile() -> list[str]:
     """Return the texts of corpus/hostile.txt."""
     lines = (FOLDER / "hostile.txt").read_text("utf-8").split("\n")
-    return [_text(line) for line in lines if line and not line.startswith("#")]
-
-
-def _text(line: str) -> str:
-    """Return a string literal, repetitions of one, or several joined by +."""
-    return _joined(ast.parse(line, mode="eval").body)
-
-
-def _joined(node: ast.expr) -> str:
-    match node:
-        case ast.Constant(value=str() as text):
-            return text
-        case ast.BinOp(left=left, op=ast.Add(), right=right):
-            return _joined(left) + _joined(right)
-        case ast.BinOp(left=left, op=ast.Mult(), right=ast.Constant(value=int() as times)):
-            return _joined(left) * times
-        case _:
-            raise ValueError(ast.dump(node))
+    return [str(python_text(line)) for line in lines if line and not line.startswith("#")]
 
 
 def texts(count: int, seed: int) -> Iterator[str]:

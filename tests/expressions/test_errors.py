@@ -129,7 +129,7 @@ def test_a_number_that_is_not_finite(number: float, arm: Vocabulary) -> None:
 
 @pytest.mark.parametrize("boolean", [True, False])
 def test_a_boolean_is_no_number(boolean: bool, arm: Vocabulary) -> None:
-    with pytest.raises(ExpressionError) as caught:
+    with pytest.raises(ExpressionError, match="write 1 or 0") as caught:
         read(boolean, arm)
     assert caught.value.code == "not_a_number"
 
@@ -155,6 +155,12 @@ def test_an_error_is_remembered_and_raised_anew(arm: Vocabulary) -> None:
 def test_an_error_says_what_is_wrong(arm: Vocabulary) -> None:
     with pytest.raises(ExpressionError, match="ends in `\\+`"):
         read("1 +", arm)
+
+
+def test_a_detached_index_is_quoted_as_it_stands(arm: Vocabulary) -> None:
+    message = "In theta 1 a name and its index must stand together, without a space."
+    with pytest.raises(ExpressionError, match=message):
+        read("l1 + theta 1", arm)
 
 
 @pytest.mark.parametrize("text", ["q1q2q7", "zz", "x"])

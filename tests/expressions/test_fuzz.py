@@ -7,9 +7,8 @@ from hypothesis import strategies as st
 from service.expressions import LIMITS, ExpressionError, read
 from tests.expressions.corpus_files import ROBOT
 from tests.expressions.fuzzing import PIECES, hostile, outcome, seeds, texts
+from tests.guards import STALL
 
-# Seconds of processor time for one text; the long fuzz holds the budget of 50 ms, untraced.
-STALL = 1.0
 HOSTILE = hostile()
 
 formulas: st.SearchStrategy[str] = st.recursive(

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from service.expressions import ExpressionError, Symbol, Vocabulary, joint_variable, read
 from service.expressions.parsing.degrees import in_degrees
 from service.expressions.printing.text import to_text
-from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, Unit, Variable
+from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
 
 ARM = Vocabulary(
     [
@@ -31,7 +31,7 @@ literals = st.one_of(
     st.sampled_from([".5", "5.", "1e-3", "2E2"]),
 )
 numbers = literals.map(lambda literal: Number(float(literal), literal))
-leaves = numbers | st.builds(Pi) | st.sampled_from(ARM.symbols).map(Variable)
+leaves = numbers | st.builds(Pi) | st.sampled_from(ARM.symbols).map(SymbolNode)
 units = st.builds(Unit, numbers | numbers.map(lambda n: Binary("/", n, Number(2.0, "2"))),
                   st.sampled_from(["deg", "rad"]))  # fmt: skip
 
@@ -100,7 +100,7 @@ def _oracle(node: Node, values: dict[str, float]) -> sympy.Expr:
             return sympy.Float(value, 40)
         case Pi():
             return sympy.pi
-        case Variable(symbol):
+        case SymbolNode(symbol):
             return sympy.Float(values[symbol.name], 40)
         case Negation(operand):
             return -_oracle(operand, values)
@@ -126,7 +126,7 @@ def _mild(trees: st.SearchStrategy[Node]) -> st.SearchStrategy[Node]:
 
 small = st.integers(0, 9).map(lambda n: Number(float(n), str(n)))
 mild: st.SearchStrategy[Node] = st.recursive(
-    small | st.sampled_from(ARM.symbols).map(Variable) | st.builds(Unit, small, st.just("deg")),
+    small | st.sampled_from(ARM.symbols).map(SymbolNode) | st.builds(Unit, small, st.just("deg")),
     _mild,
     max_leaves=6,
 )

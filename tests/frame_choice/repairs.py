@@ -1,6 +1,6 @@
 """Which other readings of a wrong table are as good as the slip that was made.
 
-On parallel axes, and around sliding joints, one slip can often be mended in another cell than the
+On parallel axes, and around sliding joints, one slip can often be repaired in another cell than the
 one that it was made in. No grader can know which was meant.
 """
 
@@ -28,7 +28,7 @@ TURNS = (0.0, np.pi, np.pi / 2, -np.pi / 2)
 STARTS = 8
 
 
-def mends(
+def can_repair(
     robot: Robot, policy: Policy, texts: Texts, convention: str, cells: Sequence[Place]
 ) -> bool:
     """Whether other values of these few cells make the table valid.

@@ -8,7 +8,7 @@ import pytest
 from tests.frame_choice.edits import random_edit
 from tests.frame_choice.generator import reassignment
 from tests.frame_choice.oracle import is_equivalent
-from tests.frame_choice.repairs import mends, repairing_cells
+from tests.frame_choice.repairs import can_repair, repairing_cells
 from tests.frame_choice.robots import (
     GIVEN,
     MODIFIED,
@@ -122,7 +122,7 @@ def test_drawn_tables_are_valid_and_differ(robot: Robot) -> None:
     assert len(seen) > 20
 
 
-def test_the_cells_that_mend_a_table() -> None:
+def test_the_cells_that_repair_a_table() -> None:
     """Two ways to the same answer: closed form and least squares."""
     shared = with_cell(RRRP, 1, D, "0.3")  # d1, d2, d3 lie on parallel axes
     assert repairing_cells(RRRP, shared, STANDARD) == {(0, D), (1, D), (2, D), (3, D)}
@@ -136,7 +136,7 @@ def test_the_cells_that_mend_a_table() -> None:
         found = repairing_cells(robot, wrong, STANDARD)
         for row in range(len(wrong)):
             for column in range(4):
-                is_found = mends(robot, GIVEN, wrong, STANDARD, [(row, column)])
+                is_found = can_repair(robot, GIVEN, wrong, STANDARD, [(row, column)])
                 assert is_found == ((row, column) in found), (wrong, row, column)
 
 

@@ -1,7 +1,7 @@
 """What must hold of grading where the frames are the student's own choice.
 
-Every valid table is accepted, no wrong one is, and the blame falls where the slip was made. Each
-test prints its figures; ``python -m tests.frame_choice --tables 1000`` prints them for each robot.
+Every valid table is accepted, no wrong one is, and the blame falls where the slip was made. This is
+a sample of the campaign; ``make campaign`` draws 1,000 tables of each robot and convention.
 """
 
 import sys
@@ -73,7 +73,7 @@ def test_nothing_raises(either: Tally) -> None:
 
 
 def test_a_slip_between_axes_that_are_not_parallel_is_blamed_on_its_cell(given: Tally) -> None:
-    """Where no other single cell would mend the table, so that the blame is nobody else's."""
+    """Where no other single cell would repair the table, so that the blame is nobody else's."""
     assert given.counts["skew unshared"] >= 80
     assert given.share("skew unshared exact", "skew unshared") >= 0.99, shown(
         given, lambda what: what.startswith("one slip, skew")
@@ -94,7 +94,7 @@ def test_two_slips_that_have_nothing_to_do_with_each_other_are_both_found(given:
     )
 
 
-def test_of_slips_that_could_be_mended_elsewhere_the_likeliest_is_blamed(given: Tally) -> None:
+def test_of_slips_that_could_be_repaired_elsewhere_the_likeliest_is_blamed(given: Tally) -> None:
     """Ties and all. Of 31,000 tables 98.7 % and 90.5 %; the bounds are three deviations below."""
     assert given.counts["skew"] >= 100
     assert given.share("skew exact", "skew") >= 0.95

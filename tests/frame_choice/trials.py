@@ -13,7 +13,7 @@ from service.grading import PartReport, Severity, Submission, Verdict, grade
 from tests.frame_choice.edits import Edit, random_edit
 from tests.frame_choice.generator import Table, reassignment
 from tests.frame_choice.oracle import is_equivalent
-from tests.frame_choice.repairs import mends, repairing_cells
+from tests.frame_choice.repairs import can_repair, repairing_cells
 from tests.frame_choice.robots import (
     ALPHA,
     COLUMNS,
@@ -266,7 +266,7 @@ def _try_one_slip(table: Table, tally: Tally, rng: np.random.Generator) -> None:
         if len(repairs) == 1:
             tally.counts[f"{group} unshared"] += 1
             tally.counts[f"{group} unshared exact"] += exact
-    as_good = exact or (tally.explain and is_mended(wrong, found.blamed, at_most=1))
+    as_good = exact or (tally.explain and is_repaired(wrong, found.blamed, at_most=1))
     tally.counts["as good"] += as_good
     tally.kinds[group, edit.kind, exact] += 1
     if not exact:
@@ -274,17 +274,17 @@ def _try_one_slip(table: Table, tally: Tally, rng: np.random.Generator) -> None:
         tally.misses.append(Miss(f"one slip, {group}, {how}", wrong, (edit,), found.blamed))
 
 
-def is_mended(table: Table, blamed: frozenset[Place], at_most: int) -> bool:
+def is_repaired(table: Table, blamed: frozenset[Place], at_most: int) -> bool:
     """Whether other values in the blamed cells, which are so few, make the table valid."""
     if not 0 < len(blamed) <= at_most or any(
         row < 0 or row >= len(table.rows) for row, _ in blamed
     ):
         return False
-    return mends(table.robot, table.policy, table.texts, table.convention, sorted(blamed))
+    return can_repair(table.robot, table.policy, table.texts, table.convention, sorted(blamed))
 
 
 def _is_unshared(table: Table, edit: Edit) -> bool:
-    """Whether the slip, were it the only one, could be mended in its own cell alone."""
+    """Whether the slip, were it the only one, could be repaired in its own cell alone."""
     wrong = table.edited(edit.row, edit.column, edit.cell)
     return len(repairing_cells(table.robot, wrong.texts, table.convention)) == 1
 
@@ -299,7 +299,7 @@ def _try_two_slips(table: Table, tally: Tally, rng: np.random.Generator) -> None
     if equivalent(wrong):
         return
     if table.policy == GIVEN and repairing_cells(table.robot, wrong.texts, table.convention):
-        return  # not independent: one cell alone mends both
+        return  # not independent: one cell alone repairs both
     tally.counts["two slips"] += 1
     found = graded(wrong)
     tally.wrong_ms.append(found.milliseconds)
@@ -308,7 +308,7 @@ def _try_two_slips(table: Table, tally: Tally, rng: np.random.Generator) -> None
     if table.policy == GIVEN and all(_is_unshared(table, edit) for edit in (one, other)):
         tally.counts["two unshared"] += 1
         tally.counts["two unshared found"] += both
-    as_good = both or (tally.explain and is_mended(wrong, found.blamed, at_most=2))
+    as_good = both or (tally.explain and is_repaired(wrong, found.blamed, at_most=2))
     tally.counts["two found"] += both
     tally.counts["two as good"] += as_good
     if not both:

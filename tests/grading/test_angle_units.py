@@ -6,8 +6,15 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import Verdict
-from tests.grading.robots import EXACT, PLANAR_RRR, SPELLINGS, STANFORD
-from tests.grading.submitting import cell, codes, full_marks, graded_pose, graded_table, not_correct
+from tests.grading.support.robots import EXACT, PLANAR_RRR, SPELLINGS, STANFORD
+from tests.grading.support.submitting import (
+    cell,
+    codes,
+    full_marks,
+    graded_pose,
+    graded_table,
+    not_correct,
+)
 
 [DEGREES] = [spelling for spelling in SPELLINGS if spelling.name == "bare degrees"]
 

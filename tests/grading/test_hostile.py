@@ -11,12 +11,9 @@ from hypothesis import strategies as st
 
 from service.catalogue import Exercise
 from service.grading import FeedbackLevel, Report, Submission, UnknownPartError, Verdict, grade
-from tests.grading.robots import EXACT, STANFORD
-from tests.grading.submitting import as_data, cell, handed_in, not_correct, part, table
-
-# Seconds of process time for one submission. The budget of 50 ms is for the benchmarks; here,
-# traced for coverage on any machine, only a stall is a failure.
-STALL = 1.0
+from tests.grading.support.robots import EXACT, STANFORD
+from tests.grading.support.submitting import as_data, cell, handed_in, not_correct, part, table
+from tests.guards import STALL
 
 
 def nested(levels: int, core: Any = 0) -> Any:

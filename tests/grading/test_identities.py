@@ -9,8 +9,8 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import Verdict
-from tests.grading.robots import EXACT, PLANAR_RRR, ROBOTS, RRRP, SCARA, STANFORD, Robot
-from tests.grading.submitting import cell, graded_pose, graded_table, not_correct
+from tests.grading.support.robots import EXACT, PLANAR_RRR, ROBOTS, RRRP, SCARA, STANFORD, Robot
+from tests.grading.support.submitting import cell, graded_pose, graded_table, not_correct
 
 TIMES = 250  # for each of the four robots
 

@@ -89,7 +89,7 @@ import service.grading
 from service.catalogue import load_catalogue, shipped_folder
 from service.grading import Submission, grade
 
-heavy = {"sympy", "scipy", "httpx", "fastapi", "sqlalchemy", "typer", "rich", "lark"}
+heavy = {"sympy", "scipy", "httpx", "fastapi", "sqlalchemy", "typer", "rich"}
 print("imported:", sorted(heavy & {name.partition(".")[0] for name in sys.modules}))
 
 exercises = load_catalogue(shipped_folder())

@@ -8,8 +8,8 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import Feedback, FeedbackLevel, Report, Verdict
-from tests.grading.robots import EXACT, STANFORD
-from tests.grading.submitting import handed_in, not_correct, part, row, table
+from tests.grading.support.robots import EXACT, STANFORD
+from tests.grading.support.submitting import handed_in, not_correct, part, row, table
 
 
 def answers() -> dict[str, Any]:
@@ -99,9 +99,9 @@ def test_the_reference_is_never_told_below_full(
     rows[1][2] = "0"
     rows[5][2] = "0"
     report = handed_in(given_frames[STANFORD.exercise], {"table": table(rows)}, feedback=level)
-    told = " ".join(m.message for m in messages(report))
-    assert "d2" not in told
-    assert "d6" not in told
+    text = " ".join(m.message for m in messages(report))
+    assert "d2" not in text
+    assert "d6" not in text
 
 
 def test_a_missing_row_is_told_by_its_label_at_verdicts(

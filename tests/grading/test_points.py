@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from service.catalogue import Exercise
 from service.grading import Severity, Verdict
-from tests.grading.robots import EXACT, ROBOTS, STANFORD, Robot
-from tests.grading.submitting import graded_table, handed_in, part, table
+from tests.grading.support.robots import EXACT, ROBOTS, STANFORD, Robot
+from tests.grading.support.submitting import graded_table, handed_in, part, table
 
 STRICT = """
 title = "Planar RR"

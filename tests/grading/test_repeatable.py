@@ -11,8 +11,8 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import Verdict
-from tests.grading.robots import EXACT, STANFORD
-from tests.grading.submitting import as_data, handed_in, not_correct, part, table
+from tests.grading.support.robots import EXACT, STANFORD
+from tests.grading.support.submitting import as_data, handed_in, not_correct, part, table
 
 PROGRAM = """
 import json, sys

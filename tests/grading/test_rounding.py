@@ -6,7 +6,7 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import Severity, Verdict
-from tests.grading.submitting import cell, codes, graded_pose, graded_table, not_correct
+from tests.grading.support.submitting import cell, codes, graded_pose, graded_table, not_correct
 
 # An arm whose pose holds constants: sqrt(2)/2 in row 3, 2/3 as a length.
 ARM = """

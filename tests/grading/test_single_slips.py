@@ -6,9 +6,9 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import Severity, Verdict
-from tests.grading.robots import COLUMNS, EXACT, ROBOTS, Robot
-from tests.grading.slips import Slip, slips
-from tests.grading.submitting import cell, graded_table, not_correct, row
+from tests.grading.support.robots import COLUMNS, EXACT, ROBOTS, Robot
+from tests.grading.support.slips import Slip, slips
+from tests.grading.support.submitting import cell, graded_table, not_correct, row
 
 CELLS = [
     (robot, i, j) for robot in ROBOTS for i in range(len(robot.rows)) for j in range(len(COLUMNS))

@@ -7,8 +7,9 @@ import pytest
 
 from service.kinematics import dh_row
 from service.kinematics.dh import Convention, link_transforms
-from service.kinematics.dh_row import gap, row, slant
-from service.kinematics.transforms import rot_x, rot_y, rot_z, trans
+from service.kinematics.dh_row import dh1_residual, dh2_residual, row
+from service.kinematics.transforms import rot_x, rot_y, rot_z
+from tests.kinematics.constructions import trans
 
 RNG = np.random.default_rng(6)
 BOTH = list(Convention)
@@ -23,32 +24,32 @@ def test_the_worked_example() -> None:
 def test_a_link_transform_has_its_own_row(convention: Convention) -> None:
     cells = RNG.uniform(-np.pi, np.pi, (4, 30))
     link = link_transforms(convention, *cells)
-    np.testing.assert_allclose(slant(link, convention), 0.0, atol=1e-14)
-    np.testing.assert_allclose(gap(link, convention), 0.0, atol=1e-14)
+    np.testing.assert_allclose(dh1_residual(link, convention), 0.0, atol=1e-14)
+    np.testing.assert_allclose(dh2_residual(link, convention), 0.0, atol=1e-14)
     np.testing.assert_allclose(row(link, convention), cells, atol=1e-12)
 
 
 def test_x1_not_at_right_angles_to_z0() -> None:
     """Turned about y by 0.3, x_1 rises out of the plane by sin 0.3; it still meets z_0."""
     transform = trans(0.5, 0.0, 0.2) @ rot_y(0.3)
-    assert slant(transform, Convention.STANDARD) == pytest.approx(-np.sin(0.3))
-    assert gap(transform, Convention.STANDARD) == pytest.approx(0.0)
+    assert dh1_residual(transform, Convention.STANDARD) == pytest.approx(-np.sin(0.3))
+    assert dh2_residual(transform, Convention.STANDARD) == pytest.approx(0.0)
 
 
 def test_x1_passes_z0() -> None:
     """Shifted along y_0 by 0.4 and not turned about z, x_1 passes z_0 at that distance."""
     transform = trans(0.5, 0.4, 0.2) @ rot_x(0.3)
-    assert slant(transform, Convention.STANDARD) == pytest.approx(0.0)
-    assert gap(transform, Convention.STANDARD) == pytest.approx(0.4)
+    assert dh1_residual(transform, Convention.STANDARD) == pytest.approx(0.0)
+    assert dh2_residual(transform, Convention.STANDARD) == pytest.approx(0.4)
 
 
 def test_x1_along_z0() -> None:
     transform = trans(0.3, 0.4, 0.2) @ rot_y(-np.pi / 2)
-    assert slant(transform, Convention.STANDARD) == pytest.approx(1.0)
-    assert gap(transform, Convention.STANDARD) == pytest.approx(0.5)
+    assert dh1_residual(transform, Convention.STANDARD) == pytest.approx(1.0)
+    assert dh2_residual(transform, Convention.STANDARD) == pytest.approx(0.5)
 
 
 def test_a_transform_may_be_a_link_of_one_convention_only() -> None:
     transform = rot_z(0.7) @ trans(0.5, 0.0, 0.1) @ rot_x(0.4)
-    assert gap(transform, Convention.STANDARD) == pytest.approx(0.0)
-    assert abs(slant(transform, Convention.MODIFIED)) > 0.1
+    assert dh2_residual(transform, Convention.STANDARD) == pytest.approx(0.0)
+    assert abs(dh1_residual(transform, Convention.MODIFIED)) > 0.1

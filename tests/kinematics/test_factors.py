@@ -6,7 +6,8 @@ import pytest
 from service.kinematics.chain import frames, pose
 from service.kinematics.dh import Convention
 from service.kinematics.factors import factors_of, read_screws, screws
-from service.kinematics.transforms import rot_x, rot_z, trans
+from service.kinematics.transforms import rot_x, rot_z
+from tests.kinematics.constructions import trans
 
 BOTH = pytest.mark.parametrize("convention", list(Convention))
 RNG = np.random.default_rng(4)
@@ -18,7 +19,7 @@ def test_the_product_of_the_factors_is_the_pose(convention: Convention) -> None:
     factors = factors_of(TABLE, convention)
     np.testing.assert_allclose(factors.pose, pose(TABLE, convention), atol=1e-12)
     for k in range(len(factors.axes) + 1):
-        whole = factors.before[k] @ factors.behind[k]
+        whole = factors.before[k] @ factors.after[k]
         np.testing.assert_allclose(whole, factors.pose, atol=1e-12)
 
 
@@ -27,7 +28,7 @@ def test_a_cell_is_found_where_it_was_put(convention: Convention) -> None:
     factors = factors_of(TABLE, convention)
     for row in range(len(TABLE)):
         for column in range(4):
-            factor, kind = factors.place((row, column))
+            factor, kind = factors.position((row, column))
             assert factors.cell(factor, kind) == (row, column)
             np.testing.assert_array_equal(factors.sizes[factor, kind], TABLE[row, column])
 

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from service.kinematics.transforms import identity, inverse, rot_x, rot_y, rot_z, trans
+from service.kinematics.transforms import identity, inverse, rot_x, rot_y, rot_z
+from tests.kinematics.constructions import trans
 
 Array = NDArray[np.float64]
 ANGLE = st.floats(-20, 20)

@@ -4,11 +4,12 @@ from collections.abc import Mapping
 
 import pytest
 
-from service.catalogue import DhTableSpec, Exercise, shipped_folder
+from service.catalogue import Exercise, shipped_folder
+from service.catalogue.parts.dh_table import DhTableSpec
 from service.kinematics.chain import COLUMNS
-from service.solutions import solve
-from tests.expressions.grids.writers import FORMATS
-from tests.grading.submitting import full_marks, handed_in
+from tests.grading.support.submitting import full_marks, handed_in
+from tests.grids.writers import FORMATS
+from tests.solutions.solved import solved
 
 IDS = sorted(file.stem for file in shipped_folder().glob("*.toml"))
 
@@ -21,7 +22,7 @@ def test_the_model_table_pasted_in_every_format(
     tables = [part for part in exercise.parts if isinstance(part, DhTableSpec)]
     if not tables:
         pytest.skip("asks for no table")
-    solution = {part.part: part.shown.answer for part in solve(exercise).parts}
+    solution = {part.part: part.answer for part in solved(exercise).parts}
     for part in tables:
         answer = solution[part.id]
         assert isinstance(answer, dict)

@@ -8,9 +8,9 @@ from sympy.printing.numpy import NumPyPrinter
 
 from service.catalogue import Exercise, shipped_folder
 from service.expressions import LIMITS, read
-from service.solutions import solve
 from service.solutions.algebra import Algebra
-from tests.grading.submitting import full_marks, handed_in
+from tests.grading.support.submitting import full_marks, handed_in
+from tests.solutions.solved import solved
 
 IDS = sorted(file.stem for file in shipped_folder().glob("*.toml"))
 PRINTERS: Mapping[str, Callable[[sympy.Expr], str]] = {
@@ -21,6 +21,17 @@ PRINTERS: Mapping[str, Callable[[sympy.Expr], str]] = {
 }
 
 
+_expressions: dict[tuple[str, str | float], sympy.Expr] = {}
+
+
+def expression(exercise: Exercise, entry: str | float) -> sympy.Expr:
+    """The entry as a SymPy expression, made once for all printers."""
+    key = (exercise.id, entry)
+    if key not in _expressions:
+        _expressions[key] = Algebra(exercise).of(read(entry, exercise.vocabulary))
+    return _expressions[key]
+
+
 def printed(answer: object, exercise: Exercise, printer: Callable[[sympy.Expr], str]) -> object:
     """The same answer with every formula read, made a SymPy expression, and printed."""
     if isinstance(answer, dict):
@@ -29,7 +40,7 @@ def printed(answer: object, exercise: Exercise, printer: Callable[[sympy.Expr], 
         return [printed(value, exercise, printer) for value in answer]
     if isinstance(answer, bool) or not isinstance(answer, str | int | float):
         return answer
-    text = printer(Algebra(exercise).of(read(answer, exercise.vocabulary)))
+    text = printer(expression(exercise, answer))
     # Full names and \\left( make the longest entries of six and seven joints exceed what one entry
     # may hold; those stand as they were, and the figure tells how many.
     return text if len(text) <= LIMITS.characters else answer
@@ -51,14 +62,14 @@ def test_the_model_solution_as_sympy_prints_it(
     figure: Callable[[str], None],
 ) -> None:
     exercise = catalogue[exercise_id]
-    solution = solve(exercise)
+    solution = solved(exercise)
     answers = {
-        part.part: part.shown.answer
-        if part.shown.text == "none"
-        else printed(part.shown.answer, exercise, PRINTERS[printer])
+        part.part: part.answer
+        if part.text == "none"
+        else printed(part.answer, exercise, PRINTERS[printer])
         for part in solution.parts
     }
-    kept = sum(_same(part.shown.answer, answers[part.part]) for part in solution.parts)
+    kept = sum(_same(part.answer, answers[part.part]) for part in solution.parts)
     if kept:
         figure(
             f"{exercise_id}, {printer}: {kept} entries too long as printed, handed in as they were"

@@ -1,1 +1,1 @@
-"""What was typed -> plain characters that know where they were typed."""
+"""Text as typed -> plain characters, each with its place in the text as typed."""

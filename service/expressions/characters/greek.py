@@ -19,9 +19,9 @@ CLASS: Final = "".join(NAMES)
 
 
 def spellings(name: str) -> set[str]:
-    """Return every way to write `name` with Greek letters as such or spelled out.
+    """All ways to write ``name``, with each Greek letter as such or spelled out.
 
-    The letters stay letters in the text itself: spelled out there, `bη` would read as beta.
+    The letters stay letters in the text itself: spelled out there, ``bη`` would read as beta.
     """
     parts: list[tuple[str, ...]] = []
     position = 0

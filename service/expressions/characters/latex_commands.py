@@ -1,4 +1,4 @@
-"""LaTeX commands: what each one stands for in plain text."""
+"""LaTeX commands and their plain spellings."""
 
 import re
 from typing import Final
@@ -19,7 +19,7 @@ PLAIN: Final = {
     "vert": "|", "lvert": "|", "rvert": "|", "mid": "|", "star": MARKER,
 }  # fmt: skip
 FRACTIONS: Final = frozenset({"frac", "tfrac", "dfrac", "cfrac"})
-# Commands that only say how their argument looks.
+# Commands that only style their argument.
 STYLES: Final = frozenset({
     "mathrm", "mathit", "mathbf", "mathsf", "mathtt", "mathnormal", "boldsymbol", "bm",
     "text", "textrm", "textit", "textnormal", "mbox", "operatorname", "mathop", "mathord",
@@ -41,7 +41,7 @@ RAISED_STAR: Final = re.compile(rf"\^\s*(?:{_STAR}(?!\*)|\{{\s*{_STAR}\s*\}})|â‹
 
 
 def known_prefix(name: str) -> str | None:
-    """Return the longest known command that `name` begins with: cosq -> cos."""
+    """The longest known command that ``name`` begins with: cosq -> cos."""
     for end in range(len(name) - 1, 1, -1):
         if name[:end] in FUNCTIONS or name[:end] in PLAIN:
             return name[:end]

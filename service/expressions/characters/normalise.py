@@ -1,7 +1,7 @@
 r"""Characters as typed -> plain characters, each with its place in the text as typed.
 
-What has one meaning is read: × · − ² ₁ ½ ° π, the shapes that a Greek letter takes, and LaTeX.
-What only looks like something else, or cannot be seen at all, is named and never guessed.
+A character with one meaning is read: × · − ² ₁ ½ ° π, the shapes of a Greek letter, and LaTeX.
+A character that looks like another one, or cannot be seen, is named in an error and never guessed.
 \frac{a}{b} becomes ⟨{a}/{b}⟩, where ⟨ and ⟩ are brackets that no student can type.
 """
 
@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from typing import Final
 
 from service.expressions.characters import greek, latex_commands, unicode
-from service.expressions.errors import Span
+from service.expressions.errors import Cause, Span, UnreadableError
 from service.expressions.limits import LIMITS
-from service.expressions.unreadable import Cause, UnreadableError
 
 _PLAIN: Final = re.compile(r"[ -#%-\[\]^_a-z|]*")
 _CHUNK: Final = re.compile(rf"[A-Za-z0-9{greek.CLASS} +\-*/().,|\[\]{{}}]+")
@@ -25,9 +24,9 @@ _BREAKS: Final = "\t\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029"
 
 @dataclass(frozen=True, slots=True)
 class Characters:
-    """Plain text, and for each of its characters the [start, end) of what was typed for it.
+    """Plain text, and for each of its characters the [start, end) in the text as typed.
 
-    `starts` is None where nothing was changed and every place is its own.
+    ``starts`` and ``ends`` are None where nothing was changed.
     """
 
     text: str
@@ -36,14 +35,14 @@ class Characters:
 
 
 def normalise(source: str) -> Characters:
-    """Return `source` in plain characters. Raises UnreadableError for one that is not read."""
+    """``source`` in plain characters. Raises UnreadableError for a character that is not read."""
     if _PLAIN.fullmatch(source) and "^*" not in source:
         return Characters(source)
     return _Normaliser(source).run()
 
 
-def is_break(gap: str) -> bool:
-    """Tell whether `gap` parts cells or lines, not the factors of a product."""
+def is_separator(gap: str) -> bool:
+    """Whether ``gap`` separates cells or lines, and not the factors of a product."""
     return any(letter in _BREAKS for letter in gap)
 
 
@@ -62,7 +61,7 @@ class _Normaliser:
         return Characters("".join(self.letters), self.starts, self.ends)
 
     def _range(self, position: int, end: int, depth: int) -> None:
-        """Read source[position:end], which lies inside `depth` arguments of LaTeX commands."""
+        """Read ``source[position:end]``, nested in ``depth`` arguments of LaTeX commands."""
         if depth > LIMITS.depth:
             raise UnreadableError("beyond", (position, end), limit="depth")
         while position < end:
@@ -90,13 +89,13 @@ class _Normaliser:
         if letter == "\\":
             return self._command(at, end, depth)
         if letter in "^⋆":
-            return self._raised(at, end, depth)
+            return self._caret(at, end, depth)
         if letter == "_":
-            return self._subscript(at, end, depth)
+            return self._underscore(at, end, depth)
         if letter in unicode.SUBSCRIPTS or letter in "₊₋":
-            return self._lowered(at)
+            return self._subscript_run(at)
         if letter in unicode.SUPERSCRIPTS:
-            return self._lifted(at)
+            return self._superscript_run(at)
         if letter == "~" or (letter == "$" and self.dollars):
             return self._emit(" ", at, at + 1)
         text = unicode.plain(letter)
@@ -106,7 +105,7 @@ class _Normaliser:
 
     # --- indices and powers
 
-    def _raised(self, at: int, stop: int, depth: int) -> int:
+    def _caret(self, at: int, stop: int, depth: int) -> int:
         """Read ^, unless it raises a circle (degrees) or a star (the joint variable's marker)."""
         if circle := latex_commands.RAISED_CIRCLE.match(self.source, at):
             return self._emit("°", at, circle.end())
@@ -120,11 +119,11 @@ class _Normaliser:
             self._copy(*index.span())
             end = index.end()
         elif self.source[end : end + 2] == "_{":
-            end = self._subscript(end, stop, depth)
+            end = self._underscore(end, stop, depth)
         self._emit(unicode.MARKER, at, star.end())
         return end
 
-    def _subscript(self, at: int, end: int, depth: int) -> int:
+    def _underscore(self, at: int, end: int, depth: int) -> int:
         r"""Read _1, _{12}, _\alpha and _{\theta_1}: an index of letters and digits."""
         start = at + 1
         while start < end and self.source[start].isspace():
@@ -158,8 +157,8 @@ class _Normaliser:
             self._emit(unicode.MARKER, *star)
         return after
 
-    def _lowered(self, at: int) -> int:
-        """Read a run of lowered letters and digits: one index."""
+    def _subscript_run(self, at: int) -> int:
+        """Read ₁₂: one index."""
         end = self._end_of_run(at, unicode.SUBSCRIPTS)
         if self.source[end : end + 1] in {"₊", "₋"}:
             raise UnreadableError("subscript", (at, end + 1), index=self.source[at:end])
@@ -169,8 +168,8 @@ class _Normaliser:
             self._emit(" ", end, end)
         return end
 
-    def _lifted(self, at: int) -> int:
-        """Read a run of raised characters: one power."""
+    def _superscript_run(self, at: int) -> int:
+        """Read ⁻¹: one power."""
         end = self._end_of_run(at, unicode.SUPERSCRIPTS)
         if self.source[at:end] == "⁰" and self.source[at - 1 : at].isdigit():
             raise UnreadableError("raised_zero", (at, end))
@@ -230,7 +229,7 @@ class _Normaliser:
         raise UnreadableError("command", (at, after), name=symbol)
 
     def _function(self, name: str, at: int, after: int) -> int:
-        r"""Keep a\sin x from becoming asin x, and \sin d_3 from becoming sind_3."""
+        r"""Emit a function's name, so that a\sin x is not asin x, and \sin d_3 not sind_3."""
         if self.letters and self.letters[-1].isalpha():
             self._emit(" ", at, at)
         self._emit(name, at, after)
@@ -242,7 +241,7 @@ class _Normaliser:
         return self.source[at : at + 1].isdigit()
 
     def _style(self, name: str, at: int, after: int, end: int, depth: int) -> int:
-        """Read the argument of a command that only says how it looks."""
+        """Read the argument of a command that only styles it."""
         start, stop, after = self._argument(at, after, end)
         is_word = name == "operatorname" or sum(map(str.isalpha, self.source[start:stop])) > 1
         if is_word and self.letters and self.letters[-1].isalpha():
@@ -276,7 +275,7 @@ class _Normaliser:
         return after
 
     def _argument(self, at: int, after: int, end: int) -> tuple[int, int, int]:
-        """Return [start, stop) of a command's argument, and where the text goes on."""
+        """The [start, stop) of a command's argument, and the place behind it."""
         start = self._skip_blanks(after, end)
         if start >= end or self.source[start] in "}+-*/)]":
             raise UnreadableError("argument", (at, after), name=self.source[at:after])
@@ -293,7 +292,7 @@ class _Normaliser:
         return at
 
     def _partner(self, at: int, end: int) -> int:
-        """Return the place of the brace that closes the one at `at`."""
+        """The place of the brace that closes the one at ``at``."""
         depth = 0
         for place in range(at, end):
             letter = self.source[place]

@@ -1,14 +1,14 @@
-"""Single characters: which plain one each stands for, and which only looks like one."""
+"""Single characters: the plain spelling of each, and those that only look like a plain one."""
 
 import re
 import unicodedata
 from typing import Final
 
 from service.expressions.characters import greek
-from service.expressions.unreadable import Cause
+from service.expressions.errors import Cause
 
-# A fraction that stands as one, for a bar groups what it covers; and a raised star.
-# They lie in a private area, where nothing that a student types is read.
+# Brackets around a fraction with a bar, which groups its parts, and the star of a joint variable.
+# No student types them: a typed character of Unicode's private area is refused.
 OPEN: Final = "\ue000"
 CLOSE: Final = "\ue001"
 MARKER: Final = "\ue002"
@@ -40,19 +40,19 @@ LOOK_ALIKES: Final = dict(
         strict=True,
     )
 )
-# These have no category of invisible characters, and yet nothing to see.
+# Unicode does not call these invisible, but they are blank.
 _BLANKS: Final = frozenset("\u115f\u1160\u2800\u3164\uffa0")
 _TRANSPOSES: Final = frozenset("′″‴’‘ʹ´`ᵀ⊤")
 _FRACTION: Final = re.compile("[0-9]⁄[0-9]+")
 
 
 def is_invisible(letter: str) -> bool:
-    """Tell whether `letter` shows nothing of its own: a control, a format or a joining mark."""
+    """Whether ``letter`` has no shape of its own: a control, a format or a combining mark."""
     return letter in _BLANKS or unicodedata.category(letter) in {"Cf", "Cc", "Mn", "Me"}
 
 
 def plain(letter: str) -> str | None:
-    """Return the plain spelling of one character, or None where it has none."""
+    """The plain spelling of one character, or None where it has none."""
     if " " <= letter <= "~" or letter in greek.NAMES:
         return letter
     if letter in _SPELLINGS:
@@ -65,7 +65,7 @@ def plain(letter: str) -> str | None:
 
 
 def _compatible(letter: str) -> str | None:
-    """Return what Unicode says that a rarer character is a form of, where that is plain."""
+    """The plain character that ``letter`` is a form of according to Unicode, or None."""
     form = unicodedata.normalize("NFKC", letter)
     if _FRACTION.fullmatch(form):
         return f"{OPEN}{form.replace('⁄', '/')}{CLOSE}"
@@ -75,7 +75,7 @@ def _compatible(letter: str) -> str | None:
 
 
 def cause(letter: str) -> Cause:
-    """Return why a character without a plain spelling cannot be read."""
+    """The reason why a character without a plain spelling cannot be read."""
     if letter in LOOK_ALIKES:
         return "look_alike"
     if letter in "±∓":

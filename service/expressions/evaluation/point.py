@@ -1,7 +1,7 @@
 """The value of a tree at one point, where many trees are tried that share most of their nodes.
 
-A program (see `evaluate`) is for many samples of one tree. Here it is the other way round: plain
-floats, and what is known of the nodes of one tree serves all trees that are built from its parts.
+A program (see ``samples``) evaluates one tree at many samples. Here many trees are evaluated at one
+point, in plain floats; the known values of one tree's nodes serve all trees built from them.
 """
 
 import math
@@ -9,7 +9,16 @@ from collections.abc import Callable, Mapping
 from operator import add, mul, sub, truediv
 from typing import Final
 
-from service.expressions.tree import Binary, Call, Negation, Node, Number, Unit, Variable, children
+from service.expressions.tree import (
+    Binary,
+    Call,
+    Negation,
+    Node,
+    Number,
+    SymbolNode,
+    Unit,
+    children,
+)
 
 Known = dict[int, float]
 
@@ -36,7 +45,7 @@ _JOINED: Final[dict[str, Callable[[float, float], float]]] = {
 
 
 def known_values(tree: Node, at: Mapping[str, float]) -> Known:
-    """The value of each node of `tree` by the node's id, for as long as the tree lives."""
+    """The value of each node of ``tree`` by the node's id, for as long as the tree lives."""
     known: Known = {}
     _learn(tree, at, known)
     return known
@@ -49,9 +58,9 @@ def _learn(node: Node, at: Mapping[str, float], known: Known) -> None:
 
 
 def value_at(node: Node, at: Mapping[str, float], known: Known) -> float:
-    """The value of `node` where the symbols have the values `at`; nan where a part has none.
+    """The value of ``node`` where the symbols have the values ``at``; nan where it has none.
 
-    A node whose id is `known` is not worked out again.
+    A node whose id is in ``known`` is not evaluated again.
     """
     try:
         return _value(node, at, known)
@@ -68,7 +77,7 @@ def _value(node: Node, at: Mapping[str, float], known: Known) -> float:
         return _JOINED[node.operator](left, right)
     if isinstance(node, Call):
         return _FUNCTIONS[node.function](*[_value(part, at, known) for part in node.arguments])
-    if isinstance(node, Variable):
+    if isinstance(node, SymbolNode):
         return at[node.symbol.name]
     if isinstance(node, Number):
         return node.value

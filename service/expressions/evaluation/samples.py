@@ -1,4 +1,4 @@
-"""A tree -> a program: what computes it from the symbols' values, over all samples at once.
+"""A tree -> a program that computes its values at all samples at once.
 
 A program is the tree once more, its parts written one behind the other in a single tuple. Each
 begins with its key, which is the part itself in reverse Polish notation, and says at which places
@@ -9,7 +9,7 @@ its operands stand. This is 2*cos(theta1):
      5  "theta1 cos", "cos", 3, None
      9  "#2.0 theta1 cos *", "*", 0, 5
 
-Equal parts have equal keys, so that a `memo` handed to several programs computes cos(theta1) once
+Equal parts have equal keys, so that a ``memo`` handed to several programs computes cos(theta1) once
 for all. Parts without symbols are computed once, here. Thousands of texts are remembered by their
 programs: the garbage collector takes a tuple of texts and numbers off its rounds, but no tree and
 no closure.
@@ -23,28 +23,28 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from service.expressions.tree import Binary, Call, Negation, Node, Number, Unit, Variable
+from service.expressions.tree import Binary, Call, Negation, Node, Number, SymbolNode, Unit
 
-Samples = NDArray[np.float64]
-Values = Mapping[str, Samples]
+SampleArray = NDArray[np.float64]
+SymbolValues = Mapping[str, SampleArray]
 Memo = dict[str, Any]
 Function = Callable[..., Any]
-# Parts in a row, operands before what is made of them, the whole last: the key, the name of the
-# function, the places of its operands. A symbol has no function, nor has a constant, whose value
-# stands there instead. A part that is too long to be met again has no key.
+# Parts in a row, operands before their function, the whole last. A part is its key, the name of its
+# function and the places of its operands. A symbol has no function; a constant has None and its
+# value. A part that is too long to be met again has no key.
 Steps = tuple[Any, ...]
 
 _RADIANS: Final = {"deg": pi / 180, "rad": 1.0}
-# Where these meet a value that is not finite, they may answer with one that is: 1/(1/0) is no 0.
-_FORGIVING: Final = frozenset({"/", "^", "atan", "atan2", "exp"})
-# These may be undefined, or beyond all bounds, where what they work on is neither.
-_DOUBTFUL: Final = frozenset({"/", "^", "tan", "asin", "acos", "sqrt", "exp"})
-# Longer parts are hardly written twice, and all their keys together would fill the memory.
+# These may give a finite value for one that is not: 1/(1/0) must not be 0.
+_MAY_HIDE_NON_FINITE: Final = frozenset({"/", "^", "atan", "atan2", "exp"})
+# These may be undefined or infinite where their operands are neither.
+_MAY_BE_NON_FINITE: Final = frozenset({"/", "^", "tan", "asin", "acos", "sqrt", "exp"})
+# A longer part is hardly written twice, and all such keys together would fill the memory.
 _LONGEST_KEY: Final = 100
 
 
 def _strict(function: Function) -> Function:
-    """Return `function`, undefined wherever one of its operands is not finite."""
+    """``function``, but undefined wherever one of its operands is not finite."""
 
     def apply(*operands: Any) -> Any:
         finite = np.isfinite(operands[0])
@@ -74,15 +74,15 @@ _FUNCTIONS: Final[dict[str | None, Function]] = {
     "abs": np.absolute,
     "exp": np.exp,
 }
-_STRICT: Final = {name: f"strict {name}" for name in _FORGIVING}
+_STRICT: Final = {name: f"strict {name}" for name in _MAY_HIDE_NON_FINITE}
 _FUNCTIONS.update({strict: _strict(_FUNCTIONS[name]) for name, strict in _STRICT.items()})
 
 
 class Program:
-    """What computes one expression, which uses at least one symbol. Immutable.
+    """The program of one expression, which uses at least one symbol. Immutable.
 
-    `whole` is the place of the expression itself in its steps; `symbol` is the name of the symbol
-    where it is nothing else.
+    ``whole`` is the place of the expression itself in its steps; ``symbol`` is the name of the
+    symbol where it is nothing else.
     """
 
     __slots__ = ("steps", "symbol", "whole")
@@ -92,11 +92,11 @@ class Program:
         self.whole: Final = whole
         self.symbol: Final[str | None] = steps[0] if whole == 0 else None
 
-    def __call__(self, values: Values, memo: Memo) -> Any:
-        """Return the value for each sample, given each symbol's, of shape (samples,), by its name.
+    def __call__(self, values: SymbolValues, memo: Memo) -> Any:
+        """The value for each sample, given the ``values`` of each symbol, of shape (samples,).
 
-        The memo is empty, or was used at the same values. Where a part is undefined, so is the
-        whole; numpy warns of it, unless it is told not to.
+        The memo is empty, or was used at the same values. Where a part is undefined, the
+        whole is; numpy warns of it, unless warnings are off.
         """
         if not memo:
             memo.update(values)
@@ -105,7 +105,7 @@ class Program:
 
 
 def _value(steps: Steps, at: int, memo: Memo) -> Any:
-    """Return the value of the part at `at`, which is not in the memo."""
+    """The value of the part at ``at``, which is not in the memo."""
     key, name = steps[at], steps[at + 1]
     if name is None:
         if key[0] != "#":
@@ -130,7 +130,7 @@ def _value(steps: Steps, at: int, memo: Memo) -> Any:
 
 
 def compile_tree(tree: Node) -> Program | float:
-    """Return the program of `tree`, or its value where it has no symbols."""
+    """The program of ``tree``, or its value where it has no symbols."""
     compiler = _Compiler()
     whole = compiler.part(tree)
     value = compiler.constants.get(whole)
@@ -138,35 +138,35 @@ def compile_tree(tree: Node) -> Program | float:
 
 
 @lru_cache(maxsize=1024)
-def _wave_key(function: str, symbol: str) -> str:
+def _sine_or_cosine_key(function: str, symbol: str) -> str:
     return f"{symbol} {function}"
 
 
 class _Compiler:
-    """The steps of one tree, the values of constants and what may be undefined by their places."""
+    """The steps of one tree, and by place the constants and the parts that may be non-finite."""
 
-    __slots__ = ("constants", "doubtful", "steps")
+    __slots__ = ("constants", "maybe_non_finite", "steps")
 
     def __init__(self) -> None:
         self.steps: list[Any] = []
         self.constants: dict[int, float] = {}
-        self.doubtful: set[int | None] = set()
+        self.maybe_non_finite: set[int | None] = set()
 
     def part(self, node: Node) -> int:
-        """Return the place of `node`, once it stands in the steps."""
-        # A chain of types takes a third of the time of `match`, and this is on the grading path.
+        """Append the steps of ``node``; return its place."""
+        # A chain of types takes a third of the time of ``match``, and this is on the grading path.
         kind = type(node)
         if kind is Binary:
             left, right = self.part(node.left), self.part(node.right)  # type: ignore[union-attr]
             return self._apply(node.operator, left, right)  # type: ignore[union-attr]
-        if kind is Variable:
+        if kind is SymbolNode:
             steps = self.steps
             steps += (node.symbol.name, None)  # type: ignore[union-attr]
             return len(steps) - 2
         if kind is Call:
             function, arguments = node.function, node.arguments  # type: ignore[union-attr]
-            if type(arguments[0]) is Variable and (function == "cos" or function == "sin"):
-                return self._wave(function, arguments[0].symbol.name)
+            if type(arguments[0]) is SymbolNode and (function == "cos" or function == "sin"):
+                return self._sine_or_cosine(function, arguments[0].symbol.name)
             return self._apply(function, *map(self.part, arguments))
         if kind is Number:
             return self._constant(node.value)  # type: ignore[union-attr]
@@ -177,11 +177,11 @@ class _Compiler:
             return self._apply("*", operand, self._constant(_RADIANS[node.unit]))  # type: ignore[union-attr]
         return self._constant(pi)
 
-    def _wave(self, function: str, symbol: str) -> int:
-        """Return the place of the sine or cosine of a symbol: a matrix is made of hundreds."""
+    def _sine_or_cosine(self, function: str, symbol: str) -> int:
+        """Append the sine or cosine of a symbol, for a matrix has hundreds; return its place."""
         steps = self.steps
         at = len(steps)
-        steps += (symbol, None, _wave_key(function, symbol), function, at, None)
+        steps += (symbol, None, _sine_or_cosine_key(function, symbol), function, at, None)
         return at + 2
 
     def _constant(self, value: float) -> int:
@@ -189,24 +189,24 @@ class _Compiler:
         self.steps += (f"#{value!r}", None, value)
         self.constants[at] = value
         if not isfinite(value):
-            self.doubtful.add(at)
+            self.maybe_non_finite.add(at)
         return at
 
     def _apply(self, name: str, left: int, right: int | None = None) -> int:
-        """Return the place of a function of parts, folded where all of them are constants."""
+        """Append a function of parts, folded where all of them are constants; return its place."""
         constants, steps = self.constants, self.steps
         if constants:
             if name == "^" and right is not None and constants.get(right) == 2.0:
-                self._taken(right)
+                self._take_out(right)
                 name, right = "²", None
             if left in constants and (right is None or right in constants):
-                return self._folded(name, self._taken(left, right))
+                return self._folded(name, self._take_out(left, right))
         at = len(steps)
-        if self.doubtful and not self.doubtful.isdisjoint((left, right)):
+        if self.maybe_non_finite and not self.maybe_non_finite.isdisjoint((left, right)):
             name = _STRICT.get(name, name)
-            self.doubtful.add(at)
-        elif name in _DOUBTFUL:
-            self.doubtful.add(at)
+            self.maybe_non_finite.add(at)
+        elif name in _MAY_BE_NON_FINITE:
+            self.maybe_non_finite.add(at)
         key = steps[left]
         if right is not None:
             other = steps[right]
@@ -215,10 +215,10 @@ class _Compiler:
         steps += (key, name, left, right)
         return at
 
-    def _taken(self, *places: int | None) -> list[float]:
-        """Return the constants at these places, the last of all steps, and take them out."""
+    def _take_out(self, *places: int | None) -> list[float]:
+        """Take out the constants at these places, which are the last steps; return their values."""
         taken = [at for at in places if at is not None]
-        self.doubtful.difference_update(taken)
+        self.maybe_non_finite.difference_update(taken)
         del self.steps[taken[0] :]
         return [self.constants.pop(at) for at in taken]
 

@@ -3,12 +3,11 @@
 from typing import Final
 
 from service.expressions.characters.unicode import CLOSE, OPEN
-from service.expressions.errors import Span
+from service.expressions.errors import Span, UnreadableError
 from service.expressions.limits import LIMITS
-from service.expressions.unreadable import UnreadableError
 
 PARTNERS: Final = {"(": ")", "[": "]", "{": "}", "|": "|", OPEN: CLOSE}
-# In place of a token: brackets around brackets, which mean nothing and become none.
+# In place of a token: brackets around brackets mean nothing and become no tokens.
 WRAPPING: Final = -1
 
 
@@ -21,13 +20,13 @@ class Brackets:
         self.opened: list[tuple[str, Span, int]] = []
 
     def open(self, bracket: str, span: Span, token: int) -> None:
-        """Open a bracket, the `token`-th token. Raises UnreadableError for one too many."""
+        """Open a bracket, the token at index ``token``. Raises UnreadableError for one too many."""
         if len(self.opened) >= LIMITS.depth:
             raise UnreadableError("beyond", span, limit="depth")
         self.opened.append((bracket, span, token))
 
     def close(self, bracket: str, span: Span) -> int | None:
-        """Close the innermost bracket; return its token, or None where none is open.
+        """Close the innermost bracket; return its token's index, or None where none is open.
 
         Raises UnreadableError where it is of another kind.
         """
@@ -39,5 +38,5 @@ class Brackets:
         return token
 
     def in_bars(self) -> bool:
-        """Tell whether the innermost bracket is a bar, as in |x|."""
+        """Whether the innermost bracket is a bar, as in |x|."""
         return bool(self.opened) and self.opened[-1][0] == "|"

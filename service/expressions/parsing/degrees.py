@@ -1,9 +1,9 @@
 """Where a student works in degrees: which bare numbers of a tree are degrees.
 
 An angle context is the argument of sin, cos and tan, and the whole of an entry that asks for an
-angle. There a constant term without π, a unit or an inverse function is in degrees; joint
-variables and angle symbols hold radians. `cos(q1 + 90)` becomes `cos(q1 + 90deg)`. The argument of
-sind, cosd and tand is such a context wherever a student works; they become sin, cos and tan.
+angle. There a constant term without π, a unit or an inverse function is in degrees; joint variables
+and angle symbols hold radians. ``cos(q1 + 90)`` becomes ``cos(q1 + 90deg)``. The argument of sind,
+cosd and tand is such a context wherever a student works; they become sin, cos and tan.
 """
 
 from typing import NamedTuple
@@ -16,15 +16,15 @@ from service.expressions.tree import (
     Node,
     Number,
     Pi,
+    SymbolNode,
     Unit,
-    Variable,
     children,
 )
 from service.expressions.vocabulary.functions import INVERSE, OF_DEGREES, TRIGONOMETRIC
 
 
 class _Facts(NamedTuple):
-    """What is written in a node: no symbol at all, an angle in radians, π that makes it one."""
+    """Facts of a node: whether it has no symbol, is an angle in radians, and is one by its π."""
 
     constant: bool
     angle: bool
@@ -32,22 +32,22 @@ class _Facts(NamedTuple):
 
 
 def in_degrees(tree: Node, *, is_angle: bool, notes: list[Note]) -> Node:
-    """Return `tree` with its bare constants in angle contexts given the unit of degrees.
+    """``tree`` with the unit of degrees on the bare constants in its angle contexts.
 
-    `is_angle` tells whether the whole entry is an angle. A constant written with π stays in
-    radians and is added to `notes`.
+    ``is_angle`` tells whether the whole entry is an angle. A constant written with π stays in
+    radians and is added to ``notes``.
     """
     conversion = _Conversion(tree, notes, TRIGONOMETRIC)
     return conversion.angle(tree) if is_angle else conversion.plain(tree)
 
 
 def without_degree_functions(tree: Node, *, notes: list[Note]) -> Node:
-    """Return `tree` with cosd(60) as cos(60deg), for a student who works in radians."""
+    """``tree`` with cos(60deg) for cosd(60), for a student who works in radians."""
     return _Conversion(tree, notes, frozenset()).plain(tree)
 
 
 class _Conversion:
-    """One conversion; what is written in each node is worked out once."""
+    """One conversion, which finds the facts of each node once."""
 
     def __init__(self, tree: Node, notes: list[Note], functions: frozenset[str]) -> None:
         self.notes = notes
@@ -61,7 +61,7 @@ class _Conversion:
         return facts
 
     def plain(self, node: Node) -> Node:
-        """Convert the angle contexts inside `node`, which is not one itself."""
+        """Convert the angle contexts inside ``node``, which is not one itself."""
         match node:
             case Binary(operator, left, right):
                 return Binary(operator, self.plain(left), self.plain(right), node.start, node.end)
@@ -78,7 +78,7 @@ class _Conversion:
                 return node
 
     def angle(self, node: Node) -> Node:
-        """Convert `node`, which is an angle."""
+        """Convert ``node``, which is an angle."""
         match node:
             case Negation(operand):
                 return Negation(self.angle(operand), node.start, node.end)
@@ -121,7 +121,7 @@ class _Conversion:
 
 
 def _facts(node: Node, below: list[_Facts]) -> _Facts:
-    """Return what is written in `node`, given the same of its children."""
+    """The facts of ``node``, given those of its children."""
     constant = all(facts.constant for facts in below)
     angle = any(facts.angle for facts in below)
     pi = any(facts.pi for facts in below)
@@ -130,12 +130,12 @@ def _facts(node: Node, below: list[_Facts]) -> _Facts:
             return _Facts(constant, True, True)
         case Unit():
             return _Facts(constant, True, False)
-        case Variable(symbol):
+        case SymbolNode(symbol):
             return _Facts(False, symbol.kind == "angle", False)
         case Call("abs"):
             return _Facts(constant, angle, pi)
         case Call(function):
-            # A sine is no angle, whatever it is of.
+            # A sine is no angle, whatever its argument.
             return _Facts(constant, function in INVERSE, False)
         case _:
             return _Facts(constant, angle, pi)

@@ -17,8 +17,8 @@ _STEM: Final = re.compile(rf"[A-Za-z{greek.CLASS}]+$")
 class Indexed(NamedTuple):
     """A run and its index, read together.
 
-    `pieces` are those of the run with the index behind it, None where that has no reading either.
-    `digits` is the index as declared names carry it, `end` where the text goes on.
+    ``pieces`` are those of the run with the index behind it, None where that has no reading.
+    ``digits`` is the index as declared names carry it, ``end`` the place behind the brackets.
     """
 
     pieces: tuple[Piece, ...] | None
@@ -28,7 +28,7 @@ class Indexed(NamedTuple):
 
 
 def indexed(run: str, text: str, end: int, vocabulary: Vocabulary) -> Indexed | None:
-    """Return `run`, which ends at text[end], with the index in brackets behind it, if any."""
+    """``run``, which ends at ``text[end]``, with the index in brackets behind it, if any."""
     match = INDEX.match(text, end)
     if match is None or _STEM.search(run) is None:
         return None
@@ -37,19 +37,19 @@ def indexed(run: str, text: str, end: int, vocabulary: Vocabulary) -> Indexed | 
     if style == "[":
         number += _first(run, vocabulary)
     pieces = split(f"{run}{number}", vocabulary)
-    if pieces is not None and pieces[-1].kind not in {"symbol", "misfit", "shorthand"}:
+    if pieces is not None and pieces[-1].kind not in {"symbol", "invalid_shorthand", "shorthand"}:
         pieces = None
     return Indexed(pieces, style, str(number), match.end())
 
 
 def is_family(run: str, vocabulary: Vocabulary) -> bool:
-    """Tell whether some name is `run` with an index: q, where there is a q1."""
+    """Whether some name is ``run`` with an index: q, where there is a q1."""
     joints = vocabulary.turning.keys() | vocabulary.sliding.keys()
     return any(split(f"{run}{index}", vocabulary) for index in {1, 2, *joints})
 
 
 def _first(run: str, vocabulary: Vocabulary) -> int:
-    """Return the index of the first joint for a joint variable's letter, else 1."""
+    """The index of the first joint for a joint variable's letter, else 1."""
     joints = sorted(vocabulary.turning.keys() | vocabulary.sliding.keys())
     for joint in joints:
         pieces = split(f"{run}{joint}", vocabulary)

@@ -4,19 +4,22 @@ import math
 import re
 from typing import Any, Final
 
-from service.expressions.characters.normalise import Characters, is_break
+from service.expressions.characters.normalise import Characters, is_separator
 from service.expressions.characters.unicode import CLOSE, MARKER, OPEN
-from service.expressions.errors import Note, Span
+from service.expressions.errors import Note, Span, UnreadableError
 from service.expressions.parsing.brackets import WRAPPING, Brackets
 from service.expressions.parsing.indices import INDEX, Indexed, indexed, is_family
 from service.expressions.parsing.joint_markers import is_marker
-from service.expressions.parsing.notes import Remarks
-from service.expressions.parsing.parser import END, Token
+from service.expressions.parsing.notes import WordNotes
 from service.expressions.parsing.words import RUN, Piece, split
-from service.expressions.tree import Binary, Call, Node, Number, Pi, Variable
-from service.expressions.unreadable import UnreadableError
+from service.expressions.tree import Binary, Call, Node, Number, Pi, SymbolNode
 from service.expressions.vocabulary.functions import IN_DEGREES, MODULES, UNIT_FUNCTIONS
 from service.expressions.vocabulary.symbols import Symbol, Vocabulary
+
+# A token: its terminal, its value, and its [start, end) in the text as typed. The value is a node
+# for NUMBER and NAME, the name and its power for FUNCTION, the unit for UNIT, None for the others.
+Token = tuple[str, Any, int, int]
+END: Final = "$END"
 
 NUMBER: Final = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _TOKEN: Final = re.compile(
@@ -33,22 +36,23 @@ _EXPONENT: Final = re.compile(
 )
 _E_NAME: Final = re.compile(r"([eE])([+-]?)([0-9]+)$")
 _NUMERIC_FRACTION: Final = re.compile(rf"{OPEN}\{{?\s*[0-9]+\s*\}}?/\{{?\s*[0-9]+\s*\}}?{CLOSE}")
-# An operand can end with one of these, and begin with NUMBER, NAME, FUNCTION, ROOT, LEFT or OPEN.
-_OPERAND_ENDS: Final = frozenset({"NUMBER", "NAME", "RIGHT", "CLOSE", "UNIT"})
+# An operand ends with one of these; it begins with NUMBER, NAME, FUNCTION, ROOT, LEFT or OPEN.
+OPERAND_ENDS: Final = frozenset({"NUMBER", "NAME", "RIGHT", "CLOSE", "UNIT"})
 _TIGHT_STARTS: Final = frozenset({"NAME", "LEFT", "OPEN"})
 
 
 def tokenise(
     source: str, characters: Characters, vocabulary: Vocabulary, *, degrees: bool, notes: list[Note]
 ) -> list[Token]:
-    """Return the tokens of `characters`, with END last. Raises UnreadableError."""
+    """The tokens of ``characters``, with END last. Raises UnreadableError."""
     return _Lexer(source, characters, vocabulary, degrees, notes).run()
 
 
 class _Lexer:
     """One pass over the characters."""
 
-    __slots__ = ("brackets", "breaks", "degrees", "ends", "fraction", "indices", "last", "remarks",
+    __slots__ = ("brackets", "degrees", "ends", "fraction_end", "has_separators", "indices", "last",
+    "notes",
                  "source", "starts", "text", "tokens", "vocabulary")  # fmt: skip
 
     def __init__(
@@ -65,13 +69,13 @@ class _Lexer:
         self.ends = characters.ends
         self.vocabulary = vocabulary
         self.degrees = degrees
-        self.remarks = Remarks(source, vocabulary, notes)
+        self.notes = WordNotes(source, vocabulary, notes)
         self.tokens: list[Token] = []
         self.last = ""
         self.brackets = Brackets()
-        self.breaks = not source.isprintable()
-        # The last token where it ends a fraction of numbers right behind a function: sin ½q1.
-        self.fraction = -1
+        self.has_separators = not source.isprintable()
+        # The index of the CLOSE of a fraction of numbers right behind a function: sin ½q1.
+        self.fraction_end = -1
         self.indices: list[tuple[Indexed, str, Span]] = []
 
     def run(self) -> list[Token]:
@@ -91,9 +95,9 @@ class _Lexer:
                 if terminal is None or (operator == "*" and self._is_joint()):
                     self._operator(operator, start, position)
                     continue
-                # Most operators mean one thing only, and most places are their own.
+                # Fast, for most tokens are such: an operator of one meaning in an unchanged text.
                 a, b = (start, position) if in_place else self._span(start, position)
-                self.tokens.append((terminal, a, a, b))
+                self.tokens.append((terminal, None, a, b))
                 self.last = terminal
             elif group == 2:
                 self._number(found[2], start, position)
@@ -106,7 +110,7 @@ class _Lexer:
         return self.tokens
 
     def _span(self, start: int, end: int) -> Span:
-        """Return the place in the text as typed of plain characters [start, end)."""
+        """The span as typed of the plain characters [start, end)."""
         if self.starts is None or self.ends is None:
             return start, end
         return self.starts[start], self.ends[end - 1]
@@ -116,16 +120,18 @@ class _Lexer:
         self.last = terminal
 
     def _operand(self, terminal: str, value: Any, start: int, end: int) -> None:
-        """Emit what begins an operand, after the product that is not written, if any."""
-        if self.last in _OPERAND_ENDS:
+        """Emit the first token of an operand, and before it the product that is not written."""
+        if self.last in OPERAND_ENDS:
             tokens = self.tokens
             before = tokens[-1]
-            if terminal == "NUMBER" or (self.breaks and is_break(self.source[before[3] : start])):
+            if terminal == "NUMBER" or (
+                self.has_separators and is_separator(self.source[before[3] : start])
+            ):
                 glued = before[0] == "NUMBER" and before[3] == start
                 raise UnreadableError("values", (before[2], end), number=glued)
             tight = terminal in _TIGHT_STARTS and (
                 (self.last == "NUMBER" and len(tokens) > 1 and tokens[-2][0] == "FUNCTION")
-                or self.fraction == len(tokens) - 1
+                or self.fraction_end == len(tokens) - 1
             )
             tokens.append(("TIGHT" if tight else "JOIN", None, start, start))
         self.tokens.append((terminal, value, start, end))
@@ -160,19 +166,19 @@ class _Lexer:
         elif text == ")":
             self._close(text, span)
         elif text == "*" and self._is_marker(start, end):
-            self.remarks.marker(span)
+            self.notes.marker(span)
         elif text in _TERMINALS:
-            self._emit(_TERMINALS[text], span[0], *span)
+            self._emit(_TERMINALS[text], None, *span)
         elif text == "°":
-            self._emit("UNIT", ("deg", span[1]), *span)
+            self._emit("UNIT", "deg", *span)
         elif text == "√":
-            self._operand("ROOT", span[0], *span)
+            self._operand("ROOT", None, *span)
         else:
             self._other(text, start, span)
 
     def _other(self, text: str, start: int, span: Span) -> None:
-        """Read what is rarer: other brackets, bars, fractions and raised stars."""
-        if text == "[" and self.last in _OPERAND_ENDS:
+        """Read a rarer operator: other brackets, bars, fractions and raised stars."""
+        if text == "[" and self.last in OPERAND_ENDS:
             index = INDEX.match(self.text, start)
             if index is not None:
                 place = self._span(start, index.end())
@@ -194,10 +200,10 @@ class _Lexer:
 
     def _close(self, bracket: str, span: Span) -> None:
         if self.brackets.close(bracket, span) != WRAPPING:
-            self._emit("RIGHT", span[1], *span)
+            self._emit("RIGHT", None, *span)
 
     def _is_wrapped(self, start: int) -> bool:
-        r"""Tell whether braces hold nothing but round brackets: \sin{(q_1)}, as SymPy prints it."""
+        r"""Whether braces hold nothing but round brackets: \sin{(q_1)}, as SymPy prints it."""
         inner = start + 1
         while self.text[inner : inner + 1].isspace():
             inner += 1
@@ -210,40 +216,40 @@ class _Lexer:
 
     def _open(self, bracket: str, span: Span) -> None:
         self.brackets.open(bracket, span, len(self.tokens))
-        self._operand("LEFT", span[0], *span)
+        self._operand("LEFT", None, *span)
 
     def _bar(self, span: Span) -> None:
         """Read |x|: a bar behind an operand closes, any other opens."""
-        if self.last in _OPERAND_ENDS and self.brackets.in_bars():
+        if self.last in OPERAND_ENDS and self.brackets.in_bars():
             self.brackets.close("|", span)
-            self._emit("RIGHT", span[1], *span)
+            self._emit("RIGHT", None, *span)
         else:
-            self._operand("FUNCTION", ("abs", None, *span), *span)
+            self._operand("FUNCTION", ("abs", None), *span)
             self.brackets.open("|", span, len(self.tokens))
-            self._emit("LEFT", span[0], *span)
+            self._emit("LEFT", None, *span)
 
     def _open_fraction(self, start: int, span: Span) -> None:
         if self.last == "NUMBER" and (match := _NUMERIC_FRACTION.match(self.text, start)):
             whole = self._span(start, match.end())
             fraction = re.sub(rf"[{OPEN}{CLOSE}{{}}\s]", "", match.group())
             raise UnreadableError("mixed_number", whole, fraction=fraction)
-        self._operand("OPEN", span[0], *span)
+        self._operand("OPEN", None, *span)
         self.brackets.open(OPEN, span, len(self.tokens) - 1)
 
     def _close_fraction(self, span: Span) -> None:
         opener = self.brackets.close(CLOSE, span)
-        self._emit("CLOSE", span[1], *span)
+        self._emit("CLOSE", None, *span)
         if opener and self.tokens[opener - 1][0] == "FUNCTION":
             inside = {token[0] for token in self.tokens[opener:]}
             if inside <= {"OPEN", "CLOSE", "LEFT", "RIGHT", "NUMBER", "SLASH"}:
-                self.fraction = len(self.tokens) - 1
+                self.fraction_end = len(self.tokens) - 1
 
     def _is_joint(self) -> bool:
         value = self.tokens[-1][1] if self.last == "NAME" else None
-        return type(value) is Variable and value.symbol.joint is not None
+        return type(value) is SymbolNode and value.symbol.joint is not None
 
     def _is_marker(self, start: int, end: int) -> bool:
-        """Tell whether the * at `start` marks a joint variable, as tables print it."""
+        """Whether the * at ``start`` marks a joint variable, as tables print it."""
         typed = self.source[slice(*self._span(start, end))]
         return self._is_joint() and is_marker(self.text, start, end, typed)
 
@@ -251,7 +257,7 @@ class _Lexer:
         """Read a raised star, which marks a joint variable and nothing else."""
         if not self._is_joint():
             raise UnreadableError("character", span)
-        self.remarks.marker(span)
+        self.notes.marker(span)
 
     # --- words
 
@@ -266,31 +272,31 @@ class _Lexer:
             kind = piece.kind
             a, b = self._span(start + piece.start, start + piece.end)
             if kind == "symbol":
-                self._operand("NAME", Variable(piece.symbols[0], a, b), a, b)
+                self._operand("NAME", SymbolNode(piece.symbols[0], a, b), a, b)
             elif kind == "shorthand":
                 self._shorthand(piece, piece is pieces[-1], start + piece.end, a, b)
             elif kind == "function":
                 end = self._function(piece.word, start + piece.end, end, a, b)
             elif kind == "pi":
-                self.remarks.pi(a, b)
+                self.notes.pi(a, b)
                 self._operand("NAME", Pi(a, b), a, b)
             elif kind == "number":
                 self._operand("NUMBER", Number(float(piece.word), piece.word, a, b), a, b)
             elif kind == "unit":
                 self._unit(piece.word, start + piece.start, start + piece.end, a, b)
             else:
-                raise UnreadableError("misfit", (a, b), joint=piece.joint)
+                raise UnreadableError("invalid_shorthand", (a, b), joint=piece.joint)
         return end
 
     def _letter(self, at: int) -> bool:
         return self.text[at : at + 1].isalpha()
 
     def _after_module(self, at: int) -> int:
-        """Go on behind `np.`; behind it, radians(90) can only mean 90 degrees."""
+        """Read what follows ``np.``, where radians(90) is 90 degrees; return where to go on."""
         if self.text.startswith("radians(", at):
             end = at + len("radians")
             a, b = self._span(at, end)
-            self._operand("FUNCTION", ("deg", None, a, b), a, b)
+            self._operand("FUNCTION", ("deg", None), a, b)
             return end
         return at
 
@@ -310,7 +316,7 @@ class _Lexer:
         stem = run[last.start :]
         place = self._span(start + last.start, found.end)
         self.indices.append((found, stem, place))
-        self.remarks.index(found.style, symbol, place)
+        self.notes.index(found.style, symbol, place)
         stretched = Piece(last.kind, last.start, found.end - start, symbols=last.symbols)
         return (*found.pieces[:-1], stretched), found.end
 
@@ -324,22 +330,22 @@ class _Lexer:
 
     def _shorthand(self, piece: Piece, last: bool, end: int, a: int, b: int) -> None:
         total = _sum_of(piece.symbols, a, b)
-        if piece.loose:
+        if piece.ambiguous:
             goes_on = not last or self.text[end : end + 1] in {"(", "[", "{", ".", "°", "√", "^"}
             if self.degrees or goes_on:
                 names = "+".join(symbol.name for symbol in piece.symbols)
                 raise UnreadableError(
                     "ambiguous_shorthand", (a, b), function=piece.word, names=names
                 )
-        if piece.loose or self.source[a] in "CS":
-            self.remarks.shorthand(piece, a, b)
+        if piece.ambiguous or self.source[a] in "CS":
+            self.notes.shorthand(piece, a, b)
         self._operand("NAME", Call(piece.word, (total,), a, b), a, b)
 
     def _function(self, name: str, at: int, end: int, a: int, b: int) -> int:
         """Emit a function with the power written on it; return where to go on."""
         if name == "rad2deg" or (name in IN_DEGREES and not self.degrees):
             raise UnreadableError("degrees", (a, b), name=name)
-        self.remarks.function(name, a, b)
+        self.notes.function(name, a, b)
         name = IN_DEGREES.get(name, name)
         power: int | None = None
         raised = _FUNCTION_POWER.match(self.text, at) if at == end else None
@@ -355,19 +361,19 @@ class _Lexer:
                 )
             power = int(exponent[exponent.lastindex or 0])
             end = exponent.end()
-        self._operand("FUNCTION", (name, power, a, b), a, b)
+        self._operand("FUNCTION", (name, power), a, b)
         return end
 
     def _unit(self, unit: str, start: int, end: int, a: int, b: int) -> None:
         opens = self.text[end : end + 1] == "("
-        if self.last in _OPERAND_ENDS and not opens:
-            self._emit("UNIT", (unit, b), a, b)
-        elif self.last not in _OPERAND_ENDS and opens and self.text[start:end] in UNIT_FUNCTIONS:
-            self._emit("FUNCTION", (unit, None, a, b), a, b)
+        if self.last in OPERAND_ENDS and not opens:
+            self._emit("UNIT", unit, a, b)
+        elif self.last not in OPERAND_ENDS and opens and self.text[start:end] in UNIT_FUNCTIONS:
+            self._emit("FUNCTION", (unit, None), a, b)
         else:
             raise UnreadableError("ambiguous_unit", (a, b), opens=opens)
 
-    # --- what cannot be read
+    # --- words and characters that cannot be read
 
     def _unknown(self, run: str, start: int, end: int) -> UnreadableError:
         span = self._span(start, end)
@@ -383,8 +389,8 @@ class _Lexer:
 
 
 def _sum_of(symbols: tuple[Symbol, ...], a: int, b: int) -> Node:
-    total: Node = Variable(symbols[0], a, b)
+    total: Node = SymbolNode(symbols[0], a, b)
     if len(symbols) > 1:
         for symbol in symbols[1:]:
-            total = Binary("+", total, Variable(symbol, a, b), a, b)
+            total = Binary("+", total, SymbolNode(symbol, a, b), a, b)
     return total

@@ -1,4 +1,4 @@
-"""Notes on how single words were read, where another reader might not have read them so."""
+"""Notes on single words that another reader might read otherwise."""
 
 from typing import Final
 
@@ -19,7 +19,7 @@ _INDEXING: Final = {
 }
 
 
-class Remarks:
+class WordNotes:
     """Writes the notes of one text."""
 
     __slots__ = ("notes", "source", "vocabulary")
@@ -46,9 +46,9 @@ class Remarks:
         self._add(code, _INDEXING[style].format(name=symbol.name), span)
 
     def shorthand(self, piece: Piece, a: int, b: int) -> None:
-        """Note a shorthand that may have been meant otherwise: sin12, C1."""
+        """Note a shorthand that has another reading: sin12, C1."""
         names = "+".join(symbol.name for symbol in piece.symbols)
-        if piece.loose or self.source[a] in "CS":
+        if piece.ambiguous or self.source[a] in "CS":
             self._add("shorthand", f"This was read as {piece.word}({names}).", (a, b))
 
     def pi(self, a: int, b: int) -> None:

@@ -1,151 +1,190 @@
-"""The grammar's LALR table, made by lark, and the loop that runs it.
+r"""Tokens -> a syntax tree, by recursive descent.
 
-lark reads the grammar and works out the table; its own loop hashes a rule object at each
-reduction and wraps each token in a string, which together cost several times the parse. This
-loop takes the same table with the reductions looked up beforehand, and without those that build
-nothing: a name alone would be reduced seven times before it is a sum.
+The grammar, in which a word in capitals is a token and { } may stand any number of times:
+
+    sum       = product { (PLUS | MINUS) product }
+    product   = signed { (STAR | SLASH) signed | JOIN power }
+    signed    = { PLUS | MINUS } power
+    power     = postfix [ POWER exponent ] | bare_call
+    exponent  = { PLUS | MINUS } ( postfix | bare_call )
+    postfix   = atom { UNIT }
+    atom      = simple | LEFT sum RIGHT
+    simple    = NUMBER | NAME | ROOT atom | OPEN sum CLOSE
+              | FUNCTION LEFT sum { COMMA sum } RIGHT
+    bare_call = FUNCTION argument
+    argument  = simple { UNIT } [ POWER exponent ] | simple TIGHT power | bare_call
+
+``JOIN`` is a product that is not written: ``2q1``, ``l1 c1``, ``a(b)``. ``TIGHT`` is one that stays
+inside the argument of a function without brackets: ``sin 2q1`` is ``sin(2q1)``. Such a function
+takes one operand, so ``sin q1 * l1`` is ``sin(q1)*l1``. ``OPEN`` and ``CLOSE`` surround a fraction
+that stands as one, ``½`` or ``\frac{a}{b}``. A power of a power has two readings, so ``2^3^2`` is
+not in the grammar.
+
+Only brackets are parsed by recursion, and the lexer lets at most ``LIMITS.depth`` of them be open.
+Whatever else may be repeated without end (signs, roots, powers, functions without brackets) waits
+on a list for its operand, so that no text comes near Python's recursion limit.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from importlib.resources import files
-from typing import Any, Final, NamedTuple
+from collections.abc import Callable, Sequence
+from functools import partial
 
-from lark import Lark
-from lark.lexer import Lexer
-from lark.parsers.lalr_analysis import Shift
+from service.expressions.errors import UnreadableError
+from service.expressions.parsing.lexer import END, Token
+from service.expressions.parsing.tree_builder import Builder
+from service.expressions.tree import Node
 
-# A token: its terminal, the value that the builders see, its [start, end) in the text as typed.
-Token = tuple[str, Any, int, int]
-# A rule to reduce by: how many values it takes, what is built of them, the rule's own name.
-Reduction = tuple[int, Callable[..., Any], str]
-# A state is what it leads to: for each symbol that can be pushed on it, what is to be done by the
-# terminal that comes next. Either a rule is reduced by, or the terminal is pushed on a state.
-State = dict[str, "Choice"]
-Choice = dict[str, "Reduction | State"]
-
-END: Final = "$END"
+# What is built of an operand that is still to be parsed: its sign, its power, its function.
+_Pending = list[Callable[[Node], Node]]
 
 
-class UnexpectedTokenError(Exception):
-    """The token at `index` cannot follow those before it."""
+def parse(tokens: Sequence[Token], builder: Builder) -> Node:
+    """The tree that ``builder`` makes of ``tokens``, which end in ``END``.
 
-    def __init__(self, index: int) -> None:
-        super().__init__(index)
-        self.index = index
-
-
-class _NoLexer(Lexer):
-    """Stands where lark wants a lexer: the tokens come from tokens.py."""
-
-    def __init__(self, lexer_conf: Any) -> None:
-        pass
-
-    def lex(self, lexer_state: Any, parser_state: Any) -> Iterator[Any]:
-        raise NotImplementedError
-
-
-class Table:
-    """The LALR table of grammar.lark, whose rules are built by the methods of `builder`.
-
-    `rules` are the names that these methods have. Raises KeyError where one is lacking.
+    Raises UnreadableError, with the index of the first token that cannot follow those before it.
     """
-
-    def __init__(self, builder: type) -> None:
-        grammar = files(__package__).joinpath("grammar.lark").read_text("utf-8")
-        lark = Lark(grammar, parser="lalr", lexer=_NoLexer, start="start")
-        table: Any = lark.parser.parser._parse_table
-        rows: _Rows = {
-            number: {str(name): _action(*action) for name, action in actions.items()}
-            for number, actions in table.states.items()
-        }
-        actions = (action for row in rows.values() for action in row.values())
-        self.rules: Final = frozenset(
-            action.builder for action in actions if isinstance(action, _Rule) and action.builder
-        )
-        builders = {name: vars(builder)[name] for name in self.rules}
-        first, last = table.start_states["start"], table.end_states["start"]
-        self._begin: Final = _worked_out(rows, first, last, builders)
-
-    def parse(self, tokens: Sequence[Token], builder: object) -> Any:
-        """Return what `builder` makes of `tokens`, which end in END.
-
-        Its methods take the values of their rules, left to right. Raises UnexpectedTokenError.
-        """
-        # The state that each value was pushed on. The one above them all is settled only by the
-        # terminal that comes next.
-        states: list[State] = []
-        values: list[Any] = []
-        choice = self._begin
-        for index, (terminal, value, _, _) in enumerate(tokens):
-            action: Any = choice.get(terminal)
-            while action.__class__ is tuple:
-                length, build, origin = action
-                if length == 3:
-                    right, middle = values.pop(), values.pop()
-                    values[-1] = build(builder, values[-1], middle, right)
-                    del states[-2:]
-                else:
-                    values[-length:] = (build(builder, *values[-length:]),)
-                    del states[len(states) + 1 - length :]
-                choice = states[-1][origin]
-                action = choice.get(terminal)
-            if action is None:
-                raise UnexpectedTokenError(index)
-            if terminal == END:
-                return values[0]
-            states.append(action)
-            values.append(value)
-            choice = action[terminal]
-        raise UnexpectedTokenError(len(tokens) - 1)
+    parser = _Parser(tokens, builder)
+    tree = parser.sum()
+    parser.take(END)
+    return tree
 
 
-class _Rule(NamedTuple):
-    """A rule to reduce by. One of a single symbol that has no builder only changes the state."""
+class _Parser:
+    """One method for each rule of the grammar; ``at`` is the index of the next token."""
 
-    length: int
-    builder: str | None
-    name: str
+    __slots__ = ("at", "builder", "tokens")
 
+    def __init__(self, tokens: Sequence[Token], builder: Builder) -> None:
+        self.tokens = tokens
+        self.builder = builder
+        self.at = 0
 
-# By state and symbol: the state to enter, or the rule to reduce by.
-_Rows = dict[int, dict[str, int | _Rule]]
+    def take(self, terminal: str) -> Token:
+        """The next token, which must be a ``terminal``."""
+        token = self.tokens[self.at]
+        if token[0] != terminal:
+            raise self.unexpected()
+        self.at += 1
+        return token
 
+    def unexpected(self) -> UnreadableError:
+        """The error that the next token cannot follow those before it."""
+        place = self.tokens[self.at][2:]
+        return UnreadableError("grammar", place, tokens=self.tokens, index=self.at)
 
-def _action(action: object, argument: Any) -> int | _Rule:
-    if action is Shift:
-        return int(argument)
-    length, name = len(argument.expansion), str(argument.origin.name)
-    passes = length == 1 and argument.alias is None
-    return _Rule(length, None if passes else argument.alias or name, name)
+    def sum(self) -> Node:
+        left = self.product()
+        while True:
+            terminal = self.tokens[self.at][0]
+            if terminal == "PLUS":
+                self.at += 1
+                left = self.builder.add(left, self.product())
+            elif terminal == "MINUS":
+                self.at += 1
+                left = self.builder.subtract(left, self.product())
+            else:
+                return left
 
+    def product(self) -> Node:
+        left = self.signed()
+        while True:
+            terminal = self.tokens[self.at][0]
+            if terminal == "STAR":
+                self.at += 1
+                left = self.builder.multiply(left, self.signed())
+            elif terminal == "JOIN":
+                self.at += 1
+                left = self.builder.join(left, self.power([]))
+            elif terminal == "SLASH":
+                self.at += 1
+                left = self.builder.divide(left, self.signed())
+            else:
+                return left
 
-def _worked_out(
-    rows: _Rows, first: int, last: int, builders: Mapping[str, Callable[..., Any]]
-) -> Choice:
-    """Return what is to be done before the first token.
+    def signed(self) -> Node:
+        pending: _Pending = []
+        self.signs(pending)
+        return self.power(pending)
 
-    What the rules without a builder come to depends on the state below and on the terminal that
-    comes next, and on nothing else, so it is settled here.
-    """
-    states: dict[int, State] = {number: {} for number in rows}
-    done: State = {}
+    def signs(self, pending: _Pending) -> None:
+        while True:
+            terminal, _, start, _ = self.tokens[self.at]
+            if terminal == "MINUS":
+                pending.append(partial(self.builder.negate, start))
+            elif terminal == "PLUS":
+                pending.append(partial(self.builder.keep, start))
+            else:
+                return
+            self.at += 1
 
-    def action_on(below: int, top: int, terminal: str) -> Reduction | State | None:
-        action = rows[top].get(terminal)
-        while isinstance(action, _Rule):
-            if action.builder is not None:
-                return action.length, builders[action.builder], action.name
-            top = rows[below][action.name]  # type: ignore[assignment]
-            if top == last and terminal == END:
-                return done
-            action = rows[top].get(terminal)
-        return None if action is None else states[top]
+    def power(self, pending: _Pending) -> Node:
+        """The power behind the signs that are ``pending``, with what these make of it."""
+        tokens, builder = self.tokens, self.builder
+        is_argument = is_exponent = False
+        while True:
+            token = tokens[self.at]
+            if token[0] == "FUNCTION" and tokens[self.at + 1][0] != "LEFT":
+                self.at += 1
+                pending.append(partial(builder.bare_call, token))
+                is_argument, is_exponent = True, False
+                continue
+            operand = self.atom()
+            token = tokens[self.at]
+            if is_argument and token[0] == "TIGHT":
+                self.at += 1
+                pending.append(partial(builder.tight, operand))
+                is_argument = False
+                continue
+            while token[0] == "UNIT":
+                self.at += 1
+                operand = builder.unit(operand, token[1], token[3])
+                token = tokens[self.at]
+            if token[0] != "POWER":
+                break
+            if is_exponent:
+                raise self.unexpected()
+            self.at += 1
+            pending.append(partial(builder.raise_to, operand, token[2]))
+            self.signs(pending)
+            is_argument, is_exponent = False, True
+        while pending:
+            operand = pending.pop()(operand)
+        return operand
 
-    def choice_on(below: int, top: int) -> Choice:
-        found = {terminal: action_on(below, top, terminal) for terminal in rows[top]}
-        return {terminal: action for terminal, action in found.items() if action is not None}
+    def atom(self) -> Node:
+        token = self.tokens[self.at]
+        terminal, value, start, _ = token
+        if terminal == "NAME" or terminal == "NUMBER":
+            self.at += 1
+            node: Node = value
+            return node
+        if terminal == "FUNCTION":
+            self.at += 1
+            return self.call(token)
+        if terminal == "LEFT":
+            self.at += 1
+            inner = self.sum()
+            return self.builder.group(start, inner, self.take("RIGHT")[3])
+        if terminal == "OPEN":
+            self.at += 1
+            inner = self.sum()
+            return self.builder.fraction(start, inner, self.take("CLOSE")[3])
+        if terminal == "ROOT":
+            return self.root()
+        raise self.unexpected()
 
-    for number, row in rows.items():
-        pushed = {symbol: top for symbol, top in row.items() if isinstance(top, int)}
-        states[number].update({symbol: choice_on(number, top) for symbol, top in pushed.items()})
-    return dict.fromkeys(states[first], states[first])
+    def root(self) -> Node:
+        starts = []
+        while self.tokens[self.at][0] == "ROOT":
+            starts.append(self.take("ROOT")[2])
+        operand = self.atom()
+        for start in reversed(starts):
+            operand = self.builder.root(start, operand)
+        return operand
+
+    def call(self, function: Token) -> Node:
+        self.take("LEFT")
+        arguments = [self.sum()]
+        while self.tokens[self.at][0] == "COMMA":
+            self.at += 1
+            arguments.append(self.sum())
+        return self.builder.call(function, arguments, self.take("RIGHT")[3])

@@ -1,17 +1,24 @@
-"""What each rule of the grammar builds, and the notes on readings that others may not share.
+"""A node for each rule of the grammar, and notes where others may read the text otherwise.
 
-The methods carry the names that grammar.lark gives to its rules.
+The parser calls each method once the rule's operands are built.
 """
 
 from collections.abc import Iterator
-from typing import Any
 
-from service.expressions.errors import Note
-from service.expressions.tree import Binary, Call, Negation, Node, Number, Unit, Variable, children
-from service.expressions.unreadable import UnreadableError
+from service.expressions.errors import Note, UnreadableError
+from service.expressions.parsing.lexer import Token
+from service.expressions.tree import (
+    Binary,
+    Call,
+    Negation,
+    Node,
+    Number,
+    SymbolNode,
+    Unit,
+    UnitName,
+    children,
+)
 from service.expressions.vocabulary.functions import ARITY, INVERSE, OF_DEGREES
-
-FunctionToken = tuple[str, int | None, int, int]
 
 
 class Builder:
@@ -23,35 +30,35 @@ class Builder:
         self.source = source
         self.notes = notes
         self.degrees = degrees
-        # By id: nodes inside brackets, and fractions that stand as one.
+        # The ids of nodes in brackets, and of fractions with a bar.
         self.grouped: set[int] = set()
         self.barred: set[int] = set()
         self.degree_functions = False
 
-    def add(self, left: Node, _: int, right: Node) -> Node:
+    def add(self, left: Node, right: Node) -> Node:
         """Build left + right."""
         self._note_degrees(left, right)
         return Binary("+", left, right, left.start, right.end)
 
-    def subtract(self, left: Node, _: int, right: Node) -> Node:
+    def subtract(self, left: Node, right: Node) -> Node:
         """Build left - right."""
         self._note_degrees(left, right)
         return Binary("-", left, right, left.start, right.end)
 
-    def multiply(self, left: Node, _: int, right: Node) -> Node:
+    def multiply(self, left: Node, right: Node) -> Node:
         """Build left * right."""
         return Binary("*", left, right, left.start, right.end)
 
-    def divide(self, left: Node, _: int, right: Node) -> Node:
-        """Build left / right, with a note on `sin q1/2`; nobody reads √2/2 in two ways."""
+    def divide(self, left: Node, right: Node) -> Node:
+        """Build left / right, with a note on ``sin q1/2``; √2/2 has one reading only."""
         if not (
             type(left) is Call and left.function == "sqrt" and type(left.arguments[0]) is Number
         ):
             self._note_bare(left)
         return Binary("/", left, right, left.start, right.end)
 
-    def join(self, left: Node, _: None, right: Node) -> Node:
-        """Build a product that is not written, with a note on `1/2q1`."""
+    def join(self, left: Node, right: Node) -> Node:
+        """Build a product that is not written, with a note on ``1/2q1``."""
         if type(left) is Binary and left.operator == "/" and self._is_open(left):
             self._note(
                 "division_then_product",
@@ -64,8 +71,8 @@ class Builder:
             self._note_bare(left)
         return Binary("*", left, right, left.start, right.end)
 
-    def tight(self, left: Node, _: None, right: Node) -> Node:
-        """Build the product inside `sin 2q1`."""
+    def tight(self, left: Node, right: Node) -> Node:
+        """Build the product inside ``sin 2q1``."""
         if self.source[right.start] == "(":
             self._note_argument(left.start, right.end)
         return Binary("*", left, right, left.start, right.end)
@@ -80,48 +87,49 @@ class Builder:
         return operand
 
     def raise_to(self, base: Node, caret: int, exponent: Node) -> Node:
-        """Build base ^ exponent; the 0 of 90^0 was rather meant as the sign of degrees."""
+        """Build base ^ exponent.
+
+        Raises UnreadableError for 90^0, whose 0 may be the sign of degrees.
+        """
         if type(exponent) is Number and not exponent.value and self._may_be_degrees(base):
             raise UnreadableError("raised_zero", (caret, exponent.end), power=True)
         return Binary("^", base, exponent, base.start, exponent.end)
 
-    def unit(self, operand: Node, unit: tuple[Any, int]) -> Node:
-        """Build an operand with a unit, which must be a number."""
-        name, end = unit
+    def unit(self, operand: Node, unit: UnitName, end: int) -> Node:
+        """Build an operand with a unit. Raises UnreadableError where it is not a number."""
         span = (operand.start, end)
         for node in _outside_calls(operand):
             if type(node) is Unit or (type(node) is Call and node.function in INVERSE):
                 raise UnreadableError("two_units", span)
-            if type(node) is Variable and node.symbol.kind != "number":
+            if type(node) is SymbolNode and node.symbol.kind != "number":
                 place = (node.start, node.end)
                 raise UnreadableError(
                     "unit_on_variable", span, name=node.symbol.name, variable=place
                 )
-        return Unit(operand, name, *span)
+        return Unit(operand, unit, *span)
 
-    def group(self, left: int, inner: Node, right: int) -> Node:
-        """Build (inner); the brackets count to its place only."""
-        inner.start, inner.end = left, right
+    def group(self, start: int, inner: Node, end: int) -> Node:
+        """Build (inner), whose span includes the brackets."""
+        inner.start, inner.end = start, end
         self.grouped.add(id(inner))
         return inner
 
-    def fraction(self, left: int, inner: Node, right: int) -> Node:
+    def fraction(self, start: int, inner: Node, end: int) -> Node:
         r"""Build ½ or \frac{a}{b}."""
-        inner.start, inner.end = left, right
+        inner.start, inner.end = start, end
         self.barred.add(id(inner))
         return inner
-
-    def tight_fraction(self, left: int, inner: Node, right: int, _: None, operand: Node) -> Node:
-        """Build the product inside `sin ½q1`."""
-        return self.tight(self.fraction(left, inner, right), None, operand)
 
     def root(self, start: int, operand: Node) -> Node:
         """Build √operand."""
         return Call("sqrt", (operand,), start, operand.end)
 
-    def call(self, function: FunctionToken, _: int, arguments: list[Node], end: int) -> Node:
-        """Build a function of arguments in brackets."""
-        name, power, start, stop = function
+    def call(self, function: Token, arguments: list[Node], end: int) -> Node:
+        """Build a function of arguments in brackets.
+
+        Raises UnreadableError for a wrong number of them.
+        """
+        _, (name, power), start, stop = function
         wanted = ARITY.get(name, 1)
         if len(arguments) != wanted:
             raise UnreadableError(
@@ -129,7 +137,7 @@ class Builder:
                 places=[(argument.start, argument.end) for argument in arguments],
             )  # fmt: skip
         if name == "deg" or name == "rad":
-            node = self.unit(arguments[0], (name, end))
+            node = self.unit(arguments[0], name, end)
             node.start = start
             return node
         if name == "atan2":
@@ -137,9 +145,12 @@ class Builder:
         self.degree_functions = self.degree_functions or name in OF_DEGREES
         return _powered(Call(name, tuple(arguments), start, end), power)
 
-    def bare_call(self, function: FunctionToken, argument: Node) -> Node:
-        """Build a function of one argument without brackets."""
-        name, power, start, stop = function
+    def bare_call(self, function: Token, argument: Node) -> Node:
+        """Build a function of one argument without brackets.
+
+        Raises UnreadableError for a function of two.
+        """
+        _, (name, power), start, stop = function
         if ARITY.get(name, 1) != 1 or name == "deg" or name == "rad":
             raise UnreadableError(
                 "arguments", (start, argument.end), name=name, function=(start, stop),
@@ -152,24 +163,15 @@ class Builder:
         self.degree_functions = self.degree_functions or name in OF_DEGREES
         return _powered(Call(name, (argument,), start, argument.end), power)
 
-    def first_argument(self, argument: Node) -> list[Node]:
-        """Build a list of one argument."""
-        return [argument]
-
-    def next_argument(self, arguments: list[Node], _: int, argument: Node) -> list[Node]:
-        """Build the list with one more argument."""
-        arguments.append(argument)
-        return arguments
-
     def _may_be_degrees(self, base: Node) -> bool:
-        """Tell whether `base` is made of numbers alone, and is not the ten of 3*10^0."""
+        """Whether ``base`` is made of numbers alone, and is not the ten of 3*10^0."""
         if type(base) is Number and base.literal == "10":
             times = ("*", "×", "·", "⋅", r"\cdot", r"\times")
             return not self.source[: base.start].rstrip().endswith(times)
         return all(type(part) in {Number, Negation, Binary} for part in _outside_calls(base))
 
     def _is_open(self, node: Node) -> bool:
-        """Tell whether `node` was written without brackets around it; a bar counts as brackets."""
+        """Whether ``node`` was written without brackets around it; a bar counts as brackets."""
         return id(node) not in self.grouped and id(node) not in self.barred
 
     def _note_degrees(self, left: Node, right: Node) -> None:
@@ -187,7 +189,7 @@ class Builder:
                 )
 
     def _note_order(self, y: Node, x: Node, start: int, end: int) -> None:
-        """Note atan2(c1, s1) and atan2(x, y), which look as if they were swapped."""
+        """Note atan2(c1, s1) and atan2(x, y), whose arguments seem to be swapped."""
         first, second = _names(y), _names(x)
         for ours, theirs in (("sin", "cos"), ("y", "x")):
             if theirs in first and ours in second and not {ours} & first and not {theirs} & second:
@@ -215,7 +217,7 @@ class Builder:
         )
 
     def _note_bare(self, left: Node) -> None:
-        """Note where `left` ends in a function without brackets: sin q1/2 is (sin q1)/2."""
+        """Note where ``left`` ends in a function without brackets: sin q1/2 is (sin q1)/2."""
         last = left
         while type(last) is Binary and self._is_open(last) and last.right.end == last.end:
             last = last.right
@@ -228,7 +230,7 @@ class Builder:
 
 
 def _outside_calls(node: Node) -> Iterator[Node]:
-    """Yield what makes up the value of `node` itself: the argument of a sine is not of its kind."""
+    """The parts of ``node`` that are of its own kind: the argument of a sine is none."""
     pending = [node]
     while pending:
         part = pending.pop()
@@ -238,14 +240,14 @@ def _outside_calls(node: Node) -> Iterator[Node]:
 
 
 def _names(node: Node) -> set[str]:
-    """Return the functions called, and the stems of the symbols used, anywhere in `node`."""
+    """The functions called, and the stems of the symbols used, anywhere in ``node``."""
     found = set()
     pending = [node]
     while pending:
         part = pending.pop()
         if type(part) is Call:
             found.add(part.function)
-        elif type(part) is Variable:
+        elif type(part) is SymbolNode:
             found.add(part.symbol.name.rstrip("0123456789_")[-1:])
         pending.extend(children(part))
     return found

@@ -1,8 +1,8 @@
 """A run of letters and digits -> the names, functions and units that it is made of.
 
-`l1c1` is l1·c1 and `2sinq1` is 2·sin(q1): the longest known name first, trying shorter ones only
-where the rest of the run would otherwise make no sense. A name never ends between two digits, so
-q12 is not q1·2.
+``l1c1`` is l1·c1 and ``2sinq1`` is 2·sin(q1): the longest known name first, trying shorter ones
+only where the rest of the run would otherwise make no sense. A name never ends between two digits,
+so q12 is not q1·2.
 """
 
 import re
@@ -22,7 +22,7 @@ from service.expressions.vocabulary.functions import (
 )
 from service.expressions.vocabulary.symbols import Symbol, Vocabulary
 
-PieceKind = Literal["symbol", "pi", "function", "number", "unit", "shorthand", "misfit"]
+PieceKind = Literal["symbol", "pi", "function", "number", "unit", "shorthand", "invalid_shorthand"]
 RUN: Final = rf"[A-Za-z{greek.CLASS}](?:_?[A-Za-z0-9{greek.CLASS}])*"
 
 _SHORTHAND: Final = re.compile(
@@ -37,17 +37,17 @@ _WORDS: Final[dict[str, tuple[PieceKind, str]]] = {
     **{spelling: ("unit", name) for spelling, name in UNITS.items()},
     **dict.fromkeys(PI, ("pi", "pi")),
 }
-# sind30 may be sin(d30) to one reader: these need a bracket or a space before their number.
-_APART: Final = frozenset({*OF_DEGREES, *IN_DEGREES})
+# sind30 may be read as sin(d30): these need a bracket or a space before their number.
+_NOT_BEFORE_NUMBERS: Final = frozenset({*OF_DEGREES, *IN_DEGREES})
 
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """One part of a run, `run[start:end]`.
+    """One part of a run, ``run[start:end]``.
 
-    `word` is the canonical function or unit, or the digits of a number. `symbols` holds the
-    symbol, or the joint angles that a shorthand adds up. `loose` marks a shorthand that might
-    have been meant otherwise: sin12. `joint` is the index that a misfit shorthand names.
+    ``word`` is the canonical function or unit, or the digits of a number. ``symbols`` holds the
+    symbol, or the joint angles that a shorthand adds up. ``ambiguous`` marks a shorthand with
+    another reading: sin12. ``joint`` is the index that an invalid shorthand names.
     """
 
     kind: PieceKind
@@ -55,13 +55,13 @@ class Piece:
     end: int
     word: str = ""
     symbols: tuple[Symbol, ...] = ()
-    loose: bool = False
+    ambiguous: bool = False
     joint: int = 0
 
 
 @lru_cache(maxsize=8192)
 def split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
-    """Return the pieces of `run` (characters in normal form), or None where it has no reading."""
+    """The pieces of ``run`` (characters in normal form), or None where it has no reading."""
     # The longest reading wins, and none is longer than the whole run.
     if (symbol := vocabulary.by_name.get(run)) is not None:
         return (Piece("symbol", 0, len(run), symbols=(symbol,)),)
@@ -74,17 +74,17 @@ def split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
         return _split(run, vocabulary)
     kept = [index for index, letter in enumerate(run) if letter != "_"]
     pieces = _split(run.replace("_", ""), vocabulary)
-    return pieces and tuple(_stretch(piece, kept, run) for piece in pieces)
+    return pieces and tuple(_with_underscores(piece, kept, run) for piece in pieces)
 
 
-def _stretch(piece: Piece, kept: list[int], run: str) -> Piece:
+def _with_underscores(piece: Piece, kept: list[int], run: str) -> Piece:
     start, end = kept[piece.start], kept[piece.end - 1] + 1
-    loose = piece.loose and "_" not in run[start:end]
-    return Piece(piece.kind, start, end, piece.word, piece.symbols, loose, piece.joint)
+    ambiguous = piece.ambiguous and "_" not in run[start:end]
+    return Piece(piece.kind, start, end, piece.word, piece.symbols, ambiguous, piece.joint)
 
 
 def _split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
-    """Split from the right, so that each position is settled once."""
+    """The pieces of ``run``, found from the right, so that each position is split once."""
     rest: list[tuple[Piece, ...] | None] = [None] * len(run) + [()]
     for start in range(len(run) - 1, -1, -1):
         if run[start].isdigit():
@@ -94,7 +94,7 @@ def _split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
             tail = rest[pieces[-1].end]
             if tail is None:
                 continue
-            if not any(piece.kind == "misfit" for piece in (*pieces, *tail)):
+            if not any(piece.kind == "invalid_shorthand" for piece in (*pieces, *tail)):
                 rest[start] = pieces + tail
                 break
             fallback = fallback or pieces + tail
@@ -104,7 +104,7 @@ def _split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
 
 
 def _candidates(run: str, start: int, vocabulary: Vocabulary) -> list[tuple[Piece, ...]]:
-    """Return what may begin at `start`, longest first, a declared symbol before the rest."""
+    """The readings from ``start`` on, the longest first, of equals a declared symbol first."""
     shorthand = _shorthand(run, start, vocabulary) or _of_angle(run, start, vocabulary)
     found: list[tuple[Piece, ...]] = [] if shorthand is None else [(shorthand,)]
     for end in range(min(len(run), start + vocabulary.longest), start, -1):
@@ -112,7 +112,7 @@ def _candidates(run: str, start: int, vocabulary: Vocabulary) -> list[tuple[Piec
         if end < len(run) and run[end].isdigit():
             known = _WORDS.get(word)
             digits = _DIGITS.match(run, end)
-            is_function = known and known[0] == "function" and known[1] not in _APART
+            is_function = known and known[0] == "function" and known[1] not in _NOT_BEFORE_NUMBERS
             if known and is_function and not run[end - 1].isdigit() and digits:
                 number = Piece("number", end, digits.end(), digits.group())
                 found.append((Piece("function", start, end, known[1]), number))
@@ -127,35 +127,35 @@ def _candidates(run: str, start: int, vocabulary: Vocabulary) -> list[tuple[Piec
 
 
 def _shorthand(run: str, start: int, vocabulary: Vocabulary) -> Piece | None:
-    """Return c12, s3, cθ1, cosθ12 or sin12 as cos or sin of a sum of joint angles."""
+    """The shorthand of joint angles at ``start``, if any: c12, s3, cθ1, cosθ12 or sin12."""
     match = _SHORTHAND.match(run, start)
     if match is None or not (vocabulary.turning or vocabulary.sliding):
         return None
     function, angle, index = match.group("function", "angle", "index")
     spelled = len(function) > 1
     if angle and (function in vocabulary.by_name or (spelled and len(index) == 1)):
-        # Plain reading first: c·θ1 where c is declared, and cos θ1 is a cosine anyhow.
+        # The plain reading comes first: c·θ1 where c is declared; cos θ1 is a cosine in any case.
         return None
     joints = _joints(index, vocabulary)
     wrong = [joint for joint in joints if joint not in vocabulary.turning]
     if wrong or len(set(joints)) < len(joints):
         if spelled and not angle:
-            # cos45 on a three-joint arm is a number's cosine, not a shorthand gone wrong.
+            # cos45 on an arm with three joints is the cosine of a number, not an invalid shorthand.
             return None
         joint = int(index[:4]) if 0 in wrong else (wrong or joints)[0]
-        return Piece("misfit", start, match.end(), match.group(), joint=joint)
+        return Piece("invalid_shorthand", start, match.end(), match.group(), joint=joint)
     return Piece(
         "shorthand",
         start,
         match.end(),
         _SHORT.get(function, function),
         tuple(vocabulary.turning[joint] for joint in joints),
-        loose=spelled and not angle,
+        ambiguous=spelled and not angle,
     )
 
 
 def _of_angle(run: str, start: int, vocabulary: Vocabulary) -> Piece | None:
-    """Return cα1 or sβ as cos or sin of a declared angle."""
+    """The shorthand of a declared angle at ``start``, if any: cα1, sβ."""
     function = _SHORT.get(run[start])
     if function is None or run[start] in vocabulary.by_name:
         return None
@@ -169,7 +169,7 @@ def _of_angle(run: str, start: int, vocabulary: Vocabulary) -> Piece | None:
 
 
 def _joints(index: str, vocabulary: Vocabulary) -> tuple[int, ...]:
-    """Return the joints that `index` names: one digit each, or else one joint from 10 on."""
+    """The joints that ``index`` names: one digit each, or else one joint from 10 on."""
     digits = tuple(map(int, index))
     known = vocabulary.turning.keys() | vocabulary.sliding.keys()
     if len(set(digits)) == len(digits) and known.issuperset(digits):

@@ -5,9 +5,14 @@ from typing import Final
 from xml.sax.saxutils import escape
 
 from service.expressions.characters import greek
-from service.expressions.printing.latex import first_is_digit, is_power_of_ten
+from service.expressions.printing.brackets import (
+    ATOM,
+    POWER,
+    PRODUCT,
+    begins_with_digit,
+    needs_brackets,
+)
 from service.expressions.printing.symbol_names import stem_and_index
-from service.expressions.printing.text import ATOM, POWER, PRODUCT, level
 from service.expressions.tree import (
     Binary,
     Call,
@@ -16,16 +21,16 @@ from service.expressions.tree import (
     Number,
     Operator,
     Pi,
+    SymbolNode,
     Unit,
-    Variable,
 )
 from service.expressions.vocabulary.symbols import Symbol
 
 _NAMES: Final = {"asin": "arcsin", "acos": "arccos", "atan": "arctan"}
 _OPERATORS: Final = {"+": "<mo>+</mo>", "-": "<mo>−</mo>"}
-# What a symbol's own LaTeX may be: a letter or a word, an index, and something raised.
+# The LaTeX that a symbol may declare: a letter or a word, an index, and something raised.
 _WORD: Final = r"\\(?:mathrm|text|mathit|operatorname)\{([^{}]*)\}"
-_DRESSED: Final = re.compile(_WORD)
+_IN_COMMAND: Final = re.compile(_WORD)
 _PART: Final = rf"(?:\\[A-Za-z]+|\{{(?:[^{{}}]|{_WORD})*\}}|[A-Za-z0-9*'])"
 _LATEX: Final = re.compile(
     rf"(?P<base>{_WORD}|\\?[A-Za-z]+)(?:_(?P<below>{_PART}))?"
@@ -37,18 +42,18 @@ _APPLY: Final = "<mo>&#x2061;</mo>"
 
 
 def to_mathml(node: Node) -> str:
-    """Return `node` as one <math> element."""
+    """``node`` as one ``<math>`` element."""
     return f'<math xmlns="http://www.w3.org/1998/Math/MathML">{_row(node)}</math>'
 
 
 def _row(node: Node) -> str:
-    """Return `node` as one element."""
+    """``node`` as one element."""
     match node:
         case Number(literal=literal):
             return _number(literal)
         case Pi():
             return "<mi>π</mi>"
-        case Variable(symbol):
+        case SymbolNode(symbol):
             return _variable(symbol)
         case Call(function, arguments):
             return _call(function, [_row(argument) for argument in arguments])
@@ -71,9 +76,8 @@ def _binary(operator: Operator, left: Node, right: Node) -> str:
             return _mrow(f"<mo>−</mo><mfrac>{_row(left.operand)}{_row(right)}</mfrac>")
         return f"<mfrac>{_row(left)}{_row(right)}</mfrac>"
     if operator == "*":
-        times = "<mo>⋅</mo>" if first_is_digit(right) else _INVISIBLE_TIMES
-        first = _bracketed(left) if level(left) < PRODUCT else _row(left)
-        return _mrow(f"{first}{times}{_at(right, POWER)}")
+        times = "<mo>⋅</mo>" if begins_with_digit(right) else _INVISIBLE_TIMES
+        return _mrow(f"{_at(left, PRODUCT, first=True)}{times}{_at(right, POWER)}")
     return _mrow(f"{_row(left)}{_OPERATORS[operator]}{_at(right, PRODUCT)}")
 
 
@@ -90,7 +94,7 @@ def _number(literal: str) -> str:
 
 
 def _variable(symbol: Symbol) -> str:
-    """Return a symbol as its LaTeX shows it: a letter with what stands below and above it."""
+    """A symbol as its LaTeX shows it: a letter with an index below and a mark above it."""
     match = None if symbol.latex is None else _LATEX.fullmatch(symbol.latex)
     if match is None:
         stem, index = stem_and_index(symbol.name)
@@ -112,12 +116,12 @@ def _unbraced(part: str) -> str:
 
 
 def _identifier(text: str) -> str:
-    """Return a letter, a word or an index, which LaTeX may have dressed in a command."""
-    dressed = _DRESSED.fullmatch(text)
-    plain = dressed[1] if dressed else text.removeprefix("\\")
+    """A letter, a word or an index, which may stand in a LaTeX command."""
+    in_command = _IN_COMMAND.fullmatch(text)
+    plain = in_command[1] if in_command else text.removeprefix("\\")
     plain = _STARS.get(plain, plain)
     tag = "mn" if plain.isdigit() else "mo" if plain in _STARS.values() else "mi"
-    upright = " mathvariant='normal'" if dressed and len(plain) == 1 and tag == "mi" else ""
+    upright = " mathvariant='normal'" if in_command and len(plain) == 1 and tag == "mi" else ""
     return f"<{tag}{upright}>{escape(greek.LETTERS.get(plain, plain))}</{tag}>"
 
 
@@ -131,24 +135,8 @@ def _call(function: str, arguments: list[str]) -> str:
     return _mrow(f"{name}{_APPLY}{_mrow(f'<mo>(</mo>{inside}<mo>)</mo>')}")
 
 
-def _at(node: Node, needed: int) -> str:
-    is_fraction = type(node) is Binary and node.operator == "/"
-    too_loose = needed == ATOM if is_fraction else level(node) < needed
-    unit_below_power = needed == ATOM and (type(node) is Unit or is_power_of_ten(node))
-    if too_loose or unit_below_power or _starts_signed(node):
-        return _bracketed(node)
-    return _row(node)
-
-
-def _bracketed(node: Node) -> str:
-    return _mrow(f"<mo>(</mo>{_row(node)}<mo>)</mo>")
-
-
-def _starts_signed(node: Node) -> bool:
-    match node:
-        case Negation():
-            return True
-        case Binary("+" | "-" | "*" | "/", left):
-            return _starts_signed(left)
-        case _:
-            return False
+def _at(node: Node, place: int, *, first: bool = False) -> str:
+    element = _row(node)
+    if not needs_brackets(node, element, place, first=first):
+        return element
+    return _mrow(f"<mo>(</mo>{element}<mo>)</mo>")

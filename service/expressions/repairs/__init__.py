@@ -1,7 +1,7 @@
-"""The ways in which a text cannot be read: one file each, tried in order, the first one answers.
+"""Repair rules, one file each: why a text cannot be read, and how to repair it.
 
-Each rule names the slip, says where it is and what would be right, and offers the repaired text
-where one is near. A text that can be read never comes here.
+They are tried in order, and the first that knows the slip answers: it names the slip, its place
+and what would be right, and offers the repaired text where one is near.
 """
 
 from typing import Final
@@ -61,11 +61,11 @@ from service.expressions.repairs import (
     wrong_case,
     wrong_number_of_arguments,
 )
-from service.expressions.repairs.failure import Failure, Rule
+from service.expressions.repairs.failure import Failure, RepairRule
 
 # First what concerns the whole text, then characters and words, then how they are put together.
 # The last rule answers everything.
-RULES: Final[tuple[Rule, ...]] = (
+RULES: Final[tuple[RepairRule, ...]] = (
     beyond_limits.repair,
     not_a_number.repair,
     dash.repair,
@@ -122,7 +122,7 @@ RULES: Final[tuple[Rule, ...]] = (
 
 
 def explain(failure: Failure) -> ExpressionError:
-    """Return the error for `failure`; its suggestion is None or can be read."""
+    """The error for ``failure``; its suggestion is None or can be read."""
     error = next(found for rule in RULES if (found := rule(failure)) is not None)
     if error.suggestion is not None:
         same = error.suggestion.strip() == failure.source.strip()
@@ -130,4 +130,4 @@ def explain(failure: Failure) -> ExpressionError:
     return error
 
 
-__all__ = ["RULES", "Failure", "Rule", "explain"]
+__all__ = ["RULES", "Failure", "RepairRule", "explain"]

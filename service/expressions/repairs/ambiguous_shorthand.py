@@ -1,22 +1,22 @@
-"""sin45, which may be of a number or of joint angles."""
+"""sin45, the sine of a number or of joint angles."""
 
 import re
 
 from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, shown
+from service.expressions.repairs.failure import Failure, quoted
 
 _GOES_ON = re.compile(r"\.?\w+")
 
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Name both readings, and offer the joint angles."""
-    if failure.stop.cause != "ambiguous_shorthand":
+    if failure.cause != "ambiguous_shorthand":
         return None
     function, names = failure.details["function"], failure.details["names"]
     digits = "".join(letter for letter in failure.written if letter.isdigit())
     return ExpressionError(
         "ambiguous_shorthand",
-        f"{shown(failure.written)} has two readings. Write {function}({names}) for joint angles "
+        f"{quoted(failure.written)} has two readings. Write {function}({names}) for joint angles "
         f"or {function}({digits}) for the number.",
         failure.span,
         _suggestion(failure, f"{function}({names})", f"{function}({digits}"),
@@ -24,7 +24,7 @@ def repair(failure: Failure) -> ExpressionError | None:
 
 
 def _suggestion(failure: Failure, of_joints: str, of_number: str) -> str | None:
-    """Return sin(2q1) for sin2q1, sin(12.5) for sin12.5; none for cos12(q1)."""
+    """The text with sin(2q1) for sin2q1, sin(12.5) for sin12.5; None for cos12(q1)."""
     start, end = failure.span
     if failure.source[end : end + 1] in {"(", "[", "{"}:
         return None

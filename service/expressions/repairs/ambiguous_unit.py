@@ -6,7 +6,7 @@ from service.expressions.repairs.failure import Failure
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Ask for the unit behind the number."""
-    if failure.stop.cause != "ambiguous_unit" or not failure.details["opens"]:
+    if failure.cause != "ambiguous_unit" or not failure.details["opens"]:
         return None
     return ExpressionError(
         "ambiguous_unit",

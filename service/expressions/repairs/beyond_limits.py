@@ -7,7 +7,7 @@ from service.expressions.repairs.failure import Failure
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Name the limit."""
-    if failure.stop.cause != "beyond":
+    if failure.cause != "beyond":
         return None
     limit = failure.details["limit"]
     if limit == "characters":

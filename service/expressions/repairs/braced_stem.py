@@ -5,20 +5,20 @@ import re
 from service.expressions.characters import greek, latex_commands
 from service.expressions.characters.unicode import SUBSCRIPTS
 from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, shown
+from service.expressions.repairs.failure import Failure, quoted
 
 _LETTER = rf"\\?[A-Za-z]+|[{greek.CLASS}{''.join(greek.VARIANTS)}]"
 _STEM = rf"{_LETTER}|\\(?:{'|'.join(sorted(latex_commands.STYLES))})\s*\{{\s*(?:{_LETTER})\s*\}}"
 _INDEX = rf"(?:_(?:\{{[^{{}}]*\}}|[A-Za-z0-9]+)|[{''.join(SUBSCRIPTS)}]+|[0-9]+)"
 _BRACED = re.compile(rf"\{{\s*({_STEM})\s*\}}(\s*{_INDEX})")
 _WITHOUT_ARGUMENT = {*latex_commands.FUNCTIONS, *latex_commands.PLAIN, *latex_commands.SPACES}
-# Behind these a brace is an index, a power, or what a command works on.
+# Behind these a brace holds an index, a power or the argument of a command.
 _TAKEN = re.compile(r"(?:[_^]|\\([A-Za-z]+))\s*$")
 
 
 def repair(failure: Failure) -> ExpressionError | None:
-    """Offer the name as one, where that can be read."""
-    if failure.stop.cause != "name":
+    """Offer the name without braces, where that can be read."""
+    if failure.cause != "name":
         return None
     source, (start, end) = failure.source, failure.span
     for match in _BRACED.finditer(source):
@@ -31,7 +31,7 @@ def repair(failure: Failure) -> ExpressionError | None:
         repaired = failure.repaired(joined)
         if repaired is None:
             return None
-        message = f"A name and its index stand together: write {shown(name)}, without the braces."
+        message = f"A name and its index stand together: write {quoted(name)}, without the braces."
         return ExpressionError("braced_stem", message, match.span(), repaired)
     return None
 

@@ -1,14 +1,18 @@
 """2^3^2, which has two readings."""
 
 from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, halt
+from service.expressions.parsing.lexer import OPERAND_ENDS
+from service.expressions.repairs.failure import Failure, unexpected_token
 
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Ask for brackets."""
-    stopped = halt(failure)
-    values = {"NUMBER", "NAME", "RIGHT", "CLOSE", "UNIT"}
-    if stopped is None or stopped.terminal != "POWER" or stopped.before not in values:
+    unexpected = unexpected_token(failure)
+    if (
+        unexpected is None
+        or unexpected.terminal != "POWER"
+        or unexpected.before not in OPERAND_ENDS
+    ):
         return None
     return ExpressionError(
         "chained_power",

@@ -9,9 +9,9 @@ _COMMENT = re.compile(r"(?<!\\)%|#|//|/\*|\(\*")
 
 
 def repair(failure: Failure) -> ExpressionError | None:
-    """Offer what stands before the comment, or one slash where // was a division."""
+    """Offer the text before the comment, or one slash where // was a division."""
     match = _COMMENT.search(failure.source)
-    if match is None or failure.stop.cause == "beyond":
+    if match is None or failure.cause == "beyond":
         return None
     before, behind = failure.source[: match.start()].rstrip(), failure.source[match.end() :].strip()
     if not before or (match.group() == "%" and not behind):

@@ -1,4 +1,4 @@
-"""A dash alone, as tables print it for an empty cell or for zero."""
+"""A dash alone, which tables print for an empty cell or for zero."""
 
 import re
 

@@ -3,15 +3,15 @@
 import re
 
 from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, halt
+from service.expressions.repairs.failure import Failure, unexpected_token
 
 _THOUSANDS = re.compile(r"(?<![0-9.,])[1-9][0-9]{0,2}(?:,000)+(?![0-9])")
 
 
 def repair(failure: Failure) -> ExpressionError | None:
-    """Offer a point; but 1,000 may be a thousand, so name both."""
-    stopped = halt(failure)
-    if stopped is None or stopped.terminal != "COMMA":
+    """Offer a point; for 1,000, which may be a thousand, name both readings."""
+    unexpected = unexpected_token(failure)
+    if unexpected is None or unexpected.terminal != "COMMA":
         return None
     start, end = failure.span
     if (

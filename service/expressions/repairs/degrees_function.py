@@ -3,7 +3,7 @@
 import re
 
 from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, shown
+from service.expressions.repairs.failure import Failure, quoted
 from service.expressions.vocabulary.functions import IN_DEGREES
 
 _MODULE = re.compile(r"[A-Za-z]+\.$")
@@ -11,7 +11,7 @@ _MODULE = re.compile(r"[A-Za-z]+\.$")
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Offer the function that gives the angle itself."""
-    if failure.stop.cause != "degrees":
+    if failure.cause != "degrees":
         return None
     plain = IN_DEGREES.get(failure.details["name"], "")
     advice = f"Write {plain}, which gives the angle." if plain else "Write the angle itself."
@@ -20,7 +20,7 @@ def repair(failure: Failure) -> ExpressionError | None:
         start = module.start()
     return ExpressionError(
         "degrees_function",
-        f"{shown(failure.written)} gives a number of degrees, not an angle. {advice}",
+        f"{quoted(failure.written)} gives a number of degrees, not an angle. {advice}",
         failure.span,
         failure.replaced(plain, (start, end)),
     )

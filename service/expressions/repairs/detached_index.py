@@ -11,8 +11,8 @@ _DETACHED = re.compile(rf"([A-Za-z{greek.CLASS}]+)[ _]+([0-9]+)(?![0-9.])")
 
 
 def repair(failure: Failure) -> ExpressionError | None:
-    """Offer them joined, where that is a name."""
-    if failure.stop.cause != "name":
+    """Offer the two joined, where that is a name."""
+    if failure.cause != "name":
         return None
     match = _DETACHED.match(failure.source, failure.span[0])
     if match is None or match.end(1) != failure.span[1]:

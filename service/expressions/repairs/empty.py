@@ -1,4 +1,4 @@
-"""Nothing at all."""
+"""An empty text."""
 
 from service.expressions.errors import ExpressionError
 from service.expressions.repairs.failure import Failure
@@ -6,7 +6,7 @@ from service.expressions.repairs.failure import Failure
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Say what to write for zero."""
-    if failure.stop.cause != "empty":
+    if failure.cause != "empty":
         return None
     message = "Nothing is written here. If the value is zero, write 0."
     return ExpressionError("empty", message, failure.span)

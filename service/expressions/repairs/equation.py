@@ -11,7 +11,7 @@ _EQUALS = re.compile(r":=|&?=+|≈|≡|≔|\\(?:approx|equiv|coloneqq)(?![A-Za-z
 def repair(failure: Failure) -> ExpressionError | None:
     """Offer the right-hand side."""
     signs = list(_EQUALS.finditer(failure.source))
-    if not signs or failure.stop.cause == "beyond":
+    if not signs or failure.cause == "beyond":
         return None
     first, last = signs[0], signs[-1]
     right = failure.source[last.end() :].strip()

@@ -1,7 +1,7 @@
 """e, i and j, which are no constants here."""
 
 from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, shown
+from service.expressions.repairs.failure import Failure, quoted
 
 _REASONS = {
     "e": "Euler's number is written exp(1), and a power of it exp(x).",
@@ -11,9 +11,9 @@ _REASONS = {
 
 
 def repair(failure: Failure) -> ExpressionError | None:
-    """Say what to write, or that there is no need for it."""
-    if failure.stop.cause != "name" or failure.details["run"] not in _REASONS:
+    """Say how to write Euler's number, and that there are no complex numbers."""
+    if failure.cause != "name" or failure.details["run"] not in _REASONS:
         return None
     reason = _REASONS[failure.details["run"]]
-    message = f"The name {shown(failure.written)} is not known in this exercise. {reason}"
+    message = f"The name {quoted(failure.written)} is not known in this exercise. {reason}"
     return ExpressionError("unknown_symbol", message, failure.span)

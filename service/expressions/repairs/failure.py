@@ -1,92 +1,96 @@
-"""What a repair rule is given, what it answers with, and what most of them need."""
+"""The argument of a repair rule, its type, and what several rules share."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from service.expressions.errors import ExpressionError, Span
-from service.expressions.parsing.parser import Token
-from service.expressions.unreadable import UnreadableError
+from service.expressions.errors import Cause, ExpressionError, Span, UnreadableError
+from service.expressions.parsing.lexer import Token
 from service.expressions.vocabulary.symbols import Vocabulary
 
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """A text that could not be read, and where reading stopped.
+    """A text that could not be read, and the error that stopped the reader.
 
-    `repaired` tries another text: it returns that text where it can be read, else what it would
-    itself be repaired to, else None.
+    ``repaired`` reads another text: it returns that text where it can be read, else its own
+    repaired text, else None.
     """
 
     source: str
     vocabulary: Vocabulary
-    stop: UnreadableError
+    error: UnreadableError
     repaired: Callable[[str], str | None]
 
     @property
+    def cause(self) -> Cause:
+        """The reason why reading stopped."""
+        return self.error.cause
+
+    @property
     def span(self) -> Span:
-        """Where reading stopped."""
-        return self.stop.span
+        """The place where reading stopped."""
+        return self.error.span
 
     @property
     def written(self) -> str:
-        """What stands where reading stopped."""
+        """The text at that place."""
         return self.source[self.span[0] : self.span[1]]
 
     @property
     def details(self) -> dict[str, Any]:
-        """What else the reader saw."""
-        return self.stop.details
+        """Further facts, by the cause."""
+        return self.error.details
 
     def replaced(self, text: str, span: Span | None = None) -> str:
-        """Return the source with `text` in place of `span`, or of where reading stopped."""
+        """The source with ``text`` in place of ``span``, by default the span of the error."""
         start, end = span or self.span
         return self.source[:start] + text + self.source[end:]
 
 
-class Rule(Protocol):
-    """One way to go wrong: the error that names it, or None where this is another one."""
+class RepairRule(Protocol):
+    """The rule for one kind of slip."""
 
     def __call__(self, failure: Failure) -> ExpressionError | None:
-        """Return the error for `failure`; its suggestion need not be readable."""
+        """The error for ``failure``, or None for another slip; its suggestion may be unreadable."""
 
 
 @dataclass(frozen=True, slots=True)
-class Halt:
-    """The token that the grammar could not take, and the tokens before it."""
+class UnexpectedToken:
+    """The token that the grammar could not take, at ``index`` of the ``tokens``."""
 
     tokens: Sequence[Token]
     index: int
 
     @property
     def terminal(self) -> str:
-        """What could not be taken."""
+        """The token's terminal."""
         return self.tokens[self.index][0]
 
     @property
     def before(self) -> str:
-        """What stands before it, or nothing."""
+        """The terminal before it; empty where it is the first."""
         return self.tokens[self.index - 1][0] if self.index else ""
 
     def span(self, back: int = 0) -> Span:
-        """Return the place of the token, or of one that lies `back` before it."""
+        """The place of the token, or of the one that stands ``back`` tokens before it."""
         return self.tokens[self.index - back][2:]
 
 
-def halt(failure: Failure) -> Halt | None:
-    """Return where the grammar stopped, or None where it was not the grammar that stopped."""
-    if failure.stop.cause != "grammar":
+def unexpected_token(failure: Failure) -> UnexpectedToken | None:
+    """The token at which the grammar stopped, or None where something else stopped the reader."""
+    if failure.cause != "grammar":
         return None
-    return Halt(failure.details["tokens"], failure.details["index"])
+    return UnexpectedToken(failure.details["tokens"], failure.details["index"])
 
 
-def shown(text: str) -> str:
-    """Return `text` so that it can be quoted in a message, whatever its characters."""
+def quoted(text: str) -> str:
+    """``text`` as a message quotes it, with the numbers of letters that cannot be printed."""
     if all(letter.isprintable() for letter in text):
         return f"`{text}`"
     return " ".join(f"U+{ord(letter):04X}" for letter in text)
 
 
-def place(span: Span) -> str:
-    """Return where a span begins, as people count."""
+def position(span: Span) -> str:
+    """The first character of ``span``, counted from 1."""
     return f"character {span[0] + 1}"

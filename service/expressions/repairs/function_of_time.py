@@ -10,7 +10,7 @@ _OF_TIME = re.compile(r"\s*(?:\\left)?\(\s*t\s*(?:\\right)?\)")
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Offer the names without (t)."""
-    if failure.stop.cause != "name" or failure.details["run"] != "t":
+    if failure.cause != "name" or failure.details["run"] != "t":
         return None
     if _OF_TIME.search(failure.source) is None:
         return None

@@ -9,8 +9,8 @@ _INVERSE = re.compile(r"(-\s*1|[({]\s*-\s*1\s*[)}])(?![0-9.])")
 
 
 def repair(failure: Failure) -> ExpressionError | None:
-    """Offer the inverse function; or ask for a power of brackets."""
-    if failure.stop.cause != "function_power":
+    """Offer the inverse function, or ask for brackets with a power."""
+    if failure.cause != "function_power":
         return None
     name, exponent = failure.details["name"], failure.details["exponent"]
     place = failure.details["function"]
@@ -39,7 +39,7 @@ def repair(failure: Failure) -> ExpressionError | None:
 
 
 def _end(failure: Failure) -> int:
-    """Return where -1, in whatever way it was raised, ends in the source."""
+    """The end of -1 in the source, however it was raised."""
     match = re.compile(r"[\s^*]*(?:⁻\s*¹|[({]*\s*[-−–]\s*1(?:\s*[)}])*)").match(
         failure.source, failure.details["function"][1]
     )

@@ -1,18 +1,18 @@
-"""Indices as programs write them, where they name nothing: q[6] on six joints, a mix of styles."""
+"""Indices of programs that name no symbol: q[6] on six joints, or two styles in one text."""
 
 from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, shown
+from service.expressions.repairs.failure import Failure, quoted
 
 _COUNTING = {"[": "Python counts from 0, so", "(": "MATLAB counts from 1, so"}
 
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Say how it was counted, and offer the plain name."""
-    if failure.stop.cause == "name":
+    if failure.cause == "name":
         return _no_number(failure)
-    if failure.stop.cause != "index":
+    if failure.cause != "index":
         return None
-    details, written = failure.details, shown(failure.written)
+    details, written = failure.details, quoted(failure.written)
     if details["reason"] == "mixed":
         return ExpressionError(
             "mixed_index",

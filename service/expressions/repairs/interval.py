@@ -1,4 +1,4 @@
-"""A range of values where one is asked for: [0, pi], 0 < q1 < pi, -180..180."""
+"""A range of values in place of one value: [0, pi], 0 < q1 < pi, -180..180."""
 
 import re
 
@@ -12,8 +12,8 @@ _LIST = re.compile(r"\s*(?:\[[^\[\]()]*,[^\[\]()]*[\])]|\([^\[\]()]*,[^\[\]()]*\
 
 
 def repair(failure: Failure) -> ExpressionError | None:
-    """Say that one value is wanted."""
-    if failure.stop.cause == "beyond":
+    """Ask for one value."""
+    if failure.cause == "beyond":
         return None
     if _LIST.fullmatch(failure.source):
         span = (0, len(failure.source))

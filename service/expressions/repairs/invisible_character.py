@@ -1,4 +1,4 @@
-"""Characters that cannot be seen, often brought in by pasting."""
+"""Invisible characters, which often come from pasting."""
 
 import unicodedata
 
@@ -11,8 +11,8 @@ _INVISIBLE_TIMES = "\u2062"
 
 
 def repair(failure: Failure) -> ExpressionError | None:
-    """Name it, and offer the text without any; an accent changes what it stands on, so no offer."""
-    if failure.stop.cause != "invisible":
+    """Name the character; offer the text without any, but not without an accent."""
+    if failure.cause != "invisible":
         return None
     letter = failure.written
     name = unicodedata.name(letter, f"U+{ord(letter):04X}").lower()

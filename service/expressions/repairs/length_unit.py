@@ -3,17 +3,18 @@
 import re
 
 from service.expressions.errors import ExpressionError
+from service.expressions.parsing.lexer import OPERAND_ENDS
 from service.expressions.repairs.failure import Failure
 
 _UNIT = re.compile(
     r"(?:k|c|m|d|µ|μ)?m|in|inch|inches|ft|foot|feet|(?:centi|milli)?met(?:er|re)s?|[°]?C|kg|s|N"
 )
-_OPERANDS = frozenset({"NUMBER", "NAME", "RIGHT", "CLOSE"})
+_OPERANDS = OPERAND_ENDS - {"UNIT"}
 
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Ask for the bare number; offer it for metres only, for cm and mm change its size."""
-    if failure.stop.cause != "name" or failure.details["before"] not in _OPERANDS:
+    if failure.cause != "name" or failure.details["before"] not in _OPERANDS:
         return None
     if _UNIT.fullmatch(failure.written) is None:
         return None

@@ -1,14 +1,13 @@
 """The letter x for a product: 2 x q1."""
 
 from service.expressions.errors import ExpressionError
+from service.expressions.parsing.lexer import OPERAND_ENDS
 from service.expressions.repairs.failure import Failure
-
-_OPERANDS = frozenset({"NUMBER", "NAME", "RIGHT", "CLOSE", "UNIT"})
 
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Offer * where a value stands on either side."""
-    if failure.stop.cause != "name" or failure.details["before"] not in _OPERANDS:
+    if failure.cause != "name" or failure.details["before"] not in OPERAND_ENDS:
         return None
     run, (start, end) = failure.details["run"], failure.span
     if run[0] not in "xX" or not failure.source[end - len(run) + 1 :].strip():

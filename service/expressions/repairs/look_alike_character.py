@@ -8,8 +8,8 @@ from service.expressions.repairs.failure import Failure
 
 
 def repair(failure: Failure) -> ExpressionError | None:
-    """Name it, and offer the text with all of them replaced."""
-    if failure.stop.cause != "look_alike":
+    """Name the letter, and offer the text with all such letters replaced."""
+    if failure.cause != "look_alike":
         return None
     letter = failure.written
     plain = LOOK_ALIKES[letter]

@@ -9,8 +9,8 @@ _NUMBER = re.compile(r"([0-9.]+)\s*$")
 
 
 def repair(failure: Failure) -> ExpressionError | None:
-    """Offer the sum, which is how such a number is read aloud."""
-    if failure.stop.cause != "mixed_number":
+    """Offer the sum, as such a number is read aloud."""
+    if failure.cause != "mixed_number":
         return None
     fraction = failure.details["fraction"]
     start, end = failure.span

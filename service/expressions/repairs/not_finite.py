@@ -6,7 +6,7 @@ from service.expressions.repairs.failure import Failure
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Say that every answer is a finite number."""
-    if failure.stop.cause != "not_finite":
+    if failure.cause != "not_finite":
         return None
     message = "This is not a finite number; every answer here is one."
     return ExpressionError("not_finite", message, failure.span)

@@ -3,12 +3,12 @@
 from unicodedata import digit
 
 from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, shown
+from service.expressions.repairs.failure import Failure, quoted
 
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Say why that joint has no angle; offer c12 for c123 where joint 3 alone slides."""
-    if failure.stop.cause != "misfit":
+    if failure.cause != "invalid_shorthand":
         return None
     joint = failure.details["joint"]
     if joint in failure.vocabulary.turning:
@@ -16,7 +16,7 @@ def repair(failure: Failure) -> ExpressionError | None:
     slides = joint in failure.vocabulary.sliding
     reason = f"joint {joint} slides, so it has no angle" if slides else f"there is no joint {joint}"
     message = (
-        f"{shown(failure.written)} stands for the cosine or sine of joint angles, but {reason}."
+        f"{quoted(failure.written)} stands for the cosine or sine of joint angles, but {reason}."
     )
     turning = _of_those_that_turn(failure)
     if turning is None:
@@ -26,7 +26,7 @@ def repair(failure: Failure) -> ExpressionError | None:
 
 
 def _of_those_that_turn(failure: Failure) -> str | None:
-    """Return the shorthand without its sliding joints, if it names some that turn, each once."""
+    """The shorthand without its sliding joints, if it names some that turn, each once."""
     turning, sliding = failure.vocabulary.turning, failure.vocabulary.sliding
     # Lowered digits count as well: c₁₂₃.
     joints = [digit(letter) for letter in failure.written if letter.isdigit()]

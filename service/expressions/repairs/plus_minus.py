@@ -10,9 +10,9 @@ _TYPED = re.compile(r"\+\s*/\s*-")
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Ask for one of the two."""
-    if failure.stop.cause == "plus_minus":
+    if failure.cause == "plus_minus":
         span = failure.span
-    elif failure.stop.cause == "grammar" and (match := _TYPED.search(failure.source)):
+    elif failure.cause == "grammar" and (match := _TYPED.search(failure.source)):
         span = match.span()
     else:
         return None

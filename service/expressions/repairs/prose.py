@@ -1,4 +1,4 @@
-"""Words where a value is wanted: variable, depends on theta, n/a."""
+"""Words in place of a value: variable, depends on theta, n/a."""
 
 import re
 
@@ -30,7 +30,7 @@ _NUMBERS = {"zero": "0", "one": "1", "two": "2", "ninety": "90", "half": "1/2", 
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Ask for the value itself."""
-    if failure.stop.cause == "beyond":
+    if failure.cause == "beyond":
         return None
     text = failure.source.strip().lower()
     number = _NUMBERS.get(text)
@@ -45,8 +45,8 @@ def repair(failure: Failure) -> ExpressionError | None:
 
 
 def _is_prose(failure: Failure) -> bool:
-    """Tell whether two words or more stand side by side that mean nothing here."""
-    if failure.stop.cause != "name" or "\\" in failure.source:
+    """Whether the text holds two words or more that mean nothing here, and no formula."""
+    if failure.cause != "name" or "\\" in failure.source:
         return False
     words = [word for word in _WORD.findall(failure.source) if len(word) > 1]
     strange = [word for word in words if split(word, failure.vocabulary) is None]

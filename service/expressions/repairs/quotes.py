@@ -1,4 +1,4 @@
-"""Quotation marks, and names as a program builds them: 'q1', Symbol('q1')."""
+"""Quotation marks, and names as programs declare them: 'q1', Symbol('q1')."""
 
 import re
 
@@ -13,7 +13,7 @@ _QUOTED = re.compile(
 def repair(failure: Failure) -> ExpressionError | None:
     """Offer the text without them."""
     match = _QUOTED.search(failure.source)
-    if match is None or failure.stop.cause == "beyond":
+    if match is None or failure.cause == "beyond":
         return None
 
     def inside(found: re.Match[str]) -> str:

@@ -1,4 +1,4 @@
-"""A raised 0 or o behind a number, which was meant as the sign of degrees: 90⁰, 90^0, 90^o."""
+"""A raised 0 or o behind a number, for the sign of degrees: 90⁰, 90^0, 90^o."""
 
 import re
 
@@ -7,7 +7,7 @@ from service.expressions.repairs.failure import Failure
 
 _LETTER = "[oO]"
 _STYLED = rf"(?:\\[a-z]+\s*\{{\s*{_LETTER}\s*\}}|{_LETTER})"
-# The second form is what is left of a raised sign in text copied from a page: 90o.
+# The second form, 90o, comes from copying a raised sign as plain text.
 _RAISED = re.compile(rf"\^\s*(?:\{{\s*{_STYLED}\s*\}}|{_STYLED})|(?<=[0-9])\s*o")
 
 
@@ -15,12 +15,12 @@ def repair(failure: Failure) -> ExpressionError | None:
     """Offer the degree sign; 90^0 could be a power as well, so name both."""
     start, end = failure.span
     message = "Degrees are written with the sign °, or with deg: 90° or 90deg."
-    if failure.stop.cause == "name":
+    if failure.cause == "name":
         raised = _raised_letter(failure)
         if raised is None:
             return None
         start, end = raised
-    elif failure.stop.cause != "raised_zero":
+    elif failure.cause != "raised_zero":
         return None
     elif failure.details.get("power"):
         message = (
@@ -32,7 +32,7 @@ def repair(failure: Failure) -> ExpressionError | None:
 
 
 def _raised_letter(failure: Failure) -> Span | None:
-    """Return the place of the raised o that could not be read, with its brackets."""
+    """The place of the raised o that could not be read, with its brackets."""
     if failure.written not in {"o", "O"}:
         return None
     start, end = failure.span

@@ -12,7 +12,7 @@ _BARE = re.compile(r"(?:^|[^A-Za-z0-9_{])\s*[0-9]")
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Ask for the index alone; offer the cosine where c stands before a sum of angles."""
-    if failure.stop.cause != "subscript":
+    if failure.cause != "subscript":
         return None
     start, end = failure.span
     inside = failure.details["index"]

@@ -1,9 +1,9 @@
-"""tan2(y, x), which was meant to be atan2."""
+"""tan2(y, x) for atan2(y, x)."""
 
 import re
 
 from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, halt
+from service.expressions.repairs.failure import Failure, unexpected_token
 
 _TAN2 = re.compile(
     r"\\?(?:tan|tang|a ?tan|atang|artan|arctan|arctang)[ _]?\{?2\}?(?=\s*(?:\\left)?\()"
@@ -12,11 +12,11 @@ _TAN2 = re.compile(
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Offer atan2."""
-    stopped = halt(failure)
+    unexpected = unexpected_token(failure)
     match = _TAN2.search(failure.source)
     if match is None or match.end() > failure.span[1]:
         return None
-    if failure.stop.cause != "name" and (stopped is None or stopped.terminal != "COMMA"):
+    if failure.cause != "name" and (unexpected is None or unexpected.terminal != "COMMA"):
         return None
     message = "The angle of a point (x, y) is atan2(y, x)."
     return ExpressionError(

@@ -7,7 +7,7 @@ from service.expressions.repairs.failure import Failure
 def repair(failure: Failure) -> ExpressionError | None:
     """Offer the text without it."""
     text = failure.source.rstrip().rstrip("$").rstrip()
-    if failure.stop.cause not in {"grammar", "character"} or text[-1:] not in {".", ",", ":"}:
+    if failure.cause not in {"grammar", "character"} or text[-1:] not in {".", ",", ":"}:
         return None
     kept = text.rstrip(".,: ")
     if not kept or failure.span[0] < len(kept):

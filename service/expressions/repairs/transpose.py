@@ -9,10 +9,10 @@ _RAISED_T = re.compile(r"\^\s*\{?\s*(?:\\top|T)\s*\}?|\.'")
 
 
 def repair(failure: Failure) -> ExpressionError | None:
-    """Say that there is neither; a number needs no transpose, so offer it without."""
-    if failure.stop.cause == "transpose":
+    """Say that a value has neither, and offer the text without."""
+    if failure.cause == "transpose":
         span = failure.span
-    elif failure.stop.cause in {"name", "command", "character"} and (
+    elif failure.cause in {"name", "command", "character"} and (
         match := _RAISED_T.search(failure.source)
     ):
         if match.end() < failure.span[0] or match.start() > failure.span[1]:

@@ -6,7 +6,7 @@ from service.expressions.repairs.failure import Failure
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Say that one is enough."""
-    if failure.stop.cause != "two_units":
+    if failure.cause != "two_units":
         return None
     message = "This has two units; one is enough."
     return ExpressionError("two_units", message, failure.span)

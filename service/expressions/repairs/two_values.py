@@ -1,17 +1,17 @@
-"""Two values where one is asked for: 2 3, q1, q2, a second line."""
+"""Two values in place of one: 2 3, q1, q2, a second line."""
 
 from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, halt
+from service.expressions.repairs.failure import Failure, unexpected_token
 
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Ask for one value, or for an operator between them."""
-    stopped = halt(failure)
+    unexpected = unexpected_token(failure)
     span = failure.span
-    if stopped is not None:
-        after_value = stopped.terminal != "COMMA" and stopped.index
-        span = (stopped.span(1)[0], span[1]) if after_value else span
-    elif failure.stop.cause != "values":
+    if unexpected is not None:
+        after_value = unexpected.terminal != "COMMA" and unexpected.index
+        span = (unexpected.span(1)[0], span[1]) if after_value else span
+    elif failure.cause != "values":
         return None
     return ExpressionError(
         "two_values",

@@ -6,7 +6,7 @@ from service.expressions.repairs.failure import Failure
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Ask for the unit behind the number."""
-    if failure.stop.cause != "unit_on_variable":
+    if failure.cause != "unit_on_variable":
         return None
     start, end = failure.span
     inside = failure.details["variable"]

@@ -1,7 +1,7 @@
 """Functions that are not read: sec, cot, ln, hypot."""
 
 from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, shown
+from service.expressions.repairs.failure import Failure, quoted
 from service.expressions.vocabulary.functions import ARITY
 
 _RECIPROCALS = {"sec": "cos", "csc": "sin", "cosec": "sin", "cot": "tan", "ctg": "tan"}
@@ -19,11 +19,11 @@ _OTHERS = {
 
 
 def repair(failure: Failure) -> ExpressionError | None:
-    """Offer 1/cos(x) for sec(x), and the name that is read for one that is not."""
-    if failure.stop.cause != "name" or not failure.details["called"]:
+    """Offer 1/cos(x) for sec(x), and the known name for another spelling."""
+    if failure.cause != "name" or not failure.details["called"]:
         return None
     name = failure.details["run"]
-    message = f"The function {shown(failure.written)} is not known here."
+    message = f"The function {quoted(failure.written)} is not known here."
     suggestion = None
     if name in _RECIPROCALS:
         suggestion = _reciprocal(failure, _RECIPROCALS[name])
@@ -39,7 +39,7 @@ def repair(failure: Failure) -> ExpressionError | None:
 
 
 def _reciprocal(failure: Failure, name: str) -> str | None:
-    """Return the source with 1/name(...) in brackets, so that what stands around stays apart."""
+    """The source with 1/name(...) in brackets, for it may be a factor."""
     start, end = failure.span
     depth = 0
     for at in range(end, len(failure.source)):

@@ -1,4 +1,4 @@
-"""A joint variable of a joint that is not there: q7 on six joints, theta12, theta3 if 3 slides."""
+"""The variable of a joint that does not exist: q7 on six joints, theta12, theta3 if 3 slides."""
 
 import re
 
@@ -6,7 +6,7 @@ from service.expressions.characters import greek
 from service.expressions.errors import ExpressionError, Span
 from service.expressions.parsing.words import split
 from service.expressions.printing.symbol_names import symbol_latex
-from service.expressions.repairs.failure import Failure, shown
+from service.expressions.repairs.failure import Failure, quoted
 from service.expressions.vocabulary.symbols import Vocabulary, normal_form
 
 _JOINT = re.compile(rf"(?P<stem>[A-Za-z{greek.CLASS}]+?)(?P<index>[0-9]+)(?P<rest>.*)")
@@ -17,7 +17,7 @@ _AS_TYPED = re.compile(r"[^0-9₀-₉]*(?:[0-9]+|[₀-₉]+)(?:\s*\})?")
 def repair(failure: Failure) -> ExpressionError | None:
     """Say which joints there are; offer the sum of angles for theta12."""
     vocabulary = failure.vocabulary
-    if failure.stop.cause != "name":
+    if failure.cause != "name":
         return None
     match = _JOINT.fullmatch(normal_form(failure.details["run"]))
     if match is None or match["stem"] not in _STEMS or not _joints(vocabulary):
@@ -27,10 +27,10 @@ def repair(failure: Failure) -> ExpressionError | None:
     index, span = match["index"], _place(failure, bool(match["rest"]))
     written = failure.source[slice(*span)]
     suggestion = None
-    message = f"{shown(written)}: {_reason(int(index[:4]), vocabulary)}."
-    own = vocabulary.turning.get(int(index[:4]))
-    if own is not None:
-        suggestion = failure.replaced(own.name, span)
+    message = f"{quoted(written)}: {_reason(int(index[:4]), vocabulary)}."
+    variable = vocabulary.turning.get(int(index[:4]))
+    if variable is not None:
+        suggestion = failure.replaced(variable.name, span)
     total = _total(index, vocabulary, latex="\\" in written)
     if total is not None:
         message += f" For the sum of angles write {total}."
@@ -41,14 +41,14 @@ def repair(failure: Failure) -> ExpressionError | None:
 
 
 def _place(failure: Failure, goes_on: bool) -> Span:
-    r"""Return the place of the name alone: in \theta_{12}\cos the run goes on behind it."""
+    r"""The place of the name alone, for in \theta_{12}\cos the run is longer."""
     start, end = failure.span
     found = _AS_TYPED.match(failure.source, start, end) if goes_on else None
     return (start, found.end()) if found else (start, end)
 
 
 def _total(index: str, vocabulary: Vocabulary, *, latex: bool) -> str | None:
-    """Return the sum of the angles that an index names; None where it does not name a sum.
+    """The sum of the angles that an index names, or None where it names no sum.
 
     A joint that slides has no angle to add.
     """

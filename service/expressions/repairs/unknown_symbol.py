@@ -3,19 +3,19 @@
 import re
 
 from service.expressions.errors import ExpressionError
-from service.expressions.nearest import nearest
-from service.expressions.repairs.failure import Failure, shown
+from service.expressions.repairs.failure import Failure, quoted
+from service.expressions.repairs.nearest_name import nearest
 from service.expressions.vocabulary.symbols import Vocabulary, normal_form
 
 _INDEXED = re.compile(r"([^0-9]+)[0-9]+")
 
 
 def repair(failure: Failure) -> ExpressionError | None:
-    """Offer the nearest name that is; list those that differ in their index alone."""
-    if failure.stop.cause != "name":
+    """Offer the nearest declared name, or list those that differ in their index alone."""
+    if failure.cause != "name":
         return None
     run = failure.details["run"]
-    message = f"The name {shown(failure.written)} is not known in this exercise."
+    message = f"The name {quoted(failure.written)} is not known in this exercise."
     siblings = _siblings(normal_form(run), failure.vocabulary)
     if siblings:
         message += f" These are: {', '.join(siblings)}."

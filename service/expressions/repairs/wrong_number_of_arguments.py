@@ -6,7 +6,7 @@ from service.expressions.repairs.failure import Failure
 
 def repair(failure: Failure) -> ExpressionError | None:
     """Count the arguments; offer atan2 for atan(y, x), and a point for a decimal comma."""
-    if failure.stop.cause != "arguments":
+    if failure.cause != "arguments":
         return None
     name, wanted = failure.details["name"], failure.details["wanted"]
     places = failure.details["places"]
@@ -25,7 +25,7 @@ def repair(failure: Failure) -> ExpressionError | None:
 
 
 def _with_points(failure: Failure) -> str | None:
-    """Return the source with points for the commas between digits, if all arguments are such."""
+    """The source with points for the commas between digits, if all arguments are such."""
     places = failure.details["places"]
     source = failure.source
     for left, right in reversed(list(zip(places[::2], places[1::2], strict=True))):

@@ -1,4 +1,4 @@
-"""The functions and units that an expression may use, and the spellings that they answer to."""
+"""The functions and units that an expression may use, and their spellings."""
 
 from typing import Final, Literal
 
@@ -28,7 +28,7 @@ SPELLINGS: Final = {
     "deg2rad": "deg",
     "rad2deg": "rad2deg",
 }
-# What a cap or a shift key makes of a function's name, and how Mathematica spells it.
+# A function's name in capitals, and as Mathematica spells it.
 CAPITALS: Final = {
     variant: name
     for spelling, name in SPELLINGS.items()
@@ -45,8 +45,8 @@ UNITS: Final[dict[str, Literal["deg", "rad"]]] = {
     "radian": "rad",
     "radians": "rad",
 }
-# `degrees(x)` and `radians(x)` mean opposite things to a reader and to Python: only these two
-# words may stand before a bracket.
+# ``degrees(x)`` and ``radians(x)`` mean opposite things to a reader and to Python, so only these
+# two words may stand before a bracket.
 UNIT_FUNCTIONS: Final = frozenset({"deg", "rad"})
 
 PI: Final = ("pi", "π")

@@ -21,10 +21,10 @@ _SUBSCRIPT_DIGITS: Final = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123
 class Symbol:
     """A declared symbol.
 
-    `name` is its canonical ASCII name ("theta1", "l1"); an angle's values are radians. `aliases`
-    are its other names; Greek spellings and subscripts need no alias of their own. `joint` is the
-    joint's index where the symbol is a joint variable: an angle turns, a length slides. `latex`
-    overrides the LaTeX that the name suggests.
+    ``name`` is its canonical ASCII name ("theta1", "l1"); an angle's values are radians.
+    ``aliases`` are its other names; Greek spellings and subscripts need no alias of their own.
+    ``joint`` is the joint's index where the symbol is a joint variable: an angle turns, a length
+    slides. ``latex`` overrides the LaTeX that the name suggests.
     """
 
     name: str
@@ -35,9 +35,9 @@ class Symbol:
 
 
 def normal_form(name: str) -> str:
-    """Return `name` with subscripts lowered to plain digits: θ_1, θ₁ and θ_{1} -> θ1.
+    """``name`` with its subscripts as plain digits: θ_1, θ₁ and θ_{1} -> θ1.
 
-    Greek letters stay letters; `Vocabulary` knows each name in both spellings.
+    Greek letters stay letters; ``Vocabulary`` knows each name in both spellings.
     """
     plain = name.strip().replace("\\", "").translate(_SUBSCRIPT_DIGITS)
     plain = _SUBSCRIPT.sub(r"\1", plain).replace("_", "")
@@ -45,25 +45,25 @@ def normal_form(name: str) -> str:
 
 
 def joint_variable(index: int, *, sliding: bool = False) -> Symbol:
-    """Return joint `index`'s variable under its usual names: theta1 or q1; d3 or q3 if sliding."""
+    """The variable of joint ``index`` under its usual names: theta1, q1; if sliding, d3, q3."""
     if sliding:
         return Symbol(f"d{index}", "length", (f"q{index}",), joint=index)
     return Symbol(f"theta{index}", "angle", (f"q{index}",), joint=index)
 
 
 @lru_cache(maxsize=1024)
-def _one_of_equals(symbols: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
+def _shared(symbols: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
     return symbols
 
 
 class Vocabulary:
     """The declared symbols, looked up by any of their names. Immutable, equal by content.
 
-    Raises ValueError where two symbols answer to one name, two joint variables share an index, or
-    a name cannot be written in an expression.
+    Raises ValueError where two symbols have one name, two joint variables have one index, or a name
+    cannot be written in an expression.
     """
 
-    __slots__ = ("_hash", "_same", "by_name", "longest", "sliding", "symbols", "turning")
+    __slots__ = ("_hash", "_shared", "by_name", "longest", "sliding", "symbols", "turning")
 
     def __init__(self, symbols: Sequence[Symbol]) -> None:
         self.symbols: Final = tuple(symbols)
@@ -74,9 +74,9 @@ class Vocabulary:
             self._declare(symbol)
         self.longest: Final = max(map(len, (*self.by_name, *RESERVED)))
         self._hash: Final = hash(self.symbols)
-        # Equal vocabularies have the same one, so that they need not be compared symbol by symbol:
-        # many exercises declare the same symbols, and each word of a text is looked up by them.
-        self._same: Final = _one_of_equals(self.symbols)
+        # One tuple for all equal vocabularies, so that they need not be compared symbol by symbol:
+        # many exercises declare the same symbols, and each word of a text is remembered by them.
+        self._shared: Final = _shared(self.symbols)
 
     def _declare(self, symbol: Symbol) -> None:
         if not _CANONICAL.fullmatch(symbol.name):
@@ -96,13 +96,9 @@ class Vocabulary:
                 raise ValueError(f"joint {symbol.joint} has two joint variables")
             (self.turning if symbol.kind == "angle" else self.sliding)[symbol.joint] = symbol
 
-    def lookup(self, name: str) -> Symbol | None:
-        """Return the symbol that answers to `name`, in any of its spellings."""
-        return self.by_name.get(normal_form(name))
-
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Vocabulary) and (
-            self._same is other._same or self.symbols == other.symbols
+            self._shared is other._shared or self.symbols == other.symbols
         )
 
     def __hash__(self) -> int:

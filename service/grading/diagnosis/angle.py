@@ -3,11 +3,12 @@
 import numpy as np
 
 from service.expressions.tree import Call, Node
-from service.grading.comparison import ROUNDED, difference
+from service.grading.comparison import difference
 from service.grading.diagnosis.formula_rewriting import nodes
 from service.grading.diagnosis.wrong_value import Hypotheses, WrongValue, differs, undefined
 from service.grading.feedback import Finding
 from service.grading.misconception import Repaired, Written, diagnosed
+from service.grading.tolerances import ROUNDED_VALUE
 
 WRONG_SIGN = (
     "The sign of this angle is wrong: it counts positive by the right-hand rule about its axis."
@@ -52,7 +53,7 @@ def lost_quadrant(case: WrongValue) -> Hypotheses:
             "cannot tell opposite directions apart, atan2(y, x) can.",
             case.correction,
         )
-        yield Written(case.expected + np.pi * opposite, finding, tolerance=ROUNDED)
+        yield Written(case.expected + np.pi * opposite, finding, tolerance=ROUNDED_VALUE)
 
 
 def half_turn(case: WrongValue) -> Hypotheses:
@@ -63,7 +64,7 @@ def half_turn(case: WrongValue) -> Hypotheses:
         "opposite one.",
         case.correction,
     )
-    yield Written(case.expected + np.pi, finding, tolerance=ROUNDED)
+    yield Written(case.expected + np.pi, finding, tolerance=ROUNDED_VALUE)
 
 
 def swapped_atan2(case: WrongValue) -> Hypotheses:
@@ -71,7 +72,7 @@ def swapped_atan2(case: WrongValue) -> Hypotheses:
 
     Without an arctangent, a constant is more likely to lack a quarter turn.
     """
-    if np.ptp(case.expected) > ROUNDED or has_arctangent(case.expression.tree):
+    if np.ptp(case.expected) > ROUNDED_VALUE or has_arctangent(case.expression.tree):
         finding = Finding("swapped_atan2", ARGUMENTS_SWAPPED, case.correction)
         yield Written(np.pi / 2 - case.expected, finding)
 
@@ -87,7 +88,7 @@ def quarter_turn(case: WrongValue) -> Hypotheses:
     """A turn by 90° was left out or added."""
     finding = Finding("quarter_turn", "This angle is off by a quarter turn (90°).", case.correction)
     error = difference(case.actual, case.expected, angle=True)
-    yield Written(case.expected + np.copysign(np.pi / 2, error), finding, tolerance=ROUNDED)
+    yield Written(case.expected + np.copysign(np.pi / 2, error), finding, tolerance=ROUNDED_VALUE)
 
 
 CHECKS = (undefined,)

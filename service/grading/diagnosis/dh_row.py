@@ -6,14 +6,14 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from service.grading.comparison import EXACT
 from service.grading.diagnosis.wrong_value import Hypotheses, WrongNumbers
 from service.grading.feedback import Finding
 from service.grading.misconception import Written, diagnosed
 from service.grading.reading.table import IS_ANGLE
+from service.grading.tolerances import EXACT_VALUE
 from service.kinematics.chain import A
 from service.kinematics.dh import Convention
-from service.kinematics.dh_row import gap, row, slant
+from service.kinematics.dh_row import dh1_residual, dh2_residual, row
 from service.kinematics.transforms import Matrices, Numbers, inverse
 
 
@@ -90,7 +90,7 @@ def axes_named(convention: Convention) -> tuple[str, str]:
 
 def not_perpendicular(transform: Matrices, convention: Convention) -> Finding | None:
     """The first condition was overlooked."""
-    if np.abs(slant(transform, convention)).max() < EXACT:
+    if np.abs(dh1_residual(transform, convention)).max() < EXACT_VALUE:
         return None
     x, z = axes_named(convention)
     entry = "third row, first column" if convention is Convention.STANDARD else "first row, third"
@@ -106,7 +106,7 @@ def not_intersecting(
     transform: Matrices, convention: Convention, length_scale: float
 ) -> Finding | None:
     """The second condition was overlooked."""
-    if np.abs(gap(transform, convention)).max() < EXACT * length_scale:
+    if np.abs(dh2_residual(transform, convention)).max() < EXACT_VALUE * length_scale:
         return None
     x, z = axes_named(convention)
     return Finding(

@@ -6,7 +6,6 @@ from itertools import combinations
 
 import numpy as np
 
-from service.grading.comparison import ROUNDED
 from service.grading.diagnosis.angle import (
     ARGUMENTS_SWAPPED,
     FITS_IN_DEGREES,
@@ -15,6 +14,7 @@ from service.grading.diagnosis.angle import (
 )
 from service.grading.feedback import Finding
 from service.grading.misconception import AnyHypothesis, Repaired, explanation
+from service.grading.tolerances import ROUNDED_VALUE
 from service.kinematics.rotations import SEQUENCES, from_angles
 from service.kinematics.transforms import Matrices, Numbers
 
@@ -38,7 +38,7 @@ class WrongTriple:
     def is_right(self) -> bool:
         """Whether the angles do describe the rotation."""
         described = from_angles(self.sequence, self.angles.T, fixed=self.fixed)
-        return bool(np.abs(described - self.rotation).max() < ROUNDED)
+        return bool(np.abs(described - self.rotation).max() < ROUNDED_VALUE)
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterator[AnyHypothesis]:
         """Those hypotheses that make the triple right, each tried when it is asked for."""
@@ -57,7 +57,7 @@ def some_angles(case: WrongTriple) -> Iterator[RepairedTriple]:
         (np.degrees(angles), Finding("radians_as_degrees", FITS_IN_RADIANS)),
         (np.pi / 2 - angles, Finding("swapped_atan2", ARGUMENTS_SWAPPED, "Exchange them.")),
     )
-    may_be_swapped = (np.ptp(angles, axis=1) > ROUNDED) | np.array(case.arctangents)
+    may_be_swapped = (np.ptp(angles, axis=1) > ROUNDED_VALUE) | np.array(case.arctangents)
     for count in (1, 2, 3):
         for repaired, finding in repairs:
             for subset in combinations(range(3), count):

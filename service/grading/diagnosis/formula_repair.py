@@ -12,10 +12,10 @@ from service.expressions.evaluation.point import Known, known_values, value_at
 from service.expressions.evaluation.samples import compile_tree
 from service.expressions.printing.text import to_text
 from service.expressions.tree import Call, Node
-from service.grading.comparison import EXACT, ROUNDED
 from service.grading.diagnosis.formula_rewriting import EXCHANGED, negated, nodes
 from service.grading.diagnosis.wrong_value import WrongValue
 from service.grading.misconception import AnyHypothesis, Repaired
+from service.grading.tolerances import EXACT_VALUE, ROUNDED_VALUE
 from service.kinematics.transforms import Numbers
 
 # A formula of more nodes is compared, but not taken apart.
@@ -100,7 +100,7 @@ class WrongEntry(WrongValue):
     @cached_property
     def _tolerance(self) -> float:
         size = float(np.sqrt(np.mean(self.expected * self.expected)))
-        return ROUNDED * size + EXACT * self.scale
+        return ROUNDED_VALUE * size + EXACT_VALUE * self.scale
 
     def _evaluated(self, tree: Node) -> Numbers:
         program = compile_tree(tree)

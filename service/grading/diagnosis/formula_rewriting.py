@@ -16,8 +16,8 @@ from service.expressions.tree import (
     Call,
     Negation,
     Node,
+    SymbolNode,
     Unit,
-    Variable,
     children,
 )
 
@@ -134,7 +134,7 @@ def summed_from(first: int, turning: Mapping[int, Symbol]) -> Rewriting:
         last = _joint_of(node.arguments[0])
         if last is None or last <= first:
             return node
-        angles = [Variable(turning[k]) for k in sorted(turning) if first <= k <= last]
+        angles = [SymbolNode(turning[k]) for k in sorted(turning) if first <= k <= last]
         total = joined([(1, angle) for angle in angles])
         return Call(node.function, (total,), node.start, node.end)
 
@@ -143,7 +143,7 @@ def summed_from(first: int, turning: Mapping[int, Symbol]) -> Rewriting:
 
 def _joint_of(node: Node) -> int | None:
     """The turning joint whose angle the node is, nothing added to it."""
-    if isinstance(node, Variable) and node.symbol.kind == "angle":
+    if isinstance(node, SymbolNode) and node.symbol.kind == "angle":
         return node.symbol.joint
     return None
 

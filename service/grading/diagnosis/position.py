@@ -5,11 +5,11 @@ from itertools import permutations
 
 import numpy as np
 
-from service.grading.comparison import EXACT
 from service.grading.diagnosis.link_products import Chain, named, other_poses
 from service.grading.diagnosis.wrong_value import Hypotheses, WrongNumbers
 from service.grading.feedback import Finding
 from service.grading.misconception import Written, diagnosed
+from service.grading.tolerances import EXACT_VALUE
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def other_pose(case: WrongPosition) -> Hypotheses:
     """
     for pose in other_poses(case.chains):
         position = np.moveaxis(pose.answer, 0, -1)[list(case.axes), 3]
-        if np.ptp(position, axis=-1).max() > EXACT:
+        if np.ptp(position, axis=-1).max() > EXACT_VALUE:
             yield Written(position, named(pose, "This position comes from"))
 
 

@@ -5,10 +5,11 @@ from functools import cached_property
 
 import numpy as np
 
-from service.grading.comparison import EXACT, ROUNDED, Match, matches
+from service.grading.comparison import Match, matches
 from service.grading.diagnosis.wrong_value import Hypotheses, WrongNumbers
 from service.grading.feedback import Finding
 from service.grading.misconception import Written, diagnosed
+from service.grading.tolerances import EXACT_VALUE, ROUNDED_VALUE
 from service.kinematics.transforms import Numbers
 
 
@@ -36,7 +37,7 @@ class WrongScrew(WrongNumbers):
     @cached_property
     def turns(self) -> bool:
         """Whether the joint turns; else it slides along v."""
-        return bool(np.abs(self.direction).max() > EXACT)
+        return bool(np.abs(self.direction).max() > EXACT_VALUE)
 
     @cached_property
     def pitch(self) -> Numbers:
@@ -126,7 +127,7 @@ def not_normalised(case: WrongScrew) -> Hypotheses:
         f"Divide all six numbers by the length of {letter}.",
     )
     factor = (case.actual[unit] * case.expected[unit]).sum(axis=0)
-    if (np.abs(factor) >= EXACT).all():
+    if (np.abs(factor) >= EXACT_VALUE).all():
         yield Written(factor * case.expected, finding)
 
 
@@ -137,7 +138,7 @@ def point_for_velocity(case: WrongScrew) -> Hypotheses:
         "v is not a point on the axis, but the velocity that the turn gives to the point at the "
         "origin: v = −ω × q.",
     )
-    if case.turns and np.abs(case.moment).max() >= EXACT:
+    if case.turns and np.abs(case.moment).max() >= EXACT_VALUE:
         point = case.actual[3:]
         of_point = -np.cross(case.direction, point, axis=0)
         if (matches(of_point, case.moment, case.length_scale) >= Match.ROUNDED).all():
@@ -148,12 +149,12 @@ def pitch(case: WrongScrew) -> Hypotheses:
     """The advance along the axis was left out, added, or is another."""
     if not case.turns:
         return
-    if np.abs(case.pitch).max() < EXACT:
+    if np.abs(case.pitch).max() < EXACT_VALUE:
         hint = "This axis has pitch 0, it only turns: v has no part along ω."
     else:
         hint = "Of v the part along ω is not right: it is the pitch h times ω."
     along = ((case.actual[3:] - case.moment) * case.direction).sum(axis=0)
-    if np.abs(along - case.pitch).max() >= ROUNDED * case.length_scale:
+    if np.abs(along - case.pitch).max() >= ROUNDED_VALUE * case.length_scale:
         velocity = case.moment + along * case.direction
         yield Written(case.with_velocity(velocity), Finding("pitch", hint, "v = −ω × q + h ω."))
 

@@ -5,15 +5,17 @@ from dataclasses import replace
 import numpy as np
 
 from service.expressions import Expression
-from service.grading.comparison import ROUNDED, Match
+from service.grading.comparison import Match
 from service.grading.diagnosis.wrong_value import Hypotheses, WrongCell, differs, undefined
 from service.grading.feedback import Finding
 from service.grading.formula_text import sum_text
 from service.grading.joint_motion import coefficients
-from service.grading.judging.table import JudgedRow, Judgement, column_scales
+from service.grading.judging.table import JudgedRow, Judgement
+from service.grading.judging.table_matches import column_scales
 from service.grading.misconception import Repaired, Written, diagnosed
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE, HandedInRow
+from service.grading.tolerances import ROUNDED_VALUE
 from service.kinematics.chain import COLUMNS
 
 SUM_COUNTS = (
@@ -226,7 +228,7 @@ def half_turn(case: WrongCell) -> Hypotheses:
 def _off_by(turn: float, case: WrongCell, finding: Finding) -> Hypotheses:
     """The angle with another turn, which may itself have been rounded."""
     if case.angle:
-        yield Written(case.constants[1] + turn, finding, tolerance=ROUNDED * np.pi)
+        yield Written(case.constants[1] + turn, finding, tolerance=ROUNDED_VALUE * np.pi)
 
 
 CHECKS = (

@@ -6,33 +6,32 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from service.catalogue import DhTableSpec
+from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.comparison import Match, difference
 from service.grading.diagnosis.table_freedom import lost_freedom
 from service.grading.diagnosis.whole_table import WrongTable, explaining
 from service.grading.feedback import Finding
 from service.grading.judging.own_frames.few_cells import frames_from_reference
 from service.grading.judging.own_frames.reference import reference_values
-from service.grading.judging.own_frames.row_roles import Role
+from service.grading.judging.own_frames.row_roles import Role, freedom_of
 from service.grading.judging.own_frames.validity import valid_tables
 from service.grading.judging.own_frames.written_table import (
-    TOLERANCE,
     RepairedTable,
     WrittenTable,
     written_table,
 )
 from service.grading.judging.own_frames.wrong_convention_or_unit import in_convention
-from service.grading.judging.table import Judgement, departures_of, freedom_of, judged_against
+from service.grading.judging.table import Judgement, departures_of, judged_by_intended
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE, values_of
 from service.grading.report import Severity
+from service.grading.tolerances import INTENDED_CELL, INTENDED_POSE
 from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers
 
 # Enough samples to tell tables apart that are tried by the dozen.
 FEW = 3
-SAME = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +80,7 @@ def explained(
     nearest = min(intended, key=lambda each: each.departures, default=None)
     if nearest is None or nearest.table is None or nearest.departures >= judgement.departures:
         return (), judgement
-    return _findings([nearest]), judged_against(nearest.table, roles, convention, grading)
+    return _findings([nearest]), judged_by_intended(nearest.table, roles, convention, grading)
 
 
 def _wrong_table(
@@ -99,7 +98,7 @@ def _wrong_table(
 
     def valid(tables: Numbers, convention: Convention) -> NDArray[np.bool_]:
         at_subset = samples.subset_of(tables, FEW)
-        return valid_tables(at_subset, roles, convention, freedom, exercise, subset, TOLERANCE)
+        return valid_tables(at_subset, roles, convention, freedom, exercise, subset, INTENDED_POSE)
 
     return WrongTable(written, valid)
 
@@ -114,7 +113,7 @@ def _intended(
     error = np.abs(difference(table, written.values, IS_ANGLE[:, None])).max(axis=-1)
     frames = frames_from_reference(table, roles, written.convention, grading)
     departures = departures_of(frames, grading)
-    return _Intended(repaired.findings, table, error > SAME, departures)
+    return _Intended(repaired.findings, table, error > INTENDED_CELL, departures)
 
 
 def _findings(intended: Sequence[_Intended]) -> tuple[Finding, ...]:

@@ -19,14 +19,8 @@ from service.grading.report import Severity
 from service.grading.samples import Samples
 from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
-from service.kinematics.jacobian import (
-    SAME,
-    Screws,
-    coincident,
-    dependent,
-    rank,
-    space_jacobian,
-)
+from service.kinematics.jacobian import Screws, coincident, dependent, rank, space_jacobian
+from service.kinematics.tolerances import SAME_SCREW
 
 # How many samples of each half stand for a generic configuration.
 FEW = 2
@@ -61,7 +55,7 @@ def lost_freedom(
     if not np.isfinite(table).all():
         return ()
     present = [(j, row) for j, row in enumerate(joint_rows) if row is not None]
-    idle = [j for j, row in present if np.abs(changes(table[row])).max() < SAME]
+    idle = [j for j, row in present if np.abs(changes(table[row])).max() < SAME_SCREW]
     moving = [(j, row) for j, row in present if j not in idle]
     idle_finding = (_without_effect([exercise.robot.joints[j] for j in idle]),) if idle else ()
     if len(moving) < 2:
@@ -145,13 +139,13 @@ def _one_axis(
 
 def _lie(one: NDArray[np.float64], other: NDArray[np.float64]) -> tuple[bool, str]:
     """Whether two axes ``(samples, 3)`` are parallel throughout, and in words how they lie."""
-    if np.abs(np.cross(one, other)).max() < SAME:
+    if np.abs(np.cross(one, other)).max() < SAME_SCREW:
         return True, "parallel, but apart"
     cosines = np.abs(np.sum(one * other, axis=-1))
-    if np.ptp(cosines) > SAME:
+    if np.ptp(cosines) > SAME_SCREW:
         return False, "not parallel"
     angle = np.degrees(np.arccos(min(cosines[0], 1.0)))
-    return False, "at right angles" if cosines[0] < SAME else f"at an angle of {angle:.4g}°"
+    return False, "at right angles" if cosines[0] < SAME_SCREW else f"at an angle of {angle:.4g}°"
 
 
 def _rows_between(i: int, j: int, written: _Arm, convention: Convention) -> str:

@@ -9,7 +9,6 @@ from itertools import permutations
 
 import numpy as np
 
-from service.grading.comparison import EXACT, ROUNDED
 from service.grading.diagnosis.link_products import as_entries, named
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase, as_explanations
 from service.grading.diagnosis.wording import listed
@@ -17,6 +16,7 @@ from service.grading.diagnosis.wrong_value import UNEXPLAINED, Hypotheses, Mask
 from service.grading.feedback import Finding
 from service.grading.misconception import Written, explanation
 from service.grading.report import Severity
+from service.grading.tolerances import EXACT_VALUE, ROUNDED_VALUE
 from service.kinematics.transforms import Numbers, inverse
 
 Block = tuple[slice, slice]
@@ -108,7 +108,7 @@ def _from_other_poses(case: MatrixCase, block: Block, subject: str) -> Hypothese
     A constant block, such as a position of zeros, does not show which pose it was taken from.
     """
     poses, entries = case.other_poses
-    varies = np.ptp(entries[:, *block], axis=-1).max(axis=(1, 2)) > EXACT
+    varies = np.ptp(entries[:, *block], axis=-1).max(axis=(1, 2)) > EXACT_VALUE
     for i in np.flatnonzero(varies).tolist():
         yield Written(entries[i][block], named(poses[i], subject), block)
 
@@ -203,7 +203,7 @@ def rotation_not_orthonormal(rotation: Numbers) -> Finding | None:
 def _fault(rotation: Numbers) -> str | None:
     """The first column of another length than 1, or else the first two not at right angles."""
     products = np.swapaxes(rotation, 1, 2) @ rotation
-    wrong = np.abs(products - np.eye(3)).max(axis=0) > 4 * ROUNDED
+    wrong = np.abs(products - np.eye(3)).max(axis=0) > 4 * ROUNDED_VALUE
     for j in range(3):
         if wrong[j, j]:
             return f"the length of column {j + 1} is not 1"

@@ -16,11 +16,11 @@ from service.grading.diagnosis.wording import MEASURED, SYMBOLS
 from service.grading.feedback import Finding
 from service.grading.judging.own_frames import written_table
 from service.grading.judging.own_frames.written_table import (
-    TOLERANCE,
     RepairedTable,
     WrittenTable,
 )
 from service.grading.misconception import AnyHypothesis, Repaired, hypotheses_of
+from service.grading.tolerances import INTENDED_POSE
 from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D, Table
 from service.kinematics.dh import Convention
 
@@ -45,7 +45,7 @@ class WrongTable:
                 explains[places] = self.valid(tables, convention)
                 if convention is self.written.convention:
                     change = np.abs(tables - self.written.values).max(axis=(1, 2, 3))
-                    explains[places] &= change > TOLERANCE
+                    explains[places] &= change > INTENDED_POSE
         return [tried[i] for i in np.flatnonzero(explains)]
 
 

@@ -2,22 +2,13 @@
 
 import numpy as np
 
-from service.catalogue import (
-    EulerAnglesSpec,
-    Exercise,
-    PartSpec,
-    PositionSpec,
-    RotationSpec,
-    TransformSpec,
-    grid_values,
-)
-from service.catalogue.robot import Robot, Values, at_home
+from service.catalogue import Exercise, PartSpec, grid_values
+from service.catalogue.part import PosePartSpec
+from service.catalogue.robot import Robot, at_home
 from service.grading.judging.own_frames.reference import tool_pose
 from service.grading.part import Grading
 from service.grading.samples import SAMPLES, Samples
 from service.kinematics.transforms import Matrices, Numbers, inverse
-
-PoseSpec = TransformSpec | RotationSpec | PositionSpec | EulerAnglesSpec
 
 
 def formula_values(part: PartSpec, grading: Grading) -> Numbers | None:
@@ -37,14 +28,14 @@ def given_values(part: PartSpec, grading: Grading) -> Numbers:
     return values
 
 
-def robot_pose(part: PoseSpec, exercise: Exercise, samples: Samples) -> Matrices:
+def robot_pose(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Matrices:
     """The pose ``(SAMPLES, 4, 4)`` of the robot that the part asks for. Raises LookupError."""
     robot = exercise.reference
     if robot is None:
         raise LookupError(f"exercise {exercise.id!r} has no robot")
     if isinstance(robot, Robot) and is_whole_chain(part, exercise):
         return tool_pose(exercise, samples)
-    values: Values = samples.values
+    values = samples.values
     if part.home:
         values = at_home(robot.joints, values, SAMPLES)
     pose = robot.frame(part.to, values, SAMPLES)
@@ -53,7 +44,7 @@ def robot_pose(part: PoseSpec, exercise: Exercise, samples: Samples) -> Matrices
     return inverse(robot.frame(part.start, values, SAMPLES)) @ pose
 
 
-def asked_pose(part: PoseSpec, grading: Grading) -> Matrices:
+def asked_pose(part: PosePartSpec, grading: Grading) -> Matrices:
     """The pose ``(SAMPLES, 4, 4)`` that the part asks for: of the robot, or of the student's chain.
 
     A student's chain has the frames that its answer has; a part that asks for another is judged by
@@ -69,7 +60,7 @@ def asked_pose(part: PoseSpec, grading: Grading) -> Matrices:
     return np.asarray(inverse(chain.frames[start]) @ chain.frames[to])
 
 
-def is_whole_chain(part: PoseSpec, exercise: Exercise) -> bool:
+def is_whole_chain(part: PosePartSpec, exercise: Exercise) -> bool:
     """Whether the part asks for the pose of the tool in the base frame, wherever the joints are."""
     return (
         exercise.reference is not None

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from service.expressions import Kind
 from service.grading.comparison import matches
 from service.grading.reading.matrix import StudentMatrix
+from service.grading.tolerances import PRINTED_NUMBER
 from service.kinematics.transforms import Numbers
 
 
@@ -36,6 +37,6 @@ class ExpectedMatrix:
 
 def constant_text(values: Numbers) -> str:
     """An entry ``(SAMPLES,)`` that is a plain number everywhere, as text; empty where it varies."""
-    if np.ptp(values) > 1e-12:
+    if np.ptp(values) > PRINTED_NUMBER:
         return ""
     return f"{values[0] + 0.0:.4g}"

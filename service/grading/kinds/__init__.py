@@ -1,4 +1,4 @@
-"""How answers of each kind are read and judged: one file for each kind, with the kind's name.
+"""The answer kinds: one file for each, with its name, says how answers are read and judged.
 
 The file has the functions ``read`` and ``judge`` of AnswerKind. A file without ``judge`` serves
 several kinds.

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from service.catalogue import DhRowSpec
+from service.catalogue.parts.dh_row import DhRowSpec
 from service.expressions import Expression
 from service.grading.comparison import Match, matches
 from service.grading.diagnosis.dh_row import WrongRow, explain_row, has_a_row, violated

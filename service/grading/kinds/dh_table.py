@@ -4,13 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from service.catalogue import DhTableSpec, Exercise
+from service.catalogue import Exercise
+from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.diagnosis.table_cell import diagnose_cells
 from service.grading.diagnosis.table_explained import explained, freedom_lost
 from service.grading.feedback import Finding
 from service.grading.follow_through import stands_still
+from service.grading.judging.own_frames.best_roles import roles_in
 from service.grading.judging.report_rows import cell_report
-from service.grading.judging.table import JudgedRow, Judgement, judged_table, roles_in
+from service.grading.judging.table import JudgedRow, Judgement, judged_table
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.table import HandedInRow, HandedInTable, read_table, values_of
 from service.grading.report import CellReport, RowReport, Severity, Verdict, row_report
@@ -58,9 +60,9 @@ def _of_the_whole(
     convention: Convention,
     grading: Grading,
 ) -> tuple[Judgement, tuple[Finding, ...], tuple[Finding, ...]]:
-    """What explains the whole of a wrong table; or else which freedom its joints have lost.
+    """The explanation of a wrong table as a whole, or else the freedom that its joints have lost.
 
-    With the judgement that agrees with it.
+    Returned with the judgement that agrees with it.
     """
     if not judgement.wrong:
         return judgement, (), ()
@@ -69,14 +71,14 @@ def _of_the_whole(
     if judgement.wrong > 1:
         combine = judgement.wrong >= WRONG_THROUGHOUT
         found, judgement = explained(part, roles, convention, judgement, grading, combine=combine)
-    # Where all is explained, what the table seems to describe was not meant.
+    # An explained table is not the one that the student intended, so its freedom says nothing.
     return judgement, found, () if found else freedom_lost(roles, convention, grading)
 
 
 def _convention(
     part: DhTableSpec, table: HandedInTable, exercise: Exercise
 ) -> tuple[Convention, tuple[Finding, ...]]:
-    """The convention that the table is read in, and what to say where the answer names another."""
+    """The convention that the table is read in, and the finding where the answer names another."""
     if part.convention == "either":
         return table.convention or exercise.robot.convention, ()
     if table.convention in (None, part.convention):

@@ -9,9 +9,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from service.catalogue import EulerAnglesSpec
+from service.catalogue.parts.euler_angles import EulerAnglesSpec
 from service.expressions import Kind
-from service.grading.comparison import EXACT, ROUNDED, Match, difference, matches
+from service.grading.comparison import Match, difference, matches
 from service.grading.diagnosis.angle import diagnose_angle, has_arctangent
 from service.grading.diagnosis.euler_triple import RepairedTriple, WrongTriple, explain_triple
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, WrongValue
@@ -23,6 +23,7 @@ from service.grading.part import Grading, Judged
 from service.grading.reading.entry import Entry
 from service.grading.reading.value_list import StudentValues, read_list
 from service.grading.report import Severity
+from service.grading.tolerances import EXACT_VALUE, ROUNDED_VALUE
 from service.kinematics.rotations import (
     from_angles,
     is_singular,
@@ -83,7 +84,7 @@ def _found(
     found = matches(angles, expected, 1.0, angle=True, rounded=student.rounded)
     if np.isfinite(angles).all():
         described = from_angles(part.turns, angles.T, fixed=part.axes == "fixed")
-        if np.abs(described - rotation).max() < EXACT:
+        if np.abs(described - rotation).max() < EXACT_VALUE:
             return np.full(3, int(Match.EXACT))
     return found
 
@@ -103,7 +104,7 @@ def nearest_triple(
         one = np.where(singular[:, None], _singular_triple(angles, one, rotation, sequence), one)
     both = np.stack([one, np.where(singular[:, None], one, other_triple(sequence, one))])
     off = np.nan_to_num(np.abs(difference(angles.T, both, angle=True)))
-    hit = off <= ROUNDED * np.maximum(1.0, np.abs(both))
+    hit = off <= ROUNDED_VALUE * np.maximum(1.0, np.abs(both))
     samples = np.arange(len(one))
     # The samples may take sides differently: an atan2 is of one family, a robot's own angle of
     # both.

@@ -1,33 +1,31 @@
 """Answer kind ``link_transforms``: the matrices A_1 … A_n that a table's rows stand for."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from service.catalogue import LinkTransformsSpec
-from service.catalogue.answers import HOMOGENEOUS
+from service.catalogue.formulas import HOMOGENEOUS
+from service.catalogue.parts.link_transforms import LinkTransformsSpec
 from service.expressions import Vocabulary
 from service.expressions import read as read_expression
 from service.grading.diagnosis.matrix_entry import WORK_BUDGET
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.follow_through import stands_still
 from service.grading.judging.matrix import ExpectedMatrix
-from service.grading.judging.own_frames.frame_freedom import Freedom
-from service.grading.judging.own_frames.row_roles import Role
-from service.grading.judging.table import nearest_reading
+from service.grading.judging.own_frames.best_roles import nearest_with_tool_row
+from service.grading.judging.own_frames.row_roles import FrameFreedom, Role
 from service.grading.kinds.matrix_rows import matrix_rows
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.entry import Entry
 from service.grading.reading.matrix import StudentMatrix, read_matrix
 from service.grading.reading.table import HandedInRow
-from service.grading.report import CellReport, Feedback, RowReport
+from service.grading.report import Feedback, RowReport
 from service.grading.samples import SAMPLES, Samples
+from service.grading.tolerances import LINK_TRANSFORM
 from service.kinematics.chain import links, products
 from service.kinematics.dh import link_transforms
 from service.kinematics.dh_row import row as dh_row
 from service.kinematics.transforms import Matrices, Numbers
-
-SAME = 1e-6
 
 # A number that was worked out of a matrix stands for a cell that was read.
 _WORKED_OUT = Entry(read_expression(0, Vocabulary([])))
@@ -82,9 +80,10 @@ def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> J
             part.points / len(labels),
             grading,
             work_budget=WORK_BUDGET / len(labels),
+            name=f"A{label}",
         )
-        rows.extend(_named(row, label) for row in judged.rows)
-        messages.extend(_placed(message, label) for message in judged.feedback)
+        rows.extend(judged.rows)
+        messages.extend(judged.feedback)
     return Judged(
         tuple(rows),
         tuple(messages),
@@ -122,7 +121,7 @@ def _nearest_links(part: LinkTransformsSpec, answer: StudentLinks, grading: Grad
         Role(_row(matrix, part), joints[i] if i < len(joints) else None)
         for i, matrix in enumerate(answer.values)
     )
-    reading = nearest_reading(roles, part.convention, Freedom(), grading)
+    reading = nearest_with_tool_row(roles, part.convention, FrameFreedom(), grading)
     return links(reading.expected, part.convention)
 
 
@@ -130,7 +129,7 @@ def _row(matrix: Matrices, part: LinkTransformsSpec) -> HandedInRow | None:
     if np.isnan(matrix).any():
         return None
     row = dh_row(matrix, part.convention)
-    if np.abs(link_transforms(part.convention, *row) - matrix).max() > SAME:
+    if np.abs(link_transforms(part.convention, *row) - matrix).max() > LINK_TRANSFORM:
         return None
     return HandedInRow((_WORKED_OUT,) * 4, row)
 
@@ -141,19 +140,3 @@ def _wrong_shape(labels: tuple[str, ...]) -> Finding:
         f"with 4 rows of 4 entries."
     )
     return reading_error("wrong_shape", message)
-
-
-def _named(row: RowReport, link: str) -> RowReport:
-    label = f"A{link}.{row.label}"
-    cells = tuple(
-        CellReport(cell.label, cell.verdict, tuple(replace(m, row=label) for m in cell.feedback))
-        for cell in row.cells
-    )
-    messages = tuple(replace(message, row=label) for message in row.feedback)
-    return replace(row, label=label, cells=cells, feedback=messages)
-
-
-def _placed(message: Feedback, link: str) -> Feedback:
-    """A message on a whole matrix, with the matrix it is about."""
-    row = f"A{link}.{message.row}" if message.row else f"A{link}"
-    return replace(message, row=row, message=f"A{link}: {message.message}")

@@ -1,6 +1,6 @@
 """Answer kind ``matrix``: a matrix of any meaning, entry by entry."""
 
-from service.catalogue import MatrixSpec
+from service.catalogue.parts.matrix import MatrixSpec
 from service.grading.judging.expected import given_values
 from service.grading.judging.matrix import ExpectedMatrix
 from service.grading.kinds.matrix_rows import matrix_rows

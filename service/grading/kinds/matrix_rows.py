@@ -1,7 +1,7 @@
 """The rows of a report on a matrix, whatever the matrix stands for."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from service.grading.diagnosis.link_products import Chain
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
 from service.grading.diagnosis.matrix_entry import WORK_BUDGET, diagnose_entries
 from service.grading.diagnosis.whole_matrix import check_yourself, explain, unexplained
+from service.grading.feedback import Finding
 from service.grading.judging.matrix import ExpectedMatrix, constant_text
 from service.grading.judging.report_rows import entry_rows
 from service.grading.part import Grading
@@ -46,16 +47,19 @@ def matrix_rows(
     chains: Callable[[Samples], tuple[Chain, ...]] = _no_chains,
     explanations: Callable[[MatrixCase], list[Explanation]] = _no_explanations,
     work_budget: float = WORK_BUDGET,
+    name: str = "",
 ) -> MatrixRows:
     """The rows of a matrix that is worth ``points``, with what explains its wrong entries.
 
     ``chains`` gives, at the samples it is handed, the links that the matrix is the product of;
     ``explanations`` explains the matrix by what else it is made of, and is asked first. Both are
-    asked only where something is wrong. ``work_budget`` bounds how much is taken apart.
+    asked only where something is wrong. ``work_budget`` bounds how much is taken apart. A ``name``
+    tells one matrix of several: its rows are then "A2.1" and so on.
     """
+    labels = [f"{name}.{i + 1}" if name else str(i + 1) for i in range(len(student.entries))]
     found = expected.matches(student, grading.exercise.length_scale)
     if (found >= Match.ROUNDED).all():
-        return MatrixRows(entry_rows(student.entries, found, {}, points, grading))
+        return MatrixRows(entry_rows(student.entries, found, {}, points, grading, labels=labels))
     scale = expected.scale(grading.exercise.length_scale)
     case = MatrixCase(
         actual=Samples.subset_of(student.values, SUBSET),
@@ -82,12 +86,23 @@ def matrix_rows(
     }
     slips = diagnose_entries(wrong, work_budget)
     check = check_yourself(case, slips)
-    messages = tuple(
-        message
-        for explanation in explained
-        for message in grading.visible((explanation.finding,), explanation.row)
-    )
+    findings = [(explanation.finding, explanation.row) for explanation in explained]
+    findings += [(check, None)] if check else []
     return MatrixRows(
-        entry_rows(student.entries, found, slips, points, grading),
-        (*messages, *grading.visible((check,) if check else ())),
+        entry_rows(student.entries, found, slips, points, grading, labels=labels),
+        tuple(
+            message
+            for finding, row in findings
+            for message in _on_the_whole(finding, row, name, grading)
+        ),
     )
+
+
+def _on_the_whole(
+    finding: Finding, row: str | None, name: str, grading: Grading
+) -> tuple[Feedback, ...]:
+    """The message on a whole matrix, or on one row of it, with the name of the matrix."""
+    if not name:
+        return grading.visible((finding,), row)
+    named = replace(finding, hint=f"{name}: {finding.hint}")
+    return grading.visible((named,), f"{name}.{row}" if row else name)

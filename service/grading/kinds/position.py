@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from service.catalogue import PositionSpec, Robot
+from service.catalogue import Robot
+from service.catalogue.parts.position import PositionSpec
 from service.expressions import Kind
 from service.grading.comparison import Match
 from service.grading.diagnosis.link_products import chains_of
@@ -20,7 +21,7 @@ from service.kinematics.transforms import Numbers
 
 def read(part: PositionSpec, answer: object, grading: Grading) -> StudentValues:
     """The coordinates in a list or a pasted text."""
-    # Of [x, y, 0] for x and z nobody could say whether z is the second or the third.
+    # In [x, y, 0] for x and z, nobody can say whether z is the second or the third value.
     planar = part.coordinates == "xy"
     lengths: list[Kind] = ["length"] * len(part.coordinates)
     return read_list(answer, lengths, grading.reader, planar=planar)

@@ -1,7 +1,8 @@
 """Answer kind ``rotation``: a rotation matrix, of a pose or made of turns about axes."""
 
-from service.catalogue import Robot, RotationSpec
-from service.catalogue.answers import ROTATION
+from service.catalogue import Robot
+from service.catalogue.formulas import ROTATION
+from service.catalogue.parts.rotation import RotationSpec
 from service.grading.diagnosis.link_products import Chain, chains_of
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
 from service.grading.diagnosis.rotation_steps import Step, explain_steps

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from service.catalogue import ScrewAxesSpec
-from service.catalogue.answers import SCREW
+from service.catalogue.formulas import SCREW
+from service.catalogue.parts.screw_axes import ScrewAxesSpec
 from service.catalogue.robot import at_home
 from service.grading.comparison import Match, matches
 from service.grading.diagnosis.screw_axis import WrongScrew, explain_screw
@@ -100,7 +100,7 @@ def _as_rows(answer: object, count: int) -> object:
 
 
 def _count(part: ScrewAxesSpec, grading: Grading) -> int:
-    """How many axes are asked for."""
+    """The number of axes asked for."""
     return len(part.expected or grading.exercise.joints)
 
 
@@ -140,7 +140,7 @@ def _explained(
     part: ScrewAxesSpec,
     grading: Grading,
 ) -> dict[int, Finding]:
-    """What explains the whole of a wrong axis, by its place."""
+    """The finding that explains the whole of a wrong axis, by its place."""
     explained: dict[int, Finding] = {}
     for i in np.flatnonzero(wrong.any(axis=1)).tolist():
         elsewhere = None if expected.elsewhere is None else expected.elsewhere[i]

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from service.catalogue import Robot, TransformSpec
-from service.catalogue.answers import HOMOGENEOUS
+from service.catalogue import Robot
+from service.catalogue.formulas import HOMOGENEOUS
+from service.catalogue.parts.transform import TransformSpec
 from service.grading.diagnosis.exponentials import explain_product
 from service.grading.diagnosis.link_products import Chain, chains_of
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase

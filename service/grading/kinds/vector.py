@@ -1,6 +1,6 @@
 """Answer kind ``vector``: a list of lengths, angles and numbers."""
 
-from service.catalogue import VectorSpec
+from service.catalogue.parts.vector import VectorSpec
 from service.grading.comparison import Match
 from service.grading.diagnosis.value_list import slips_of
 from service.grading.judging.expected import given_values

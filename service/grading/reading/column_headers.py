@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from service.expressions import Kind
-from service.grading.reading.entry import AngleUnit
+from service.expressions import AngleUnit, Kind
 
 LABEL: Final = "label"
 ASIDE: Final = "aside"
@@ -16,7 +15,7 @@ QUANTITIES: Final[Mapping[str, Kind]] = {
 }  # fmt: skip
 
 _LONGEST: Final = 60
-# What NFKC leaves alone, or makes of a sign.
+# Signs and letters that NFKC leaves alone, or turns into others.
 _SIGNS: Final = str.maketrans(
     {"⍺": "α", "−": "-", "–": "-", "‐": "-", "‑": "-", "º": "°", "˚": "°"}
 )
@@ -70,7 +69,7 @@ _ASIDE: Final = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """``column`` is a, alpha, d, theta, "label", or "aside" for what belongs to no DH table.
+    """``column`` is a, alpha, d, theta, "label", or "aside" for a column of no DH table.
 
     ``unit`` is as written, but in small letters. ``shifted`` tells that the index is one less than
     the row's, as in a_{i-1}.
@@ -87,12 +86,12 @@ class Header:
 
     @property
     def metres(self) -> float | None:
-        """How many metres the unit is, where the header names a unit of length."""
+        """The unit in metres, where the header names a unit of length."""
         return METRES.get(self.unit)
 
 
 def read_header(text: str) -> Header | None:
-    r"""What a header cell says, in any of its spellings; None where that cannot be told.
+    r"""The header in a cell, in any of its spellings; None for a cell that is none.
 
     ``a``, ``a_{i-1}``, ``α_i (deg)``, ``link length [mm]``, ``$\theta_i$``, ``joint``, ``#``.
     """

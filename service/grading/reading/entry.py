@@ -1,15 +1,16 @@
-"""From what was handed in for one cell to the numbers that it gives at the samples."""
+"""A cell as handed in -> an entry, and entries -> their numbers at the samples."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Literal, Self
+from typing import Self
 
 import numpy as np
 
 from service.catalogue import Exercise
 from service.expressions import (
     LIMITS,
+    AngleUnit,
     Expression,
     ExpressionError,
     Kind,
@@ -24,9 +25,7 @@ from service.grading.samples import SAMPLES, Samples
 from service.grading.work_budget import MAX_CHARACTERS, WorkBudget
 from service.kinematics.transforms import Numbers
 
-AngleUnit = Literal["radians", "degrees"]
-
-# Textbooks mark the joint variable so in every table; six notes about it would bury the others.
+# Textbooks mark the joint variable so in every table: six notes on it would hide the others.
 EXPECTED_NOTES = frozenset({"joint_marker"})
 
 # Beyond these nobody measures a robot, and an angle has lost its digits to whole turns.
@@ -123,7 +122,7 @@ def entry_values(entries: Sequence[Entry], quantities: Sequence[Kind], samples: 
 
 @lru_cache(maxsize=256)
 def _bounds(quantities: tuple[Kind, ...]) -> Numbers:
-    """What the values of these may be at most, ``(quantities, 1)``."""
+    """The largest value of each quantity, ``(quantities, 1)``."""
     return np.array([[BOUNDS[quantity]] for quantity in quantities])
 
 
@@ -152,10 +151,15 @@ def _wrong_type(raw: object) -> Finding:
 
 
 def _from_error(error: ExpressionError) -> Finding:
-    suggestion = f"Did you mean {error.suggestion}?" if error.suggestion else ""
-    if suggestion in error.message:
-        suggestion = ""
-    return Finding(error.code, error.message, suggestion, span=error.span, reading=True)
+    question = f"Did you mean {error.suggestion}?" if error.suggestion else ""
+    return Finding(
+        error.code,
+        error.message,
+        "" if question in error.message else question,
+        span=error.span,
+        reading=True,
+        suggestion=error.suggestion,
+    )
 
 
 def from_note(note: Note) -> Finding:

@@ -1,7 +1,6 @@
 """Lengths below a header that names another unit than the exercise's: mm where it has metres."""
 
 from dataclasses import replace
-from typing import Final
 
 import numpy as np
 
@@ -10,8 +9,7 @@ from service.expressions.tree import Binary, Node, Number
 from service.grading.feedback import reading_error, reading_note
 from service.grading.reading.column_headers import METRES, Header
 from service.grading.reading.entry import Entry, Reader, unreadable
-
-_SAME: Final = 1e-9
+from service.grading.tolerances import EXACT_VALUE, SAME_FACTOR
 
 
 def in_unit(entry: Entry, header: Header, reader: Reader) -> Entry:
@@ -48,7 +46,7 @@ def in_unit(entry: Entry, header: Header, reader: Reader) -> Entry:
 def _times(tree: Node, factor: float) -> Node:
     """The tree times ``factor``: dividing by 1000 is exact where multiplying by 0.001 is not."""
     divisor = round(1 / factor)
-    if divisor > 1 and abs(divisor * factor - 1) < _SAME:
+    if divisor > 1 and abs(divisor * factor - 1) < SAME_FACTOR:
         by = Number(float(divisor), str(divisor), tree.end, tree.end)
         return Binary("/", tree, by, tree.start, tree.end)
     by = Number(factor, f"{factor:.10g}", tree.end, tree.end)
@@ -63,7 +61,7 @@ def _of_letters(entry: Entry, expression: Expression, header: Header, reader: Re
     once, twice = expression.evaluate(values, reader.samples.memo), expression.evaluate(doubled)
     with np.errstate(all="ignore"):
         expected = 2 * np.asarray(once)
-    if np.allclose(twice, expected, rtol=_SAME, atol=_SAME, equal_nan=True):
+    if np.allclose(twice, expected, rtol=EXACT_VALUE, atol=EXACT_VALUE, equal_nan=True):
         return entry
     unit = reader.length_unit or "the exercise’s unit"
     message = (

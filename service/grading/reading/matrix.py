@@ -16,7 +16,7 @@ from service.grading.reading.entry import (
 )
 from service.grading.reading.pasted import from_grid_error, place_of, placed
 from service.grading.samples import Samples
-from service.grids import Cell, GridError, read_grid
+from service.grids import GridCell, GridError, read_grid
 from service.kinematics.transforms import Numbers
 
 Quantities = Sequence[Sequence[Kind]]
@@ -35,7 +35,7 @@ class StudentMatrix:
 
     @property
     def rounded(self) -> list[list[bool]]:
-        """Which entries may be off by what rounding does."""
+        """Which entries may have been rounded."""
         return [[entry.may_be_rounded for entry in row] for row in self.entries]
 
     def values_at(self, samples: Samples) -> Numbers:
@@ -46,8 +46,8 @@ class StudentMatrix:
 def read_matrix(answer: object, quantities: Quantities, reader: Reader) -> StudentMatrix:
     """The matrix in a nested list or a pasted text, with one entry for each quantity.
 
-    Rows that were left off at the end are missing; a row of the wrong length is unreadable, because
-    nobody can say which entry is which. Raises UnreadableAnswerError where there are no rows at
+    Rows that were left off at the end are missing. A row of the wrong length is unreadable: nobody
+    can say which entry is which. Raises UnreadableAnswerError where there are no rows at
     all, or too many.
     """
     entries = _entries(answer, quantities, reader)
@@ -110,7 +110,7 @@ def _pasted(text: str, quantities: Quantities, reader: Reader) -> list[list[Entr
     return entries
 
 
-def _pasted_row(row: Sequence[Cell], kinds: Sequence[Kind], reader: Reader) -> list[Entry]:
+def _pasted_row(row: Sequence[GridCell], kinds: Sequence[Kind], reader: Reader) -> list[Entry]:
     if len(row) != len(kinds):
         return _of_wrong_length(f"{len(row)} entries", len(kinds), place_of(row))
     return [

@@ -5,16 +5,16 @@ from dataclasses import replace
 
 from service.grading.feedback import Finding
 from service.grading.reading.entry import Entry
-from service.grids import Cell, GridError
+from service.grids import GridCell, GridError
 
 
 def from_grid_error(error: GridError) -> Finding:
-    """Why a pasted text is no table or matrix; its codes are those of an answer of wrong shape."""
+    """The finding that a pasted text is no table or matrix."""
     code = "wrong_shape" if error.code == "no_grid" else error.code
     return Finding(code, error.message, span=error.span, reading=True)
 
 
-def placed(entry: Entry, cell: Cell) -> Entry:
+def placed(entry: Entry, cell: GridCell) -> Entry:
     """The entry with its spans moved from the cell to the text that it was pasted in."""
     if not entry.findings:
         return entry
@@ -25,7 +25,7 @@ def placed(entry: Entry, cell: Cell) -> Entry:
     return replace(entry, findings=findings)
 
 
-def place_of(cells: Sequence[Cell]) -> tuple[int, int]:
+def place_of(cells: Sequence[GridCell]) -> tuple[int, int]:
     """The place of cells that stand side by side, in the whole text."""
     return cells[0].whole[0], max(cells[0].whole[1], cells[-1].whole[1])
 

@@ -11,7 +11,7 @@ from service.grading.reading.entry import Entry, Reader, from_note, unreadable
 from service.grading.reading.length_units import in_unit
 from service.grading.reading.pasted import place_of, placed, quoted
 from service.grading.reading.row_labels import in_order, is_label
-from service.grids import Cell, Grid, GridError, read_grid
+from service.grids import Grid, GridCell, GridError, read_grid
 from service.kinematics.chain import COLUMNS
 
 # Names for these columns, as they are written in a message.
@@ -24,10 +24,10 @@ ColumnOrder = tuple[int | None, Header]
 class PastedRow:
     """The cells of one row in the order a, α, d, θ.
 
-    Where nobody can say which is which there is a ``problem``, and each cell is the whole row.
+    A row of the wrong length has a ``problem``, and each of its cells is the whole row.
     """
 
-    cells: tuple[Cell, ...]
+    cells: tuple[GridCell, ...]
     problem: Finding | None = None
 
 
@@ -83,7 +83,7 @@ def entries_of(table: PastedTable, reader: Reader) -> list[tuple[Entry, ...]]:
     ]
 
 
-def table_entry(cell: Cell, column: str, header: Header, reader: Reader) -> Entry:
+def table_entry(cell: GridCell, column: str, header: Header, reader: Reader) -> Entry:
     """One cell of a table, in the unit that its header names."""
     if header.angle_unit:
         reader = replace(reader, angle_unit=header.angle_unit)
@@ -93,8 +93,8 @@ def table_entry(cell: Cell, column: str, header: Header, reader: Reader) -> Entr
     return placed(entry, cell)
 
 
-def _found_headers(row: Sequence[Cell], reader: Reader) -> list[Header | None] | None:
-    """What each cell of the first row says as a header; None where the row holds values.
+def _found_headers(row: Sequence[GridCell], reader: Reader) -> list[Header | None] | None:
+    """The header in each cell of the first row; None where the row holds values.
 
     A name such as ``a`` may be a header or a declared length: the row's other cells decide.
     """
@@ -113,7 +113,7 @@ def _found_headers(row: Sequence[Cell], reader: Reader) -> list[Header | None] |
 
 
 def _columns_by_headers(
-    row: Sequence[Cell], found: Sequence[Header | None]
+    row: Sequence[GridCell], found: Sequence[Header | None]
 ) -> tuple[tuple[ColumnOrder, ...], int | None, tuple[Finding, ...]]:
     unknown = [cell for cell, header in zip(row, found, strict=True) if not header and cell.text]
     if unknown:
@@ -158,7 +158,7 @@ def _header(found: Sequence[Header | None], place: int) -> Header:
     return header
 
 
-def _check_unit(header: Header, column: str, cell: Cell) -> None:
+def _check_unit(header: Header, column: str, cell: GridCell) -> None:
     if not header.unit:
         return
     is_angle = QUANTITIES[column] == "angle"
@@ -171,7 +171,7 @@ def _check_unit(header: Header, column: str, cell: Cell) -> None:
         )
 
 
-def _left_aside(row: Sequence[Cell], found: Sequence[Header | None]) -> tuple[Finding, ...]:
+def _left_aside(row: Sequence[GridCell], found: Sequence[Header | None]) -> tuple[Finding, ...]:
     return tuple(
         _note("column_left_aside", f"The column {quoted(cell.text)} was left aside.", cell)
         for cell, header in zip(row, found, strict=True)
@@ -179,7 +179,9 @@ def _left_aside(row: Sequence[Cell], found: Sequence[Header | None]) -> tuple[Fi
     )
 
 
-def _convention_hint(row: Sequence[Cell], columns: Sequence[ColumnOrder]) -> tuple[Finding, ...]:
+def _convention_hint(
+    row: Sequence[GridCell], columns: Sequence[ColumnOrder]
+) -> tuple[Finding, ...]:
     shifted = [row[place or 0] for place, header in columns if header.shifted]
     if not shifted:
         return ()
@@ -215,7 +217,7 @@ def _columns_in_order(
     return columns, 0 if has_labels else None, (finding,)
 
 
-def _row(row: Sequence[Cell], columns: Sequence[ColumnOrder], width: int) -> PastedRow:
+def _row(row: Sequence[GridCell], columns: Sequence[ColumnOrder], width: int) -> PastedRow:
     if len(row) != width:
         message = f"This row has {len(row)} values, and the table {width} columns."
         finding = reading_error("row_length", message, place_of(row))
@@ -223,5 +225,5 @@ def _row(row: Sequence[Cell], columns: Sequence[ColumnOrder], width: int) -> Pas
     return PastedRow(tuple(row[place or 0] for place, _ in columns))
 
 
-def _note(code: str, message: str, cell: Cell) -> Finding:
+def _note(code: str, message: str, cell: GridCell) -> Finding:
     return reading_note(code, message, cell.whole)

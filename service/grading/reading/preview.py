@@ -1,22 +1,21 @@
-"""How a whole pasted table or matrix is read, cell by cell, without grading it."""
+"""The preview of a pasted table or matrix: the reading of each cell, without a grading."""
 
 from dataclasses import dataclass, replace
 
 from service.catalogue import Exercise
-from service.expressions import ExpressionError, Kind, Note, read
+from service.expressions import AngleUnit, Kind, Note
 from service.expressions.errors import Span
-from service.grading.reading.column_headers import QUANTITIES
-from service.grading.reading.entry import AngleUnit, Entry, Reader
+from service.grading.reading.entry import Entry, Reader
 from service.grading.reading.pasted import placed
 from service.grading.reading.pasted_table import read_pasted_table, table_entry
 from service.grading.samples import draw
-from service.grids import Cell, GridError, read_grid
+from service.grids import GridCell, GridError, read_grid
 from service.kinematics.chain import COLUMNS
 
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """Why a text or a cell cannot be read; ``suggestion`` is the repaired cell, if one is near."""
+    """The reason why a text or a cell cannot be read, and the repaired cell, if one is near."""
 
     code: str
     message: str
@@ -26,7 +25,7 @@ class Problem:
 
 @dataclass(frozen=True, slots=True)
 class CellPreview:
-    """How one cell reads: normal text, LaTeX and MathML as typed; or the problem with it.
+    """The reading of one cell as normal text, LaTeX and MathML; or the problem with it.
 
     ``row`` and ``column`` are labels as in a report: "1", "2" …, and "a", "alpha", "d", "theta" or
     the column's number. ``span`` is the cell's [from, to) in the pasted text, ``typed`` what stands
@@ -47,7 +46,7 @@ class CellPreview:
 
 @dataclass(frozen=True, slots=True)
 class PastedPreview:
-    """How a pasted text reads: its rows, or the problem with it as a whole.
+    """The reading of a pasted text: its rows, or the problem with it as a whole.
 
     Rows stand in the order in which they are graded, the columns of a table as a, alpha, d, theta.
     All spans are [from, to) in the pasted text.
@@ -66,11 +65,10 @@ class PastedPreview:
 def preview_pasted(
     text: str, exercise: Exercise, part: str, angle_unit: AngleUnit = "radians"
 ) -> PastedPreview:
-    """How ``text``, pasted as the answer to a part, is read: as grading reads it, to the letter.
+    """The reading of ``text`` as the answer to a part, exactly as grading reads it.
 
-    A table for a part of kind ``dh_table``, else a matrix of any size; whether it has the size
-    that is asked for is for grading to say. Raises LookupError for a part that does not exist, and
-    nothing that depends on the text.
+    A part of kind ``dh_table`` takes a table, any other a matrix. A matrix of any size is read:
+    grading checks the size. Raises LookupError for a part that does not exist.
     """
     spec = exercise.part(part)
     if spec is None:
@@ -97,8 +95,7 @@ def _table(text: str, reader: Reader) -> PastedPreview:
         cells = []
         for cell, column, header in zip(row.cells, COLUMNS, table.headers, strict=True):
             entry = table_entry(cell, column, header, reader)
-            own = replace(reader, angle_unit=header.angle_unit or reader.angle_unit)
-            cells.append(_cell(entry, cell, (str(i + 1), column), QUANTITIES[column], own))
+            cells.append(_cell(entry, cell, (str(i + 1), column)))
         rows.append(tuple(cells))
     notes = tuple(
         Note(finding.code, finding.hint, finding.span or (0, 0)) for finding in table.findings
@@ -114,8 +111,6 @@ def _matrix(text: str, quantity: Kind, reader: Reader) -> PastedPreview:
                 placed(reader.read(cell.text, quantity), cell),
                 cell,
                 (str(i + 1), str(j + 1)),
-                quantity,
-                reader,
             )
             for j, cell in enumerate(row)
         )
@@ -124,17 +119,15 @@ def _matrix(text: str, quantity: Kind, reader: Reader) -> PastedPreview:
     return PastedPreview(rows, grid.notes)
 
 
-def _cell(
-    entry: Entry, cell: Cell, place: tuple[str, str], quantity: Kind, reader: Reader
-) -> CellPreview:
+def _cell(entry: Entry, cell: GridCell, place: tuple[str, str]) -> CellPreview:
     empty = CellPreview(*place, cell.whole, cell.text)
     if not cell.text:
         return empty
     if entry.expression is None:
         [finding] = entry.findings
-        suggestion = _suggestion(cell.text, quantity, reader)
         span = finding.span or cell.whole
-        return replace(empty, problem=Problem(finding.code, finding.hint, span, suggestion))
+        problem = Problem(finding.code, finding.hint, span, finding.suggestion)
+        return replace(empty, problem=problem)
     expression = entry.expression
     return replace(
         empty,
@@ -144,11 +137,3 @@ def _cell(
         symbols=tuple(sorted(expression.symbols)),
         notes=tuple(Note(f.code, f.hint, f.span or cell.whole) for f in entry.findings),
     )
-
-
-def _suggestion(text: str, quantity: Kind, reader: Reader) -> str | None:
-    try:
-        read(text, reader.vocabulary, quantity=quantity, angle_unit=reader.angle_unit)
-    except ExpressionError as error:
-        return error.suggestion
-    return None

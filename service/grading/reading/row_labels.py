@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from service.grading.feedback import Finding, reading_note
-from service.grids import Cell, GridError
+from service.grids import GridCell, GridError
 
 LAST: Final = 10_000
 _LONGEST: Final = 30
@@ -18,7 +18,7 @@ _END: Final = frozenset(
 
 
 def label_place(text: str) -> int | None:
-    """Where a label puts its row: its number, or behind all numbers; None where it says nothing.
+    """The place of a row by its label: its number, or behind all numbers; None for none.
 
     ``1``, ``Link 1``, ``J1``, ``{1}``, ``0→1``; ``e``, ``tool``, ``end effector``.
     """
@@ -41,10 +41,10 @@ def is_label(text: str) -> bool:
     return label_place(text) is not None
 
 
-def in_order(labels: Sequence[Cell]) -> tuple[list[int], tuple[Finding, ...]]:
-    """The rows' places in the order of their labels, and what is to be said about it.
+def in_order(labels: Sequence[GridCell]) -> tuple[list[int], tuple[Finding, ...]]:
+    """The places of the rows in the order of their labels, with the findings on it.
 
-    Raises GridError where two rows have one label. Labels that say nothing leave the order alone.
+    Rows keep their order where a label has no place. Raises GridError where two have one label.
     """
     typed = list(range(len(labels)))
     places = [label_place(label.text) for label in labels]

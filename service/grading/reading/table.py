@@ -1,10 +1,9 @@
-"""Reading a handed-in DH table, and finding out which of its rows is which."""
+"""A DH table as handed in, JSON or pasted text -> its rows and their numbers."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.reading.column_headers import QUANTITIES
@@ -55,7 +54,7 @@ class HandedInRow:
 
     @property
     def rounded(self) -> list[bool]:
-        """Which cells may be off by what rounding does."""
+        """Which cells may have been rounded."""
         return [entry.may_be_rounded for entry in self.entries]
 
     def values_at(self, samples: Samples) -> Table:
@@ -80,7 +79,7 @@ class HandedInTable:
 def read_table(answer: object, reader: Reader) -> HandedInTable:
     """The table in a JSON answer ``{"rows": [{"a", "alpha", "d", "theta"} …], "convention"?}``.
 
-    It may have other shapes that mean the same (``table_shapes``), and it, or its rows, may be
+    It may have other shapes that mean the same (``table_json``), and it, or its rows, may be
     pasted text.
 
     Raises UnreadableAnswerError where the answer has no rows at all; a row or cell that cannot be
@@ -163,7 +162,7 @@ def _entries(row: object, reader: Reader) -> tuple[Entry, ...]:
         return (MISSING,) * len(COLUMNS)
     if not isinstance(row, Mapping):
         return (unreadable(_NO_ROW),) * len(COLUMNS)
-    # A value under a name that is not understood must not pass for one that is not there.
+    # A value under an unknown name must not pass for a missing one.
     stray = not row.keys() <= QUANTITIES.keys()
     return tuple(
         unreadable(_NO_ROW)
@@ -179,33 +178,3 @@ _NO_ROW = reading_error("wrong_shape", 'A row is written {"a": …, "alpha": …
 def values_of(rows: Sequence[HandedInRow]) -> Table:
     """The numbers of the rows, ``(rows, 4, SAMPLES)``; NaN where a cell could not be read."""
     return np.array([row.values for row in rows])
-
-
-def aligned(scores: NDArray[np.float64]) -> list[tuple[int | None, int | None]]:
-    """Pair handed-in rows with expected rows, in order, so that the scores add up to the most.
-
-    ``scores`` is ``(handed in, expected)``. A row without partner is paired with None: on the left
-    it is missing, on the right it is extra. Where nothing tells, the last rows stay unpaired.
-
-    The longest-common-subsequence recurrence with weights.
-    """
-    m, n = scores.shape
-    best = np.zeros((m + 1, n + 1))
-    for i in reversed(range(m)):
-        for j in reversed(range(n)):
-            best[i, j] = max(scores[i, j] + best[i + 1, j + 1], best[i + 1, j], best[i, j + 1])
-    pairs: list[tuple[int | None, int | None]] = []
-    i = j = 0
-    while i < m and j < n:
-        if best[i, j] == scores[i, j] + best[i + 1, j + 1]:
-            pairs.append((i, j))
-            i, j = i + 1, j + 1
-        elif best[i, j] == best[i, j + 1]:
-            pairs.append((None, j))
-            j += 1
-        else:
-            pairs.append((i, None))
-            i += 1
-    pairs.extend((k, None) for k in range(i, m))
-    pairs.extend((None, k) for k in range(j, n))
-    return pairs

@@ -74,13 +74,14 @@ def _are_numbered(rows: list[object]) -> bool:
 
 
 def _number(cell: object) -> int | None:
-    """A row's number; none for 0, and for l1, which is a length in front of five values."""
+    """The number of a row. None for 0, and for a length such as l1 in front of five values."""
     place = _place(cell)
     return place if place == LAST or (place and str(cell).strip().isdecimal()) else None
 
 
 def _place(label: object) -> int | None:
-    """Where a row with this label belongs; Python refuses to write out a number of any length."""
+    """The place of a row with this label."""
+    # Python refuses to write out a number of thousands of digits.
     is_number = isinstance(label, int | float) and abs(label) < _MOST_ROWS
     return label_place(str(label)) if is_number or isinstance(label, str) else None
 
@@ -113,7 +114,7 @@ def _by_keys(row: Mapping[str, object], names: dict[str, Header | None]) -> _Rea
 
 
 def _header(name: object, names: dict[str, Header | None]) -> Header | None:
-    """What a name says as a header; ``names`` remembers those of the rows before."""
+    """The header that a name is; ``names`` remembers those of the rows before."""
     if not isinstance(name, str):
         return None
     if name not in names:

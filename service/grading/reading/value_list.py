@@ -1,4 +1,4 @@
-"""Reading handed-in lists of values, and what is wrong with the shape of one."""
+"""A list of values as handed in, JSON or pasted text -> its entries and their numbers."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -13,7 +13,7 @@ from service.grading.feedback import (
 )
 from service.grading.reading.entry import MISSING, Entry, Reader, entry_values
 from service.grading.reading.pasted import from_grid_error, placed
-from service.grids import Cell, GridError, read_grid
+from service.grids import GridCell, GridError, read_grid
 from service.kinematics.transforms import Numbers
 
 
@@ -27,7 +27,7 @@ class StudentValues:
 
     @property
     def rounded(self) -> list[bool]:
-        """Which values may be off by what rounding does."""
+        """Which values may have been rounded."""
         return [entry.may_be_rounded for entry in self.entries]
 
 
@@ -36,10 +36,10 @@ def read_list(
 ) -> StudentValues:
     """The values of a list, one for each quantity asked for.
 
-    A column, a list of lists of one, or a row in a list of its own will do, and pasted text. Values
-    that were left off at the end are missing. Where the values are those of a ``planar`` answer,
-    one 0 more, as in [x, y, 0], is left aside and said to be. Raises UnreadableAnswerError where
-    there is no list of the length asked for.
+    A list may also be a column (a list of lists of one), a row in a list of its own, or pasted
+    text. Values that were left off at the end are missing. A ``planar`` answer may have one 0 more,
+    as in [x, y, 0]: it is left aside, with a note. Raises UnreadableAnswerError where there is no
+    list of the length asked for.
     """
     if isinstance(answer, str):
         entries = _pasted(answer, quantities, reader, planar=planar)
@@ -99,7 +99,7 @@ def _pasted(text: str, quantities: Sequence[Kind], reader: Reader, *, planar: bo
         if entries is None:
             raise UnreadableAnswerError(_from_grid_error(error, len(quantities))) from error
         return entries
-    cells: Sequence[Cell] = rows[0] if len(rows) == 1 else [row[0] for row in rows]
+    cells: Sequence[GridCell] = rows[0] if len(rows) == 1 else [row[0] for row in rows]
     is_list = len(rows) == 1 or all(len(row) == 1 for row in rows)
     left_aside = planar and len(cells) == len(quantities) + 1 and _is_zero(cells[-1].text)
     if not is_list or len(cells) > len(quantities) + left_aside:
@@ -153,9 +153,9 @@ def _lines(text: str) -> Iterator[tuple[int, str]]:
 
 
 def _split(text: str, separator: str) -> Iterator[tuple[int, str]]:
-    """What stands between separators inside the brackets around all of a text, with its place.
+    """The pieces between separators, each with its place; brackets around all are left out.
 
-    Nothing where [c1 -s1, 0] might be three values, as in MATLAB.
+    No pieces where [c1 -s1, 0] might be three values, as in MATLAB.
     """
     start, end = _inside(text)
     if text[:start].strip() == "[" and _NEW_VALUE.search(text):
@@ -194,7 +194,7 @@ def _shifted(entry: Entry, by: int) -> Entry:
 # A blank and a sign with none behind it: in MATLAB's brackets a new value begins there.
 _NEW_VALUE = re.compile(r"[^\s,;(\[{*/^+-]\s+[-+−–][^\s]")
 
-# What is said of pasted tables, and what of it is worth saying of a list.
+# Refusals that speak of tables, and the sentence that a list gets in their place.
 _OF_TABLES = {
     "no_grid": "",
     "named_values": "",
@@ -212,7 +212,7 @@ _ZERO_LEFT_ASIDE = reading_note(
 
 
 def _wrong_shape(count: int, found: int) -> Finding:
-    """What a list would look like; ``found`` is how many values one too long has."""
+    """The finding that an answer is no such list; ``found`` counts the values of one too long."""
     return reading_error(
         "wrong_shape",
         f"This answer is a list of {count} values, such as [{', '.join(['…'] * count)}]"
@@ -221,7 +221,7 @@ def _wrong_shape(count: int, found: int) -> Finding:
 
 
 def _from_grid_error(error: GridError, count: int) -> Finding:
-    """Why a pasted text is no list; of rows and columns, as of a table, this does not speak."""
+    """The finding that a pasted text is no list, without a word of rows and columns."""
     finding = from_grid_error(error)
     if error.code not in _OF_TABLES:
         return finding

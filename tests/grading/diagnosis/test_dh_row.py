@@ -8,8 +8,9 @@ from service.grading.diagnosis.dh_row import WrongRow, explain_row, violated
 from service.grading.samples import SAMPLES
 from service.kinematics.dh import Convention, link_transforms
 from service.kinematics.dh_row import row
-from service.kinematics.transforms import Matrices, Numbers, rot_x, rot_y, trans
+from service.kinematics.transforms import Matrices, Numbers, rot_x, rot_y
 from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.kinematics.constructions import trans
 
 RNG = np.random.default_rng(10)
 A, ALPHA, D, THETA = ROW = RNG.uniform(0.3, 1.2, (4, SAMPLES))

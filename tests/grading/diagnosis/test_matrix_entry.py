@@ -6,12 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from service.expressions import Symbol, Vocabulary, read
+from service.expressions import AngleUnit, Symbol, Vocabulary, read
 from service.grading.diagnosis import matrix_entry
 from service.grading.diagnosis.formula_repair import WrongEntry
 from service.grading.diagnosis.wrong_value import undefined
 from service.grading.misconception import Hypothesis, explanation
-from service.grading.reading.entry import AngleUnit
 from service.grading.samples import SAMPLES, Samples
 from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
 

@@ -1,207 +1,29 @@
-"""Each misconception about a table is put into every robot and must be named in the report.
+"""Each misconception of a table is named in every robot that it changes."""
 
-Whether the table is wrong at all is decided by independent forward kinematics; a misconception that
-does not change the mechanism cannot be seen and is left out.
-"""
-
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 
 import pytest
 
-from service.grading import PartReport, Severity, Submission, grade
-from tests.frame_choice.oracle import is_equivalent
-from tests.frame_choice.robots import GIVEN, ROBOTS, Robot, TextRow, exercise
-
-A, ALPHA, D, THETA = range(4)
-COLUMNS = ("a", "alpha", "d", "theta")
-ANGLES = (ALPHA, THETA)
-
-Rows = Sequence[TextRow]
-Slip = Callable[[Robot, Rows], Iterator[Rows]]
-
-
-def report(
-    robot: Robot, rows: Rows, convention: str | None = None, unit: str = "radians"
-) -> PartReport:
-    answer = {
-        "rows": [dict(zip(COLUMNS, row, strict=True)) for row in rows],
-        "convention": convention or robot.convention,
-    }
-    degrees = {"angle_unit": "degrees"} if unit == "degrees" else {}
-    submission = Submission({"table": answer}, **degrees)  # type: ignore[arg-type]
-    return grade(exercise(robot, GIVEN), submission).parts[0]
-
-
-def codes(part: PartReport) -> set[str]:
-    cells = [message for row in part.rows for cell in row.cells for message in cell.feedback]
-    rows = [message for row in part.rows for message in row.feedback]
-    return {message.code for message in (*part.feedback, *rows, *cells)}
-
-
-def with_cell(rows: Rows, i: int, column: int, text: str) -> Rows:
-    row = tuple(text if c == column else cell for c, cell in enumerate(rows[i]))
-    return [*rows[:i], (row[0], row[1], row[2], row[3]), *rows[i + 1 :]]
-
-
-def joint_cells(robot: Robot, rows: Rows) -> Iterator[tuple[int, int, str]]:
-    """Row, column and variable of each joint."""
-    for i, variable in enumerate(robot.joints):
-        yield i, robot.column(i), variable
-
-
-def without_variable(robot: Robot, i: int, column: int, cell: str) -> str | None:
-    """What a cell is without its joint variable; None where it has none."""
-    if i >= len(robot.joints) or column != robot.column(i):
-        return None
-    rest = cell.replace(robot.joints[i], "").strip(" +")
-    return rest or "0"
-
-
-def is_constant(robot: Robot, i: int, column: int) -> bool:
-    return i >= len(robot.joints) or column != robot.column(i)
-
-
-def wrong_sign(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    for i, row in enumerate(rows):
-        for column, cell in enumerate(row):
-            if is_constant(robot, i, column):
-                yield with_cell(rows, i, column, f"-({cell})")
-
-
-def quarter_turn(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    for i, row in enumerate(rows):
-        for column in ANGLES:
-            yield with_cell(rows, i, column, f"{row[column]} + pi/2")
-
-
-def half_turn(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    for i, row in enumerate(rows):
-        for column in ANGLES:
-            yield with_cell(rows, i, column, f"{row[column]} + pi")
-
-
-def variable_missing(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    for i, column, _ in joint_cells(robot, rows):
-        rest = without_variable(robot, i, column, rows[i][column])
-        yield with_cell(rows, i, column, rest or "0")
-
-
-def variable_sign(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    for i, column, variable in joint_cells(robot, rows):
-        yield with_cell(rows, i, column, rows[i][column].replace(variable, f"(-{variable})"))
-
-
-def variable_doubled(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    for i, column, variable in joint_cells(robot, rows):
-        yield with_cell(rows, i, column, rows[i][column].replace(variable, f"2*{variable}"))
-
-
-def variable_index(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    for i, column, variable in joint_cells(robot, rows):
-        same = [q for j, q in enumerate(robot.joints) if robot.column(j) == column and j != i]
-        for other in same[:1]:
-            yield with_cell(rows, i, column, rows[i][column].replace(variable, other))
-
-
-def variable_column(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    for i, column, _ in joint_cells(robot, rows):
-        other = D if column == THETA else THETA
-        moved = with_cell(rows, i, column, rows[i][other])
-        yield with_cell(moved, i, other, rows[i][column])
-
-
-def degrees_everywhere(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    in_degrees = {"pi/2": "90", "-pi/2": "-90", "pi": "180", "-pi": "-180"}
-    changed = []
-    for row in rows:
-        cells = list(row)
-        for column in ANGLES:
-            for exact, number in in_degrees.items():
-                if cells[column] == exact:
-                    cells[column] = number
-                cells[column] = cells[column].replace(f"+{exact}", f"+{number}")
-        changed.append((cells[0], cells[1], cells[2], cells[3]))
-    yield changed
-
-
-def columns_shifted(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    """a and α of the row before, as if the conventions were mixed."""
-    link = [("0", "0"), *((row[A], row[ALPHA]) for row in rows[:-1])]
-    yield [(a, alpha, row[D], row[THETA]) for (a, alpha), row in zip(link, rows, strict=True)]
-
-
-def a_and_d_swapped(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    yield [(d, alpha, a, theta) for a, alpha, d, theta in rows]
-
-
-def alpha_and_theta_swapped(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    yield [(a, theta, d, alpha) for a, alpha, d, theta in rows]
-
-
-def rows_exchanged(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    for i in range(len(rows) - 1):
-        yield [*rows[:i], rows[i + 1], rows[i], *rows[i + 2 :]]
-
-
-def column_signs(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    """Every α has the wrong sign."""
-    yield [(a, f"-({alpha})", d, theta) for a, alpha, d, theta in rows]
-
-
-def tool_row_missing(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    if len(rows) > len(robot.joints):
-        yield rows[:-1]
-
-
-def row_missing(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    for i in range(len(robot.joints)):
-        yield [*rows[:i], *rows[i + 1 :]]
-
-
-# The misconception, and the codes that name it. Some slips are two things at once: −90° for 90° is
-# a sign and half a turn, and to mirror every α of a wrist is to reverse its joint 5.
-SLIPS: tuple[tuple[Slip, set[str]], ...] = (
-    (wrong_sign, {"sign", "half_turn"}),
-    (quarter_turn, {"quarter_turn"}),
-    (half_turn, {"half_turn", "sign"}),
-    (variable_missing, {"joint_variable_missing"}),
-    (variable_sign, {"joint_variable_sign"}),
-    (variable_doubled, {"joint_variable_doubled"}),
-    (variable_index, {"joint_variable_index"}),
-    (variable_column, {"joint_variable_column", "joint_variable_missing"}),
-    (degrees_everywhere, {"degrees_as_radians"}),
-    (columns_shifted, {"link_columns_shifted", "other_convention"}),
-    (a_and_d_swapped, {"columns_swapped"}),
-    (alpha_and_theta_swapped, {"columns_swapped"}),
-    (rows_exchanged, {"row_order"}),
-    (column_signs, {"column_sign", "sign", "joint_variable_sign"}),
-    (tool_row_missing, {"missing_tool_row"}),
-    (row_missing, {"missing_row"}),
+from service.grading import Severity
+from tests.frame_choice.misconceptions import (
+    MISCONCEPTIONS,
+    Misconception,
+    named_in_all_robots,
+    report,
 )
+from tests.frame_choice.robots import ROBOTS, Robot
 
 
 @pytest.mark.parametrize(
-    ("misconception", "names"), SLIPS, ids=lambda x: getattr(x, "__name__", "")
+    ("misconception", "names"), MISCONCEPTIONS, ids=lambda x: getattr(x, "__name__", "")
 )
 def test_a_misconception_is_named_in_every_robot_that_it_changes(
-    misconception: Slip, names: set[str], figure: Callable[[str], None]
+    misconception: Misconception, names: set[str], figure: Callable[[str], None]
 ) -> None:
-    named, missed = 0, []
-    for robot in ROBOTS:
-        for rows in misconception(robot, robot.rows):
-            plain = [list(row) for row in rows]
-            complete = len(rows) == len(robot.rows)
-            if complete and is_equivalent(robot, GIVEN, plain, robot.convention):
-                continue
-            found = codes(report(robot, rows))
-            if found & names:
-                named += 1
-            else:
-                missed.append((robot.name, rows, sorted(found)))
-    total = named + len(missed)
-    figure(f"{misconception.__name__}: named in {named} of {total}")
-    assert total
-    assert named >= 0.95 * total, missed[:6]
+    found = named_in_all_robots(misconception, names)
+    figure(f"{misconception.__name__}: named in {found.named} of {found.total}")
+    assert found.total
+    assert found.named >= 0.95 * found.total, found.missed[:6]
 
 
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)

@@ -1,6 +1,21 @@
 """Tables in frames of the student's own choice: the valid table nearest to the one handed in.
 
-``own`` reads a table: as it is or with a cell or two mended (``nearest``), as it was meant
-(``meant``), or else by the search of ``kinematics.frame_choice``. ``roles`` says which row is for
-which joint, ``mechanism`` what the reference is, ``choices`` what a student is told of the frames.
+In the order in which they are used:
+
+- ``row_roles``: which row is for which joint, and what the exercise leaves free
+- ``rounded_angles``: 1.57 read as the π/2 that it stands for
+- ``nearest_table``: the valid table nearest to such rows, found in one of three ways:
+
+  - ``few_cells``: the table as written, or with one or two cells repaired; of several repairs
+    ``slip_likelihood`` finds the likeliest
+  - ``wrong_convention_or_unit``: the intended table, if the convention or the unit was mistaken
+  - ``kinematics.frame_choice``: a search row by row; ``constants`` takes the table apart for it,
+    ``validity`` names the targets of its rows, ``base_frame`` finds a free frame 0
+
+- ``best_roles``: of several ways to pair rows and joints, the one with the nearest valid table
+
+- ``remarks``: where the student's frames are valid but not the reference's
+
+``reference`` holds the reference in the forms that the others need; ``validity`` also tests many
+tables at once.
 """

@@ -1,8 +1,8 @@
 """The valid table that a handed-in one is, or that it differs from in one cell or two.
 
 Where base, tool and directions are given, a table is valid if and only if its pose is the
-reference's wherever the joints are, and every cell moves as its own joint does and not otherwise.
-So nothing has to be searched: what a cell would have to be follows from all the others.
+reference's at all joint values, and every cell moves as its own joint does and not otherwise. So no
+search is needed: the right value of a cell follows from all the others.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -12,38 +12,40 @@ from itertools import chain
 import numpy as np
 
 from service.grading.comparison import difference
-from service.grading.joint_motion import TOLERANCE, changes, moves_with
+from service.grading.joint_motion import changes, moves_with
 from service.grading.judging.own_frames.reference import reference_frames
 from service.grading.judging.own_frames.row_roles import Role, joint_cells, motion_of
-from service.grading.judging.own_frames.slip_likelihood import unlikelihood
+from service.grading.judging.own_frames.slip_likelihood import slip_penalty
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE
 from service.grading.samples import HALF
+from service.grading.tolerances import SAME_MOTION
 from service.kinematics.cell_repairs import (
-    SAME,
-    Mend,
-    mended,
-    one_factor_mends,
-    two_factor_mends,
+    CellRepair,
+    one_factor_repairs,
+    repaired_values,
+    two_factor_repairs,
 )
 from service.kinematics.chain import Table, frames, joint_frames
 from service.kinematics.dh import Convention
-from service.kinematics.factors import Cell, factors_of
+from service.kinematics.factors import CellIndex, factors_of
 from service.kinematics.frame_choice import WRONG_CELL, departure
+from service.kinematics.tolerances import SAME_POSE
 from service.kinematics.transforms import Matrices, Numbers, inverse
 
-# Enough samples to find out which cells mend a table; what they must be is told by all.
-FEW = 3
-FEW_SAMPLES = np.r_[:FEW, HALF : HALF + FEW]
-MOST = 2
+# A subset of the samples, enough to find the cells that repair a table; their values are then
+# computed at all samples.
+SUBSET = 3
+SUBSET_SAMPLES = np.r_[:SUBSET, HALF : HALF + SUBSET]
+MAX_CELLS = 2
 
 
 @dataclass(frozen=True, slots=True)
-class FrameReading:
-    """A table read in the student's own frames: ``expected`` is ``(rows, 4, SAMPLES)``.
+class NearestTable:
+    """The valid table nearest to a handed-in one: ``expected`` is ``(rows, 4, SAMPLES)``.
 
-    ``frames`` ``(joints, samples, 4, 4)`` are where the student's frames on the joint axes lie in
-    the reference's. ``cost`` is that of ``frame_choice``: below 1 the table is valid.
+    ``frames`` ``(joints, samples, 4, 4)`` are its frames on the joint axes as seen from the
+    reference's. ``cost`` is that of ``frame_choice``: below 1 the handed-in table is valid.
     """
 
     roles: tuple[Role, ...]
@@ -54,23 +56,23 @@ class FrameReading:
 
 @dataclass(frozen=True, slots=True)
 class _Case:
-    """A table to be mended: its values, and how each cell changes with the joints if it is right.
+    """A table to be repaired.
 
-    ``table`` is ``(rows, 4, samples)``, ``motion`` ``(rows, 4, samples / 2)``; ``wrong`` are the
-    cells that are wrong whatever the others are; ``variables`` what belongs in the cells of the
-    joints' variables, in the order of the joints.
+    ``table`` is ``(rows, 4, samples)``; ``motion`` ``(rows, 4, samples / 2)`` is how each cell must
+    change with the joints; ``wrong`` are the cells that do not. ``variables`` are the joint
+    variables by their cells, in the order of the joints.
     """
 
     table: Table
     motion: Numbers
-    wrong: frozenset[Cell]
-    variables: Mapping[Cell, Numbers]
+    wrong: frozenset[CellIndex]
+    variables: Mapping[CellIndex, Numbers]
     convention: Convention
     grading: Grading
 
     @property
     def unit(self) -> float:
-        """What lengths are measured in."""
+        """The unit that poses are compared in."""
         return self.grading.exercise.length_scale
 
     @property
@@ -78,41 +80,44 @@ class _Case:
         """The reference's frames on the axes and its tool's, ``(joints + 1, SAMPLES, 4, 4)``."""
         return reference_frames(self.grading.exercise, self.convention, self.grading.samples)
 
-    def apart(self, reached: Matrices) -> Matrices:
-        """Of the frames ``(rows + 1, T, few, 4, 4)`` of T tables those on the joint axes.
+    def from_reference(self, reached: Matrices) -> Matrices:
+        """The frames on the joint axes as seen from the reference's, ``(joints, T, subset, 4, 4)``.
 
-        They are seen from the reference's, ``(joints, T, few, 4, 4)``.
+        ``reached`` ``(rows + 1, T, subset, 4, 4)`` are all the frames of T tables.
         """
         on_axes = joint_frames(reached, self.convention)[[row for row, _ in self.variables]]
-        return np.asarray(inverse(self.reference[:-1, FEW_SAMPLES])[:, None] @ on_axes)
+        return np.asarray(inverse(self.reference[:-1, SUBSET_SAMPLES])[:, None] @ on_axes)
 
 
 def nearest_by_few_cells(
     roles: tuple[Role, ...], convention: Convention, grading: Grading
-) -> FrameReading | None:
-    """The table as it is, or the valid one that differs from it in one cell or else in two.
+) -> NearestTable | None:
+    """The table as written, or the valid one that differs from it in one cell or else in two.
 
-    Of several the one that asks for the likeliest slip. None where there is none; every role must
-    have a row.
+    Of several the one that takes the likeliest slip; None if there is none. Every role must have a
+    row.
     """
     case = _case(roles, convention, grading)
-    if len(case.wrong) > MOST:
+    if len(case.wrong) > MAX_CELLS:
         return None
     if not case.wrong:
         reached = frames(case.table, convention)
         if _coincide(reached[-1], case.reference[-1], case.unit):
-            apart = case.apart(reached[:, None, FEW_SAMPLES])
-            return FrameReading(roles, case.table, apart[:, 0], 0.0)
-    mends = _mends(case)
-    return _likeliest(mends, roles, case) if mends else None
+            on_axes = case.from_reference(reached[:, None, SUBSET_SAMPLES])
+            return NearestTable(roles, case.table, on_axes[:, 0], 0.0)
+    repairs = _repairs(case)
+    return _likeliest(repairs, roles, case) if repairs else None
 
 
 def frames_from_reference(
     table: Table, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Matrices:
-    """A table's frames on the joint axes as seen from the reference's, ``(joints, few, 4, 4)``."""
+    """A table's frames on the joint axes as seen from the reference's.
+
+    ``(joints, samples, 4, 4)``, at a subset of the samples.
+    """
     case = _case(roles, convention, grading)
-    return case.apart(frames(table, convention)[:, None, FEW_SAMPLES])[:, 0]
+    return case.from_reference(frames(table, convention)[:, None, SUBSET_SAMPLES])[:, 0]
 
 
 def _case(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> _Case:
@@ -130,109 +135,112 @@ def _case(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> 
 
 def _coincide(one: Matrices, other: Matrices, unit: float) -> bool:
     """Whether frames ``(samples, 4, 4)`` are the same."""
-    off = np.abs(one - other).max(axis=0)
-    return bool(off[:3, :3].max() < SAME and off[:3, 3].max() < SAME * unit)
+    error = np.abs(one - other).max(axis=0)
+    return bool(error[:3, :3].max() < SAME_POSE and error[:3, 3].max() < SAME_POSE * unit)
 
 
-def _mends(case: _Case) -> list[Mend]:
-    """The ways to make the table valid by one cell; if there are none, by two."""
-    factors = factors_of(case.table[..., FEW_SAMPLES], case.convention, case.unit)
-    pose = _in_unit(case.reference[-1, FEW_SAMPLES], case.unit)
-    by_factor = one_factor_mends(factors, pose)
-    of_one = _fitting(by_factor, 1, case)
-    return of_one or _fitting(chain(by_factor, two_factor_mends(factors, pose)), MOST, case)
+def _repairs(case: _Case) -> list[CellRepair]:
+    """The repairs of the table by one cell; if there are none, those by two."""
+    factors = factors_of(case.table[..., SUBSET_SAMPLES], case.convention, case.unit)
+    pose = _in_unit(case.reference[-1, SUBSET_SAMPLES], case.unit)
+    by_factor = one_factor_repairs(factors, pose)
+    by_one_cell = _admissible(by_factor, 1, case)
+    if by_one_cell:
+        return by_one_cell
+    return _admissible(chain(by_factor, two_factor_repairs(factors, pose)), MAX_CELLS, case)
 
 
-def _likeliest(mends: Sequence[Mend], roles: tuple[Role, ...], case: _Case) -> FrameReading | None:
-    """The table as one of the mends makes it: the one that asks for the likeliest slip.
+def _admissible(repairs: Iterable[CellRepair], count: int, case: _Case) -> list[CellRepair]:
+    """The repairs of so many cells after which all cells move with the joints as they should.
 
-    They are taken in the order of what their frames cost, until that alone is too much.
+    Their lengths are in the table's unit.
     """
-    tables = np.repeat(case.table[:, :, None, FEW_SAMPLES], len(mends), axis=2)
-    for k, mend in enumerate(mends):
-        _fill(tables[:, :, k], mend)
-    apart = case.apart(frames(tables, case.convention))
-    departures = departure(apart.reshape(-1, *apart.shape[2:]), case.unit)
-    departures = departures.reshape(apart.shape[:2]).sum(axis=0)
-    best = None
-    for k in np.argsort(departures, kind="stable").tolist():
-        wrong = WRONG_CELL * len(mends[k].cells)
-        cost = wrong + float(departures[k])
-        if best is not None and cost >= best.cost:
-            break
-        table = _at_all_samples(mends[k].cells, case)
-        if table is None:
-            continue
-        if len(mends) > 1:
-            cost += sum(_unlikelihood(cell, table, case) for cell in mends[k].cells)
-        if best is None or cost < best.cost:
-            best = FrameReading(roles, table, apart[:, k], cost)
-    return best
-
-
-def _unlikelihood(cell: Cell, mended: Table, case: _Case) -> float:
-    """How unlikely the slip is that a mended cell stands for."""
-    angle = bool(IS_ANGLE[cell[1]])
-    right = _at_rest(mended[cell], cell, case)
-    written = None if cell in case.wrong else _at_rest(case.table[cell], cell, case)
-    return unlikelihood(written, right, angle, case.grading)
-
-
-def _at_rest(values: Numbers, cell: Cell, case: _Case) -> Numbers:
-    """A cell that moves as it should without its joint's variable, in whichever sense it has it."""
-    variable = case.variables.get(cell)
-    if variable is None:
-        return values
-    angle = IS_ANGLE[cell[1]]
-    agrees = np.abs(difference(changes(values), changes(variable), angle)).max() < TOLERANCE
-    return values - variable if agrees else values + variable
-
-
-def _fitting(mends: Iterable[Mend], count: int, case: _Case) -> list[Mend]:
-    """The mends of so many cells after which each moves with the joints as it should.
-
-    Their lengths are the table's own.
-    """
-    of_so_many = (_in_own_lengths(mend, case) for mend in mends if len(mend.cells) == count)
+    of_count = (_in_table_unit(repair, case) for repair in repairs if len(repair.cells) == count)
     return [
-        mend
-        for mend in of_so_many
-        if case.wrong <= set(mend.cells) and _moves_so(mend, case, slice(FEW))
+        repair
+        for repair in of_count
+        if case.wrong <= set(repair.cells) and _moves_rightly(repair, case, slice(SUBSET))
     ]
 
 
-def _moves_so(mend: Mend, case: _Case, chosen: slice) -> bool:
-    """Whether each value changes with the joints as its cell should."""
-    return all(
-        moves_with(value, case.motion[cell][chosen], IS_ANGLE[cell[1]])
-        for cell, value in zip(mend.cells, mend.values, strict=True)
-    )
+def _likeliest(
+    repairs: Sequence[CellRepair], roles: tuple[Role, ...], case: _Case
+) -> NearestTable | None:
+    """The table repaired, by the repair that takes the likeliest slip.
+
+    Frames near the reference's come first, and the search ends where the frames alone cost more
+    than the best repair so far.
+    """
+    tables = np.repeat(case.table[:, :, None, SUBSET_SAMPLES], len(repairs), axis=2)
+    for k, repair in enumerate(repairs):
+        _fill(tables[:, :, k], repair)
+    on_axes = case.from_reference(frames(tables, case.convention))
+    departures = departure(on_axes.reshape(-1, *on_axes.shape[2:]), case.unit)
+    departures = departures.reshape(on_axes.shape[:2]).sum(axis=0)
+    best = None
+    for k in np.argsort(departures, kind="stable").tolist():
+        cells = repairs[k].cells
+        cost = WRONG_CELL * len(cells) + float(departures[k])
+        if best is not None and cost >= best.cost:
+            break
+        table = _repaired(cells, case)
+        if table is None:
+            continue
+        if len(repairs) > 1:
+            cost += sum(_penalty(cell, table, case) for cell in cells)
+        if best is None or cost < best.cost:
+            best = NearestTable(roles, table, on_axes[:, k], cost)
+    return best
 
 
-def _at_all_samples(cells: Sequence[Cell], case: _Case) -> Table | None:
-    """The table with these cells mended, ``(rows, 4, SAMPLES)``; None where they do not mend it."""
+def _penalty(cell: CellIndex, repaired: Table, case: _Case) -> float:
+    """How unlikely the slip is that made this cell wrong."""
+    right = _constant(repaired[cell], cell, case)
+    written = None if cell in case.wrong else _constant(case.table[cell], cell, case)
+    return slip_penalty(written, right, bool(IS_ANGLE[cell[1]]), case.grading)
+
+
+def _constant(values: Numbers, cell: CellIndex, case: _Case) -> Numbers:
+    """A cell that moves as it should, less its joint's variable, whose sign may be either."""
+    variable = case.variables.get(cell)
+    if variable is None:
+        return values
+    error = np.abs(difference(changes(values), changes(variable), IS_ANGLE[cell[1]]))
+    return values - variable if error.max() < SAME_MOTION else values + variable
+
+
+def _repaired(cells: Sequence[CellIndex], case: _Case) -> Table | None:
+    """The table with these cells repaired, ``(rows, 4, SAMPLES)``; None where that fails."""
     factors = factors_of(case.table, case.convention, case.unit)
-    values = mended(factors, _in_unit(case.reference[-1], case.unit), cells)
+    values = repaired_values(factors, _in_unit(case.reference[-1], case.unit), cells)
     if values is None:
         return None
-    mend = _in_own_lengths(Mend(tuple(cells), values), case)
-    if not _moves_so(mend, case, slice(None)):
+    repair = _in_table_unit(CellRepair(tuple(cells), values), case)
+    if not _moves_rightly(repair, case, slice(None)):
         return None
     table = case.table.copy()
-    _fill(table, mend)
+    _fill(table, repair)
     return table
 
 
-def _fill(table: Table, mend: Mend) -> None:
-    """Write the values of a mend into their cells of a table ``(rows, 4, samples)``."""
-    for cell, value in zip(mend.cells, mend.values, strict=True):
+def _moves_rightly(repair: CellRepair, case: _Case, samples: slice) -> bool:
+    """Whether each value changes with the joints as its cell should."""
+    return all(
+        moves_with(value, case.motion[cell][samples], IS_ANGLE[cell[1]])
+        for cell, value in zip(repair.cells, repair.values, strict=True)
+    )
+
+
+def _fill(table: Table, repair: CellRepair) -> None:
+    """Write the values of a repair into their cells of a table ``(rows, 4, samples)``."""
+    for cell, value in zip(repair.cells, repair.values, strict=True):
         table[cell] = value
 
 
-def _in_own_lengths(mend: Mend, case: _Case) -> Mend:
-    """The same mend, its lengths no longer measured in the unit."""
-    units = [[1.0 if IS_ANGLE[column] else case.unit] for _, column in mend.cells]
-    return Mend(mend.cells, mend.values * np.array(units))
+def _in_table_unit(repair: CellRepair, case: _Case) -> CellRepair:
+    """A repair in the unit that poses are compared in, in the unit of the table."""
+    units = [[1.0 if IS_ANGLE[column] else case.unit] for _, column in repair.cells]
+    return CellRepair(repair.cells, repair.values * np.array(units))
 
 
 def _in_unit(pose: Matrices, unit: float) -> Matrices:

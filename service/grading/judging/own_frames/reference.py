@@ -1,4 +1,4 @@
-"""The reference's constants, and the regrouping of rows that both conventions share."""
+"""The reference as the grading of student's frames needs it, and the regrouping of rows."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,13 +20,13 @@ from service.kinematics.transforms import Matrices, Numbers
 
 @dataclass(frozen=True, slots=True)
 class Mechanism:
-    """The reference's constants: to each joint from the one before, and beyond the last joint.
+    """The reference's constants, at the first half of the samples (L of them).
 
-    ``joints`` is ``(n, L, 4, 4)``; ``fixed`` are the frames of the fixed rows and ``tool`` that of
-    the end effector, ``(L, 4, 4)``, seen from the last joint's frame; L is half the samples.
-    ``offsets`` ``(n, L, 4, 4)`` is what each joint's own d and θ do beside its variable. ``axes``
-    ``(n, L, 4, 4)`` are the joints' frames in the base frame, ``pose`` ``(samples, 4, 4)`` is the
-    end effector's.
+    ``joints`` ``(n, L, 4, 4)`` is the transform to each joint's frame from that of the joint
+    before. ``fixed`` are the frames of the fixed rows and ``tool`` is the end effector's, ``(L, 4,
+    4)`` each, seen from the last joint's frame. ``offsets`` ``(n, L, 4, 4)`` is the Z of the
+    constants in each joint's d and θ. ``axes`` ``(n, L, 4, 4)`` are the joints' frames in the base
+    frame; ``pose`` ``(samples, 4, 4)`` is the end effector's, at all samples.
     """
 
     joints: Matrices
@@ -79,7 +79,7 @@ def reference_values(reference: ReferenceTable, samples: Samples) -> Table:
 def reference_frames(exercise: Exercise, convention: Convention, samples: Samples) -> Matrices:
     """The reference's frames on the joint axes and its tool's: ``(joints + 1, samples, 4, 4)``.
 
-    They are the frames that a table of this convention has, whether the robot has one or not.
+    They are the frames of a table of this convention, whether the robot has such a table or not.
     """
     return samples.cached(
         ("frames", convention), lambda: _frames_on_axes(exercise, convention, samples)
@@ -94,14 +94,14 @@ def tool_pose(exercise: Exercise, samples: Samples) -> Matrices:
 
 def _frames_on_axes(exercise: Exercise, convention: Convention, samples: Samples) -> Matrices:
     robot = exercise.robot
-    own = robot.tables.get(convention)
+    table = robot.tables.get(convention)
     joints = range(len(robot.joints))
-    if own is not None:
-        reached = frames(reference_values(own, samples), convention)
+    if table is not None:
+        reached = frames(reference_values(table, samples), convention)
         on_axes = joint_frames(reached, convention)[: len(joints)]
         return np.concatenate([on_axes, reached[-1:]])
-    table = reference_values(robot.tables[robot.convention], samples)
-    factors = factors_of(table, robot.convention)
+    values = reference_values(robot.tables[robot.convention], samples)
+    factors = factors_of(values, robot.convention)
     return np.concatenate([factors.joint_frames(list(joints), convention), factors.pose[None]])
 
 
@@ -113,9 +113,9 @@ def start_frames(table: Table, convention: Convention) -> Matrices:
 
 
 def regrouped(cells: NDArray[Any], convention: Convention, fill: object) -> NDArray[Any]:
-    """Rows of a table as the products Z X that lead from each place to the next.
+    """Rows of a table as the products Z X that lead from each target to the next.
 
-    ``(rows, 4, ...)`` becomes ``(rows + 1, 4, ...)``; where the table has no cell stands ``fill``.
+    ``(rows, 4, ...)`` becomes ``(rows + 1, 4, ...)``, with ``fill`` where the table has no cell.
     """
     none = np.full((1, 2, *cells.shape[2:]), fill)
     x, z = cells[:, :2], cells[:, 2:]

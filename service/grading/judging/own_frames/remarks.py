@@ -1,4 +1,4 @@
-"""Where a student's frames are valid but not the reference's: told, so that nobody wonders."""
+"""Remarks on frames that are valid but not the reference's, so that nobody wonders."""
 
 from collections.abc import Sequence
 from itertools import compress
@@ -8,47 +8,48 @@ import numpy as np
 from service.catalogue import Exercise, Joint
 from service.grading.feedback import Finding
 from service.grading.report import Severity
-from service.kinematics.chain_match import SAME
 from service.kinematics.dh import Convention
+from service.kinematics.tolerances import SAME_POSE
 from service.kinematics.transforms import Matrices
 
 
-def choices(
-    apart: Matrices, joints: Sequence[Joint], convention: Convention, exercise: Exercise
+def remarks_on(
+    relative_poses: Matrices, joints: Sequence[Joint], convention: Convention, exercise: Exercise
 ) -> tuple[Finding, ...]:
     """One message for each frame that departs from the reference's.
 
-    ``apart`` ``(joints, samples, 4, 4)`` are the student's frames on the axes in the reference's.
+    ``relative_poses`` ``(joints, samples, 4, 4)`` are the student's frames on the axes in the
+    reference's.
     """
-    away = np.abs(apart - np.eye(4)).max(axis=1)
-    away[:, :3, 3] /= exercise.length_scale
-    departs = away.max(axis=(1, 2)) > SAME
+    error = np.abs(relative_poses - np.eye(4)).max(axis=1)
+    error[:, :3, 3] /= exercise.length_scale
+    departs = error.max(axis=(1, 2)) > SAME_POSE
     findings = []
-    for pose, joint in zip(apart[departs], compress(joints, departs), strict=True):
+    for pose, joint in zip(relative_poses[departs], compress(joints, departs), strict=True):
         frame = joint.index - 1 if convention is Convention.STANDARD else joint.index
-        told = _told(pose, frame, joint, exercise.length_scale)
-        if told:
+        departures = _departures(pose, frame, joint, exercise.length_scale)
+        if departures:
             findings.append(
                 Finding(
                     "own_frame_choice",
-                    f"You {' and '.join(told)}; that is a valid choice.",
+                    f"You {' and '.join(departures)}; that is a valid choice.",
                     severity=Severity.INFO,
                 )
             )
     return tuple(findings)
 
 
-def _told(pose: Matrices, frame: int, joint: Joint, length_scale: float) -> list[str]:
-    told = []
+def _departures(pose: Matrices, frame: int, joint: Joint, length_scale: float) -> list[str]:
+    departures = []
     rotation, origin = pose[:, :3, :3], pose[:, :3, 3]
     if (rotation[:, 2, 2] < 0).all():
-        told.append(f"turned z{frame} over")
-    if np.abs(rotation[:, 1, 0]).max() > SAME:
-        told.append(f"turned x{frame} about z{frame}")
+        departures.append(f"turned z{frame} over")
+    if np.abs(rotation[:, 1, 0]).max() > SAME_POSE:
+        departures.append(f"turned x{frame} about z{frame}")
     elif (rotation[:, 0, 0] < 0).all():
-        told.append(f"let x{frame} point the other way")
-    if np.abs(origin[:, :2]).max() > SAME * length_scale:
-        told.append(f"moved the axis of the sliding joint {joint.index} sideways")
-    elif np.abs(origin[:, 2]).max() > SAME * length_scale:
-        told.append(f"put origin {frame} elsewhere on z{frame}")
-    return told
+        departures.append(f"let x{frame} point the other way")
+    if np.abs(origin[:, :2]).max() > SAME_POSE * length_scale:
+        departures.append(f"moved the axis of the sliding joint {joint.index} sideways")
+    elif np.abs(origin[:, 2]).max() > SAME_POSE * length_scale:
+        departures.append(f"put origin {frame} elsewhere on z{frame}")
+    return departures

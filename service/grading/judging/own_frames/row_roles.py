@@ -1,4 +1,4 @@
-"""Which row of a handed-in table is for which joint."""
+"""Which row of a handed-in table is for which joint, and what the exercise leaves free."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,11 +7,27 @@ from itertools import zip_longest
 import numpy as np
 
 from service.catalogue import Joint
+from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.joint_motion import changes, joint_counts
-from service.grading.reading.table import IS_ANGLE, HandedInRow, aligned, values_of
+from service.grading.reading.table import IS_ANGLE, HandedInRow, values_of
 from service.grading.samples import SAMPLES, Samples
 from service.kinematics.chain import COLUMNS, THETA, D
+from service.kinematics.factors import CellIndex
 from service.kinematics.transforms import Numbers
+
+
+@dataclass(frozen=True, slots=True)
+class FrameFreedom:
+    """What an exercise leaves to the student, beyond the frames on the joints."""
+
+    base: bool = False
+    tool: bool = False
+    directions: bool = False
+
+
+def freedom_of(part: DhTableSpec) -> FrameFreedom:
+    """What the part leaves to the student beyond the frames on the joints."""
+    return FrameFreedom(part.base == "free", part.tool == "free", part.directions == "free")
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,12 +39,12 @@ class Role:
 
 
 def variable_column(joint: Joint) -> int:
-    """The column that the joint's variable stands in."""
+    """The column of the joint's variable."""
     return D if joint.prismatic else THETA
 
 
-def joint_cells(roles: Sequence[Role]) -> dict[tuple[int, int], Joint]:
-    """The cells that hold a joint's variable, each a row and a column, in the order of the rows."""
+def joint_cells(roles: Sequence[Role]) -> dict[CellIndex, Joint]:
+    """The cells of the joints' variables, in the order of the rows."""
     return {
         (i, variable_column(role.joint)): role.joint for i, role in enumerate(roles) if role.joint
     }
@@ -46,16 +62,16 @@ def roles_of(
     rows: Sequence[HandedInRow],
     joints: tuple[Joint, ...],
     samples: Samples,
-    wanted: int,
+    expected_rows: int,
     *,
     in_order: bool | None = None,
 ) -> tuple[Role, ...]:
-    """Which row is for which joint; ``wanted`` is how many rows the reference's table has.
+    """Which row is for which joint; the reference's table has ``expected_rows``.
 
-    As many rows as joints are taken in order, unless ``in_order`` says otherwise. Else the joint
-    variables tell: the pairing in order that meets most of them, rows left over being fixed ones.
-    Where they do not tell, and there are as many rows as wanted, these are the joints' rows and
-    then the fixed ones.
+    As many rows as joints are taken in order, unless ``in_order`` says otherwise. Otherwise the
+    joint variables decide: of the pairings in order, the one that meets most of them; the rows left
+    over are fixed ones. Where a joint's variable is in no cell of its column and the number of rows
+    is as expected, these are the joints' rows and then the fixed ones.
     """
     one_by_one = tuple(Role(row, joint) for row, joint in zip_longest(rows, joints))
     if len(rows) == len(joints) if in_order is None else in_order:
@@ -66,10 +82,40 @@ def roles_of(
     scores: Numbers = np.asarray(0.25 + holds.any(axis=1))
     for j, joint in enumerate(joints):
         scores[:, j] += holds[:, variable_column(joint), j]
-    pairs = aligned(scores)
-    told = sum(scores[i, j] > 1 for i, j in pairs if i is not None and j is not None)
-    if told < len(joints) and len(rows) == wanted:
+    pairs = pair_in_order(scores)
+    recognised = sum(scores[i, j] > 1 for i, j in pairs if i is not None and j is not None)
+    if recognised < len(joints) and len(rows) == expected_rows:
         return one_by_one
     return tuple(
         Role(None if i is None else rows[i], None if j is None else joints[j]) for i, j in pairs
     )
+
+
+def pair_in_order(scores: Numbers) -> list[tuple[int | None, int | None]]:
+    """Pair handed-in rows with expected rows, in order, so that the sum of scores is the largest.
+
+    ``scores`` is ``(handed in, expected)``. A row without partner is paired with None: on the left
+    it is missing, on the right it is extra. Of equal sums the last rows stay without partner.
+
+    The longest-common-subsequence recurrence with weights.
+    """
+    m, n = scores.shape
+    best = np.zeros((m + 1, n + 1))
+    for i in reversed(range(m)):
+        for j in reversed(range(n)):
+            best[i, j] = max(scores[i, j] + best[i + 1, j + 1], best[i + 1, j], best[i, j + 1])
+    pairs: list[tuple[int | None, int | None]] = []
+    i = j = 0
+    while i < m and j < n:
+        if best[i, j] == scores[i, j] + best[i + 1, j + 1]:
+            pairs.append((i, j))
+            i, j = i + 1, j + 1
+        elif best[i, j] == best[i, j + 1]:
+            pairs.append((None, j))
+            j += 1
+        else:
+            pairs.append((i, None))
+            i += 1
+    pairs.extend((k, None) for k in range(i, m))
+    pairs.extend((None, k) for k in range(j, n))
+    return pairs

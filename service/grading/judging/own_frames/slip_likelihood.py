@@ -1,9 +1,9 @@
-"""Which of several slips is the likelier one, where each of them alone explains a wrong table.
+"""Which of several slips is the likeliest, where each of them alone explains a wrong table.
 
-On parallel axes, and around sliding joints, one slip can often be mended in another cell than the
-one that it was made in. What speaks for a mend then: that the right value is a simple one, and that
-the slip is of a kind that students make: a sign, a value forgotten, a quarter turn, something added
-that does not belong there, a joint variable missing or misplaced.
+On parallel axes, and around sliding joints, one slip can often be repaired in another cell than the
+one that it was made in. A repair is likely if the right value is a simple one, and if the slip is
+of a kind that students make: a sign, a value forgotten, a quarter turn, something added that does
+not belong there, a joint variable missing or misplaced.
 """
 
 import numpy as np
@@ -12,42 +12,42 @@ from service.grading.comparison import difference
 from service.grading.formula_text import multiples
 from service.grading.part import Grading
 from service.grading.samples import HALF
+from service.grading.tolerances import SAME_TERM
 from service.kinematics.transforms import Numbers
 
-# Far below a wrong cell, and so that a slip of no kind weighs less than a frame that was moved.
+# Costs that are far below that of a wrong cell; an unknown slip costs less than a moved frame.
 TERM = 0.002
-NO_KNOWN_SLIP = 0.010
-SAME = 1e-6
+UNKNOWN_SLIP = 0.010
 
 # How many terms a constant counts for that is no sum of letters and a number.
 UNRELATED = 4
 
 
-def unlikelihood(written: Numbers | None, right: Numbers, angle: bool, grading: Grading) -> float:
-    """What speaks against a slip that wrote one constant ``(SAMPLES,)`` for another; 0 is least.
+def slip_penalty(written: Numbers | None, right: Numbers, angle: bool, grading: Grading) -> float:
+    """How unlikely the slip is that wrote one constant ``(SAMPLES,)`` for another; at least 0.
 
-    ``written`` is None where the cell moved otherwise than it should, or could not be read: there
-    the joint variable is what was mistaken.
+    ``written`` is None where the cell moves otherwise than it should, or could not be read: then
+    the slip is in the joint variable.
     """
-    meant = _terms(right, angle, grading)
-    simple = TERM * _count(meant)
+    right_terms = _terms(right, angle, grading)
+    penalty = TERM * _count(right_terms)
     if written is None or _is_turn(written, right, angle):
-        return simple
-    found = _terms(written, angle, grading)
-    if found == {} or _count(found) > _count(meant):
-        return simple
-    if found is not None and meant is not None and _sizes(found) == _sizes(meant):
-        return simple
-    return simple + NO_KNOWN_SLIP
+        return penalty
+    terms = _terms(written, angle, grading)
+    if terms == {} or _count(terms) > _count(right_terms):
+        return penalty
+    if terms is not None and right_terms is not None and _sizes(terms) == _sizes(right_terms):
+        return penalty
+    return penalty + UNKNOWN_SLIP
 
 
 def _is_turn(written: Numbers, right: Numbers, angle: bool) -> bool:
-    """Whether an angle is off by a quarter turn or by half of one, or has the wrong sign."""
+    """Whether an angle is wrong by a quarter turn, by half a turn, or by its sign."""
     if not angle:
         return False
     turns = [written - right + turn for turn in (np.pi / 2, np.pi, -np.pi / 2)]
-    off = np.abs(difference(np.array([*turns, written + right]), np.zeros(1), angle)).max(axis=-1)
-    return bool(off.min() < SAME)
+    error = np.abs(difference(np.array([*turns, written + right]), np.zeros(1), angle))
+    return bool(error.max(axis=-1).min() < SAME_TERM)
 
 
 # Letters with their multiples, a number under "".
@@ -55,19 +55,19 @@ _Terms = dict[str, float]
 
 
 def _terms(constant: Numbers, angle: bool, grading: Grading) -> _Terms | None:
-    """The sum that a student would write; quarter turns are left out. None where it is no such."""
+    """The constant as a sum of letters and a number, without quarter turns; None if it is none."""
     found = multiples(constant[:HALF], angle, grading.exercise, grading.samples)
     if found is None:
         return None
     letters, number = found
     if angle:
         number -= np.pi / 2 * round(number / (np.pi / 2))
-    rest = {"": float(number)} if abs(number) > SAME else {}
+    rest = {"": float(number)} if abs(number) > SAME_TERM else {}
     return {letter: float(share) for share, letter in letters} | rest
 
 
 def _count(terms: _Terms | None) -> float:
-    """How many terms a sum has; a letter counts as often as it is taken."""
+    """How many terms a sum has; 2*l1 counts as two."""
     if terms is None:
         return UNRELATED
     return sum(abs(share) if letter else 1.0 for letter, share in terms.items())

@@ -7,21 +7,20 @@ from numpy.typing import NDArray
 
 from service.catalogue import Exercise
 from service.grading.joint_motion import moves_with
-from service.grading.judging.own_frames.constants import without_motion
-from service.grading.judging.own_frames.frame_freedom import Freedom
+from service.grading.judging.own_frames.constants import without_variables
 from service.grading.judging.own_frames.reference import (
     Mechanism,
     mechanism_at,
     reference_frames,
     regrouped,
 )
-from service.grading.judging.own_frames.row_roles import Role, motion_of
+from service.grading.judging.own_frames.row_roles import FrameFreedom, Role, motion_of
 from service.grading.reading.table import IS_ANGLE
 from service.grading.samples import Samples
+from service.kinematics.candidate_rows import TargetKind
 from service.kinematics.chain import pose
-from service.kinematics.chain_match import Stop, followed
+from service.kinematics.chain_match import Target, match_tables
 from service.kinematics.dh import Convention
-from service.kinematics.fit import Place
 from service.kinematics.transforms import Matrices, Numbers
 
 
@@ -29,7 +28,7 @@ def valid_tables(
     tables: Numbers,
     roles: tuple[Role, ...],
     convention: Convention,
-    freedom: Freedom,
+    freedom: FrameFreedom,
     exercise: Exercise,
     samples: Samples,
     tolerance: float,
@@ -37,21 +36,21 @@ def valid_tables(
     """Which of many tables describe the mechanism, in whatever frames: ``(T,)``.
 
     ``tables`` is ``(T, rows, 4, samples)`` at the samples, all with the same rows for the same
-    joints. A free base is not looked into here: it counts as given.
+    joints. A free base counts as given here.
     """
     if not (freedom.tool or freedom.directions):
-        return _by_pose(tables, roles, convention, exercise, samples, tolerance)
-    own, senses = without_motion(tables, roles, samples)
+        return _valid_by_pose(tables, roles, convention, exercise, samples, tolerance)
+    constants, signs = without_variables(tables, roles, samples)
     if freedom.directions:
-        senses = np.zeros_like(senses)
+        signs = np.zeros_like(signs)
     mechanism = mechanism_at(exercise, samples)
-    stops = stops_of(roles, convention, mechanism, freedom)
-    links = np.moveaxis(regrouped(np.moveaxis(own, 0, -1), convention, 0.0), -1, 0)
-    senses = np.pad(senses, ((0, 0), (1, 0)))
-    return followed(links, senses, stops, mechanism.length_scale, tolerance)[0]
+    targets = targets_of(roles, convention, mechanism, freedom)
+    rows = np.moveaxis(regrouped(np.moveaxis(constants, 0, -1), convention, 0.0), -1, 0)
+    signs = np.pad(signs, ((0, 0), (1, 0)))
+    return match_tables(rows, signs, targets, mechanism.length_scale, tolerance)[0]
 
 
-def _by_pose(
+def _valid_by_pose(
     tables: Numbers,
     roles: tuple[Role, ...],
     convention: Convention,
@@ -59,36 +58,41 @@ def _by_pose(
     samples: Samples,
     tolerance: float,
 ) -> NDArray[np.bool_]:
-    """The same where base, tool and directions are given: then the pose tells (see ``nearest``)."""
+    """``valid_tables`` where base, tool and directions are given: the pose decides (``few_cells``).
+
+    The tolerance is relative to the reach of the arm.
+    """
     moves = moves_with(tables, motion_of(roles, samples), IS_ANGLE[:, None])
     valid = np.asarray(moves.all(axis=(1, 2)))
-    wanted = reference_frames(exercise, convention, samples)[-1]
-    reach = max(exercise.length_scale, float(np.abs(wanted[:, :3, 3]).max()))
-    # Most fail at the first sample already.
+    expected = reference_frames(exercise, convention, samples)[-1]
+    reach = max(exercise.length_scale, float(np.abs(expected[:, :3, 3]).max()))
+    # Most tables fail at the first sample already.
     for chosen in (slice(0, 1), slice(None)):
         left = np.flatnonzero(valid)
         if left.size:
             reached = pose(np.moveaxis(tables[left][..., chosen], 0, 2), convention)
-            off = np.abs(reached - wanted[chosen])
-            off[..., :3, 3] /= reach
-            valid[left] = off.max(axis=(1, 2, 3)) <= tolerance
+            error = np.abs(reached - expected[chosen])
+            error[..., :3, 3] /= reach
+            valid[left] = error.max(axis=(1, 2, 3)) <= tolerance
     return valid
 
 
-def stops_of(
-    roles: tuple[Role, ...], convention: Convention, mechanism: Mechanism, freedom: Freedom
-) -> list[Stop]:
-    """Where each row leads: joint axes, frames of fixed rows, and in the end the tool."""
-    stops: list[Stop] = []
+def targets_of(
+    roles: tuple[Role, ...], convention: Convention, mechanism: Mechanism, freedom: FrameFreedom
+) -> list[Target]:
+    """What each row leads to: joint axes, frames of fixed rows, and in the end the tool."""
+    targets: list[Target] = []
     links = iter(mechanism.joints)
     fixed = iter(mechanism.fixed)
     for i, role in enumerate(roles):
         if role.joint is not None:
-            kind = Place.PRISMATIC if role.joint.prismatic else Place.REVOLUTE
-            stops.append(Stop(kind, next(links)))
+            kind = TargetKind.PRISMATIC if role.joint.prismatic else TargetKind.REVOLUTE
+            targets.append(Target(kind, next(links)))
         else:
-            stops.append(Stop(Place.FIXED, _fixed_frame(i, roles, convention, mechanism, fixed)))
-    return [*stops, Stop(Place.OPEN if freedom.tool else Place.TOOL, mechanism.tool)]
+            frame = _fixed_frame(i, roles, convention, mechanism, fixed)
+            targets.append(Target(TargetKind.FIXED, frame))
+    tool = TargetKind.OPEN if freedom.tool else TargetKind.TOOL
+    return [*targets, Target(tool, mechanism.tool)]
 
 
 def _fixed_frame(
@@ -98,9 +102,10 @@ def _fixed_frame(
     mechanism: Mechanism,
     fixed: Iterator[Matrices],
 ) -> Matrices | None:
-    """The frame that a fixed row behind the last joint should start from, where that is known.
+    """The frame that a fixed row after the last joint should start from, where that is known.
 
-    Of a modified table's last row only Z is left for the last step, so its z lies on the tool's.
+    In the modified convention Z of the last row alone leads from there to the tool, so that z there
+    lies on the tool's z.
     """
     if any(role.joint for role in roles[i:]):
         return None

@@ -14,9 +14,6 @@ from service.grading.samples import Samples
 from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
 
-# Four figures are lost when rounded angles are multiplied out over a whole arm.
-TOLERANCE = 1e-2
-
 
 @dataclass(frozen=True, slots=True)
 class WrittenTable:

@@ -1,33 +1,30 @@
-"""The table that a student meant who mistook the convention, or the unit of all angles.
+"""The intended table of a student who mistook the convention, or the unit of all angles.
 
-Such a slip makes most cells wrong at once. What was meant is known all the same, and so is what
-each cell should be: nothing has to be guessed from which cells agree with some valid table.
+Such a slip makes most cells wrong at once. The intended table is known all the same, and so is the
+right value of each cell: nothing has to be guessed from the cells that agree with some valid table.
 """
 
 import numpy as np
 
-from service.grading.judging.own_frames.few_cells import FrameReading, frames_from_reference
-from service.grading.judging.own_frames.frame_freedom import Freedom
-from service.grading.judging.own_frames.row_roles import Role
+from service.grading.judging.own_frames.few_cells import NearestTable, frames_from_reference
+from service.grading.judging.own_frames.row_roles import FrameFreedom, Role
 from service.grading.judging.own_frames.validity import valid_tables
 from service.grading.judging.own_frames.written_table import (
     MISCONCEPTIONS,
-    TOLERANCE,
     WrittenTable,
     written_table,
 )
 from service.grading.misconception import hypotheses_of
 from service.grading.part import Grading
+from service.grading.tolerances import INTENDED_POSE, UNCHANGED_CELL
 from service.kinematics.chain import Table, modified_rows, standard_rows
 from service.kinematics.dh import Convention
 from service.kinematics.frame_choice import WRONG_CELL
 
-SAME = 1e-9
 
-
-def read_as_meant(
-    roles: tuple[Role, ...], convention: Convention, freedom: Freedom, grading: Grading
-) -> FrameReading | None:
+def nearest_as_intended(
+    roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
+) -> NearestTable | None:
     """The table without one basic misconception, if that makes it valid; else None."""
     values = np.array([role.row.values for role in roles if role.row])
     if len(values) < len(roles) or not np.isfinite(values).all():
@@ -36,14 +33,15 @@ def read_as_meant(
     handed_in = written_table(values, convention, None, exercise.robot.joints, samples)
     for repaired in hypotheses_of(handed_in, MISCONCEPTIONS):
         table = repaired.answer
-        valid = valid_tables(
-            table.values[None], roles, table.convention, freedom, exercise, samples, TOLERANCE
+        [valid] = valid_tables(
+            table.values[None], roles, table.convention, freedom, exercise, samples, INTENDED_POSE
         )
-        meant = in_convention(table, convention) if valid[0] else None
-        if meant is not None:
-            apart = frames_from_reference(meant, roles, convention, grading)
-            wrong = int(np.count_nonzero(np.abs(meant - values).max(axis=-1) > SAME))
-            return FrameReading(roles, meant, apart, WRONG_CELL * max(1, wrong))
+        intended = in_convention(table, convention) if valid else None
+        if intended is not None:
+            frames = frames_from_reference(intended, roles, convention, grading)
+            changed = np.abs(intended - values).max(axis=-1) > UNCHANGED_CELL
+            cost = WRONG_CELL * max(1, int(np.count_nonzero(changed)))
+            return NearestTable(roles, intended, frames, cost)
     return None
 
 

@@ -1,0 +1,34 @@
+"""The values of an exercise file, as pydantic checks them.
+
+A formula is text in the students' own notation (``"l1 + 0.1"``, ``"-90deg"``); whether it can be
+read is checked in ``compile.py``, where the exercise's symbols are known.
+"""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StrictInt, StringConstraints
+
+
+def _no_truth_value(value: object) -> object:
+    if isinstance(value, bool):
+        raise ValueError(f"is {str(value).lower()}; write a number or a formula")
+    return value
+
+
+NotBool = BeforeValidator(_no_truth_value)
+Formula = Annotated[str | float, NotBool]
+Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
+Identifier = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9]*(?:[-_][a-z0-9]+)*$")]
+Choice = Literal["given", "free"]
+FrameName = Literal["base", "tool"] | Annotated[StrictInt, Field(ge=0)]
+
+Triple = tuple[Formula, Formula, Formula]
+Four = tuple[Formula, Formula, Formula, Formula]
+Homogeneous = tuple[Four, Four, Four, Four]
+Screw = tuple[Formula, Formula, Formula, Formula, Formula, Formula]
+
+
+class StrictModel(BaseModel):
+    """A table of the file: a key that it does not have is a fault."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)

@@ -1,0 +1,149 @@
+"""What every part of an exercise has, and what the program asks of its kind.
+
+The kinds themselves are the modules of ``parts/``.
+"""
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from pydantic import Field, model_validator
+
+from service.catalogue.fields import FrameName, Identifier, NotBool, StrictModel, Text
+from service.catalogue.formulas import FieldError, WrittenFormulas
+from service.catalogue.robot import Robot
+from service.catalogue.screw_robot import Reference
+from service.catalogue.shapes import AnswerShape
+from service.kinematics.dh import Convention
+
+
+class PartSpec(StrictModel, ABC):
+    """A part of an exercise, as a tutor writes it.
+
+    A kind is a subclass with ``kind: Literal["its_name"]``. It says by class variables how its
+    parts are used:
+
+    - ``answer_fields``: the fields that may hold the answer itself, in place of the robot;
+    - ``can_be_followed``: whether its answer is a chain that a later part can follow from;
+    - ``holds_links``: whether its answer holds the link transforms;
+    - ``compared_by_formulas``: whether two parts may have one answer and still be two tasks.
+    """
+
+    answer_fields: ClassVar[tuple[str, ...]] = ("expected",)
+    can_be_followed: ClassVar[bool] = False
+    holds_links: ClassVar[bool] = False
+    compared_by_formulas: ClassVar[bool] = False
+
+    id: Annotated[
+        Identifier,
+        Field(
+            description="The name of the part in answers and reports.",
+            examples=["table"],
+            json_schema_extra={
+                "advice": "write small letters and digits, with - or _ between them, such as "
+                '"link-2"'
+            },
+        ),
+    ]
+    title: Text = Field(description="Its title.", examples=["Denavit-Hartenberg table"])
+    prompt: str = Field(
+        "",
+        description="The task, in one sentence or more.",
+        examples=["Give the standard DH table, one row for each joint."],
+    )
+    points: Annotated[float, Field(gt=0, le=1000), NotBool] = Field(
+        1.0, description="The points for a right answer; its rows share them.", examples=[12]
+    )
+    all_or_nothing: bool = Field(
+        False, description="Whether an answer earns its points only when all of it is right."
+    )
+    follows: Identifier | None = Field(
+        None,
+        description="The id of an earlier part that this one builds on. An answer that is wrong "
+        "for the robot, but right for the student's own answer to that part, earns its points.",
+        examples=["table"],
+    )
+    follows_from: Annotated[float, Field(ge=0, le=1), NotBool] = Field(
+        0.5,
+        description="The share of its points that the student's answer to the earlier part must "
+        "have earned before this part may follow from it.",
+        examples=[0.75],
+    )
+    if TYPE_CHECKING:
+        kind: str
+
+    def formulas(self) -> WrittenFormulas | None:
+        """The formulas by which the file says what is right; None where the robot says it."""
+        return None
+
+    def check_reference(self, field: str, reference: Reference | None) -> None:
+        """The robot can say what is right in the part at ``field``. Raises FieldError."""
+        if reference is None:
+            raise FieldError(
+                f"{field}.expected",
+                "is required here: the exercise has no robot that would tell it",
+            )
+
+    @abstractmethod
+    def shape(self, reference: Reference | None) -> AnswerShape:
+        """What an answer must look like."""
+
+
+class PosePartSpec(PartSpec):
+    """Something that a pose of the robot has: that of frame ``to`` seen from frame ``from``.
+
+    A part of another robot, or of none, has the answer itself in one of its ``answer_fields``.
+    """
+
+    start: FrameName = Field(
+        "base",
+        alias="from",
+        description='The frame that the pose is seen from: "base", "tool", or a number of the '
+        "robot's own table.",
+        examples=[2],
+    )
+    to: FrameName = Field("tool", description="The frame whose pose is asked for.", examples=[3])
+    home: bool = Field(False, description="Whether all joint variables are 0.")
+
+    def check_reference(self, field: str, reference: Reference | None) -> None:
+        """The robot has both frames. Raises FieldError."""
+        super().check_reference(field, reference)
+        assert reference is not None
+        for name, frame in (("from", self.start), ("to", self.to)):
+            if not reference.has_frame(frame):
+                known = ", ".join(map(str, reference.frames))
+                raise FieldError(
+                    f"{field}.{name}", f"the robot has no frame {frame!r}; it has {known}"
+                )
+
+    @model_validator(mode="after")
+    def _is_given_once(self) -> "PosePartSpec":
+        given = [name for name in self.answer_fields if getattr(self, name)]
+        names = {"start": "from", "to": "to", "home": "home"}
+        further = [name for field, name in names.items() if field in self.model_fields_set]
+        if given and given[1:] + further:
+            raise ValueError(f"{given[0]} says what is right; leave {(given[1:] + further)[0]} out")
+        return self
+
+
+class TablePartSpec(PartSpec):
+    """Something that a DH table of the robot has; a robot given by screws has no table."""
+
+    answer_fields: ClassVar[tuple[str, ...]] = ()
+    can_be_followed: ClassVar[bool] = True
+
+    if TYPE_CHECKING:
+        convention: Convention | str
+
+    def check_reference(self, field: str, reference: Reference | None) -> None:
+        """The robot has a table, in the convention that is asked for. Raises FieldError."""
+        if not isinstance(reference, Robot):
+            raise FieldError(
+                f"{field}.kind",
+                f'a "{self.kind}" needs a robot with a table; write [robot] table',
+            )
+        if isinstance(self.convention, Convention) and self.convention not in reference.tables:
+            raise FieldError(
+                f"{field}.convention",
+                f"the robot has no {self.convention.value} table: its row 1 moves the base frame, "
+                f"and a standard table begins on the axis of joint 1",
+            )

@@ -1,0 +1,74 @@
+"""Answer kind ``dh_row``: the row of a transform in the DH table, or that it has none."""
+
+from dataclasses import replace
+from typing import ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from service.catalogue.fields import Homogeneous
+from service.catalogue.formulas import (
+    EXACT,
+    FieldError,
+    WrittenFormulas,
+    check_transform,
+    transform_of,
+)
+from service.catalogue.part import PartSpec
+from service.catalogue.screw_robot import Reference
+from service.catalogue.shapes import AnswerShape, clauses, listed
+from service.kinematics.chain import COLUMNS
+from service.kinematics.dh import Convention
+from service.kinematics.dh_row import dh1_residual, dh2_residual
+from service.kinematics.transforms import Numbers
+
+
+class DhRowShape(AnswerShape):
+    """What a DH row must look like; `{"none": true}` says that there is none."""
+
+    posted: ClassVar[str] = (
+        '`{"a", "alpha", "d", "theta"}`, or `{"none": true}` where the transform has none'
+    )
+
+    columns: list[str]
+    convention: Convention
+
+    def in_words(self) -> str:
+        """The shape in one sentence."""
+        return clauses(
+            f"one row with {listed(self.columns)}, or none", f"{self.convention} convention"
+        )
+
+
+class DhRowSpec(PartSpec):
+    """The row of a transform in the DH table, or that it has none."""
+
+    answer_fields: ClassVar[tuple[str, ...]] = ("transform",)
+    # Transforms without a row have one answer, and are two tasks all the same.
+    compared_by_formulas: ClassVar[bool] = True
+
+    kind: Literal["dh_row"]
+    convention: Convention = Field(
+        Convention.STANDARD, description='"standard" (distal) or "modified" (proximal).'
+    )
+    transform: Homogeneous = Field(description="The transform by its entries, row by row.")
+
+    def formulas(self) -> WrittenFormulas:
+        """The entries of the transform."""
+        return replace(transform_of("transform", self.transform), check=self._check)
+
+    def _check(self, field: str, numbers: Numbers) -> None:
+        """The two DH conditions hold for all values of the symbols or fail for all."""
+        check_transform(field, numbers)
+        transform = np.moveaxis(numbers, -1, 0)
+        for condition in (dh1_residual, dh2_residual):
+            residual = condition(transform, self.convention)
+            holds = np.abs(residual) < EXACT
+            if holds.any() and not holds.all():
+                raise FieldError(
+                    field, "has a DH row for some values of its symbols and none for others"
+                )
+
+    def shape(self, _: Reference | None) -> DhRowShape:
+        """One row, or none."""
+        return DhRowShape(columns=list(COLUMNS), convention=self.convention)

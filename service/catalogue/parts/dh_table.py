@@ -1,0 +1,91 @@
+"""Answer kind ``dh_table``: a Denavit-Hartenberg table of the robot."""
+
+from typing import ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from service.catalogue.fields import Choice
+from service.catalogue.part import TablePartSpec
+from service.catalogue.robot import Robot
+from service.catalogue.screw_robot import Reference
+from service.catalogue.shapes import AnswerShape, choices, clauses, listed
+from service.kinematics.chain import COLUMNS
+from service.kinematics.dh import Convention
+
+
+class DhTableShape(AnswerShape):
+    """What a table must look like, and whose choice its frames are."""
+
+    posted: ClassVar[str] = '`{"rows": [{"a", "alpha", "d", "theta"}, …]}`'
+
+    columns: list[str]
+    rows: list[str] = Field(
+        description="Row labels in order: joint numbers, `e` for the end effector. Where either "
+        "convention will do, those of the longer table."
+    )
+    convention: Convention | Literal["either"]
+    frames: Choice
+    base: Choice
+    tool: Choice
+    directions: Choice
+
+    def in_words(self) -> str:
+        """The shape in one sentence."""
+        return clauses(
+            f"a table with the rows {listed(self.rows)} and the columns {listed(self.columns)}",
+            f"{self.convention} convention",
+            *choices(
+                frames=self.frames, base=self.base, tool=self.tool, directions=self.directions
+            ),
+        )
+
+
+class DhTableSpec(TablePartSpec):
+    """The Denavit-Hartenberg table of the robot.
+
+    Where ``frames`` are the student's choice, the base frame, the tool frame and the joints'
+    positive directions may be, too.
+    """
+
+    kind: Literal["dh_table"]
+    convention: Convention | Literal["either"] = Field(
+        description='"standard" (distal) or "modified" (proximal); with "either" the answer says '
+        "which it uses.",
+    )
+    frames: Choice = Field(
+        "given",
+        description='Whose choice the frames on the joints are: "given" accepts those of the '
+        'reference only, "free" every valid choice.',
+    )
+    base: Choice = Field("given", description="Whose choice the base frame is.")
+    tool: Choice = Field("given", description="Whose choice the tool frame is.")
+    directions: Choice = Field(
+        "given", description="Whose choice the positive direction of each joint is."
+    )
+
+    def shape(self, reference: Reference | None) -> DhTableShape:
+        """The columns and the row labels of the table."""
+        assert isinstance(reference, Robot)
+        if isinstance(self.convention, Convention):
+            labels = reference.tables[self.convention].labels
+        else:
+            labels = max((table.labels for table in reference.tables.values()), key=len)
+        return DhTableShape(
+            columns=list(COLUMNS),
+            rows=list(labels),
+            convention=self.convention,
+            frames=self.frames,
+            base=self.base,
+            tool=self.tool,
+            directions=self.directions,
+        )
+
+    @model_validator(mode="after")
+    def _choices_go_together(self) -> "DhTableSpec":
+        free = [name for name in ("base", "tool", "directions") if getattr(self, name) == "free"]
+        if self.frames == "given" and free:
+            raise ValueError(
+                f'{free[0]} = "free" says nothing where frames = "given"; '
+                f'write frames = "free" or leave {free[0]} out'
+            )
+        return self

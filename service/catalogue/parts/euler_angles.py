@@ -1,0 +1,56 @@
+"""Answer kind ``euler_angles``: three angles that describe a rotation."""
+
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from service.catalogue.fields import Triple
+from service.catalogue.formulas import WrittenFormulas, list_of
+from service.catalogue.part import PosePartSpec
+from service.catalogue.screw_robot import Reference
+from service.catalogue.shapes import ListShape, list_shape
+
+
+class EulerAnglesSpec(PosePartSpec):
+    """Three angles that describe a rotation; every triple of the same rotation is right."""
+
+    kind: Literal["euler_angles"]
+    sequence: Literal[
+        "RPY", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX", "XYX", "XZX", "YXY", "YZY", "ZXZ", "ZYZ"
+    ] = Field(
+        description='The axes in the order of the turns. "RPY" is Rz(α) Ry(β) Rx(γ), answered as '
+        'α, β, γ: the same as "ZYX" about moving axes.'
+    )
+    axes: Literal["moving", "fixed"] = Field(
+        "moving", description="Whether the axes are of the moving frame or of the fixed one."
+    )
+    expected: Triple | None = Field(
+        None,
+        description="One triple of angles that is right, in place of the robot's orientation.",
+        examples=[["phi", "theta", "psi"]],
+    )
+
+    @property
+    def turns(self) -> str:
+        """The sequence by its three axes."""
+        return "ZYX" if self.sequence == "RPY" else self.sequence
+
+    def formulas(self) -> WrittenFormulas | None:
+        """The angles, if they are given."""
+        if self.expected is None:
+            return None
+        return list_of("expected[{j}]", self.expected, ["angle"] * 3)
+
+    def shape(self, _: Reference | None) -> ListShape:
+        """A list of three angles, with the axes."""
+        listed = list_shape((f"about {axis.lower()}", "angle") for axis in self.turns)
+        return listed.model_copy(update={"sequence": self.sequence, "axes": self.axes})
+
+    @model_validator(mode="after")
+    def _rpy_is_about_moving_axes(self) -> "EulerAnglesSpec":
+        if self.sequence == "RPY" and self.axes == "fixed":
+            raise ValueError(
+                'sequence "RPY" is answered as Rz(α) Ry(β) Rx(γ); write sequence = "XYZ" with '
+                'axes = "fixed" for roll, pitch, yaw in this order'
+            )
+        return self

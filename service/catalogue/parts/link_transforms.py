@@ -1,0 +1,58 @@
+"""Answer kind ``link_transforms``: the transforms that the rows of a table stand for."""
+
+from typing import ClassVar, Literal
+
+from pydantic import Field
+
+from service.catalogue.fields import Choice
+from service.catalogue.part import TablePartSpec
+from service.catalogue.robot import Robot
+from service.catalogue.screw_robot import Reference
+from service.catalogue.shapes import AnswerShape, choices, clauses, listed, numbered
+from service.kinematics.dh import Convention
+
+
+class LinkTransformsShape(AnswerShape):
+    """A list of 4×4 matrices, one for each row of the table; report rows are "A1.1" and so on."""
+
+    posted: ClassVar[str] = "a list of matrices"
+
+    matrices: list[str]
+    rows: list[str]
+    columns: list[str]
+    convention: str
+    frames: str
+
+    def in_words(self) -> str:
+        """The shape in one sentence."""
+        return clauses(
+            f"a list of the matrices {listed(self.matrices)}, each of {len(self.rows)} rows and "
+            f"{len(self.columns)} columns",
+            f"{self.convention} convention",
+            *choices(frames=self.frames),
+        )
+
+
+class LinkTransformsSpec(TablePartSpec):
+    """The link transforms A_1 … A_n, one for each row of the robot's table."""
+
+    holds_links: ClassVar[bool] = True
+
+    kind: Literal["link_transforms"]
+    convention: Convention = Field(description='"standard" (distal) or "modified" (proximal).')
+    frames: Choice = Field(
+        "given",
+        description='Whose choice the frames on the joints are: with "free" the transforms may be '
+        "those of any valid table, or of the student's own where the part follows one.",
+    )
+
+    def shape(self, reference: Reference | None) -> LinkTransformsShape:
+        """The names of the matrices and their size."""
+        assert isinstance(reference, Robot)
+        return LinkTransformsShape(
+            matrices=[f"A{row}" for row in reference.tables[self.convention].labels],
+            rows=numbered(4),
+            columns=numbered(4),
+            convention=self.convention,
+            frames=self.frames,
+        )

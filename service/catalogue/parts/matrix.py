@@ -1,0 +1,61 @@
+"""Answer kind ``matrix``: a matrix of any meaning, such as a Jacobian."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from service.catalogue.fields import Formula
+from service.catalogue.formulas import WrittenFormulas, matrix_of
+from service.catalogue.part import PartSpec
+from service.catalogue.screw_robot import Reference
+from service.catalogue.shapes import MatrixShape, matrix_shape
+from service.expressions import Kind
+
+
+class MatrixSpec(PartSpec):
+    """A matrix of any meaning, up to 6×6."""
+
+    kind: Literal["matrix"]
+    expected: Annotated[
+        list[Annotated[list[Formula], Field(min_length=1, max_length=6)]],
+        Field(min_length=1, max_length=6),
+    ] = Field(
+        description="The entries, row by row.",
+        examples=[[["0", "-omega3"], ["omega3", "0"]]],
+    )
+    quantity: Kind | list[Kind] = Field(
+        "number",
+        description="What the entries are, or a list with what each column is.",
+        examples=[["number", "length"]],
+    )
+
+    @property
+    def quantities(self) -> tuple[tuple[Kind, ...], ...]:
+        """What each entry is."""
+        columns = len(self.expected[0])
+        row = (self.quantity,) * columns if isinstance(self.quantity, str) else self.quantity
+        return (tuple(row),) * len(self.expected)
+
+    def formulas(self) -> WrittenFormulas:
+        """The entries."""
+        return matrix_of("expected", self.expected, self.quantities)
+
+    def shape(self, _: Reference | None) -> MatrixShape:
+        """A matrix of the size of the one that is expected."""
+        return matrix_shape(len(self.expected), len(self.expected[0]))
+
+    @model_validator(mode="after")
+    def _is_rectangular(self) -> "MatrixSpec":
+        columns = len(self.expected[0])
+        for i, row in enumerate(self.expected):
+            if len(row) != columns:
+                raise ValueError(
+                    f"row {i + 1} of expected has {len(row)} entries, row 1 has {columns}; write "
+                    f"rows of one length"
+                )
+        if not isinstance(self.quantity, str) and len(self.quantity) != columns:
+            raise ValueError(
+                f"quantity names {len(self.quantity)} columns, but expected has {columns}; write "
+                f"one for all or one for each column"
+            )
+        return self

@@ -1,0 +1,49 @@
+"""Answer kind ``position``: the coordinates of a point, such as the end effector's."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, StringConstraints, model_validator
+
+from service.catalogue.fields import Formula
+from service.catalogue.formulas import WrittenFormulas, list_of
+from service.catalogue.part import PosePartSpec
+from service.catalogue.screw_robot import Reference
+from service.catalogue.shapes import ListShape, list_shape
+
+
+class PositionSpec(PosePartSpec):
+    """The coordinates of a point: of a frame's origin, or of a point that the file gives."""
+
+    kind: Literal["position"]
+    coordinates: Annotated[str, StringConstraints(pattern=r"^(x?y?z?)$", min_length=2)] = Field(
+        "xyz",
+        description="The coordinates that are asked for, in this order.",
+        examples=["xy"],
+        json_schema_extra={
+            "advice": 'write the coordinates that are asked for, such as "xy" or "xyz"'
+        },
+    )
+    expected: list[Formula] | None = Field(
+        None,
+        description="The coordinates themselves, in place of the robot's.",
+        examples=[["l1 + l2", "0", "d1"]],
+    )
+
+    def formulas(self) -> WrittenFormulas | None:
+        """The coordinates, if they are given."""
+        if self.expected is None:
+            return None
+        return list_of("expected[{j}]", self.expected, ["length"] * len(self.expected))
+
+    def shape(self, _: Reference | None) -> ListShape:
+        """A list of lengths."""
+        return list_shape((letter, "length") for letter in self.coordinates)
+
+    @model_validator(mode="after")
+    def _one_for_each(self) -> "PositionSpec":
+        if self.expected is not None and len(self.expected) != len(self.coordinates):
+            raise ValueError(
+                f"expected has {len(self.expected)} entries, but coordinates are "
+                f"{self.coordinates!r}; write one for each"
+            )
+        return self

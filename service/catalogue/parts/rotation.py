@@ -1,0 +1,51 @@
+"""Answer kind ``rotation``: a rotation matrix."""
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from service.catalogue.fields import Formula, StrictModel, Triple
+from service.catalogue.formulas import ROTATION, WrittenFormulas, check_rotation, list_of, matrix_of
+from service.catalogue.part import PosePartSpec
+from service.catalogue.screw_robot import Reference
+from service.catalogue.shapes import MatrixShape, matrix_shape
+
+
+class StepSpec(StrictModel):
+    """One turn of a composite rotation."""
+
+    axis: Literal["x", "y", "z"] = Field(description="The axis of the turn.")
+    angle: Formula = Field(description="Its angle.", examples=["theta1"])
+    about: Literal["fixed", "moving"] = Field(
+        "moving", description="Whether the axis is of the fixed frame or of the moving one."
+    )
+
+
+class RotationSpec(PosePartSpec):
+    """A rotation matrix, 3×3: of a pose, by its entries, or by the turns that it is made of."""
+
+    answer_fields: ClassVar[tuple[str, ...]] = ("expected", "steps")
+
+    kind: Literal["rotation"]
+    expected: tuple[Triple, Triple, Triple] | None = Field(
+        None, description="The rotation by its entries, row by row, in place of the robot's."
+    )
+    steps: Annotated[list[StepSpec], Field(min_length=1, max_length=6)] | None = Field(
+        None,
+        description="The rotation by its turns, in the order in which they are made, in place of "
+        "the robot's.",
+        examples=[[{"axis": "x", "angle": "phi"}, {"axis": "z", "angle": "psi", "about": "fixed"}]],
+    )
+
+    def formulas(self) -> WrittenFormulas | None:
+        """The entries or the angles of the turns, if they are given."""
+        if self.expected is not None:
+            return matrix_of("expected", self.expected, ROTATION, check_rotation)
+        if self.steps is not None:
+            angles = [step.angle for step in self.steps]
+            return list_of("steps[{j}].angle", angles, ["angle"] * len(angles))
+        return None
+
+    def shape(self, _: Reference | None) -> MatrixShape:
+        """A 3×3 matrix."""
+        return matrix_shape(3, 3)

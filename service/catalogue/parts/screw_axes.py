@@ -1,0 +1,63 @@
+"""Answer kind ``screw_axes``: the screw axis of each joint."""
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from service.catalogue.fields import Choice, Screw
+from service.catalogue.formulas import WrittenFormulas, screws_of
+from service.catalogue.part import PartSpec
+from service.catalogue.screw_robot import Reference
+from service.catalogue.shapes import AnswerShape, choices, clauses, listed, numbered
+
+
+class ScrewAxesShape(AnswerShape):
+    """What a list of screw axes (ω; v) must look like: one six-vector for each row."""
+
+    posted: ClassVar[str] = "a list of six-vectors (ω; v)"
+
+    columns: list[str]
+    rows: list[str]
+    frame: Literal["space", "body"]
+    directions: Choice
+
+    def in_words(self) -> str:
+        """The shape in one sentence."""
+        return clauses(
+            f"a list of screw axes, {len(self.columns)} numbers (ω; v) for each of "
+            f"{listed(self.rows)}",
+            f"{self.frame} frame",
+            *choices(directions=self.directions),
+        )
+
+
+class ScrewAxesSpec(PartSpec):
+    """The screw axis (ω; v) of each joint with all joint variables 0."""
+
+    kind: Literal["screw_axes"]
+    frame: Literal["space", "body"] = Field(
+        description='Where the axes are seen from: the base frame ("space") or the tool frame '
+        '("body").'
+    )
+    directions: Choice = Field(
+        "given", description='Whose choice the directions are: with "free" an axis may be reversed.'
+    )
+    expected: Annotated[list[Screw], Field(min_length=1, max_length=12)] | None = Field(
+        None,
+        description="The axes themselves, in place of the robot's.",
+        examples=[[["0", "0", "1", "0", "-l1", "0"]]],
+    )
+
+    def formulas(self) -> WrittenFormulas | None:
+        """The axes, if they are given."""
+        return None if self.expected is None else screws_of("expected", self.expected)
+
+    def shape(self, reference: Reference | None) -> ScrewAxesShape:
+        """A list of six-vectors."""
+        if self.expected is not None:
+            rows = numbered(len(self.expected))
+        else:
+            rows = [str(joint.index) for joint in reference.joints] if reference else []
+        return ScrewAxesShape(
+            columns=numbered(6), rows=rows, frame=self.frame, directions=self.directions
+        )

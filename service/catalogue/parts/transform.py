@@ -1,0 +1,30 @@
+"""Answer kind ``transform``: a homogeneous transform, such as the pose of the end effector."""
+
+from typing import ClassVar, Literal
+
+from pydantic import Field
+
+from service.catalogue.fields import Homogeneous
+from service.catalogue.formulas import WrittenFormulas, transform_of
+from service.catalogue.part import PosePartSpec
+from service.catalogue.screw_robot import Reference
+from service.catalogue.shapes import MatrixShape, matrix_shape
+
+
+class TransformSpec(PosePartSpec):
+    """A homogeneous transform, 4×4; without more, the pose of the tool in the base frame."""
+
+    can_be_followed: ClassVar[bool] = True
+
+    kind: Literal["transform"]
+    expected: Homogeneous | None = Field(
+        None, description="The transform by its entries, row by row, in place of the robot's pose."
+    )
+
+    def formulas(self) -> WrittenFormulas | None:
+        """The entries, if they are given."""
+        return None if self.expected is None else transform_of("expected", self.expected)
+
+    def shape(self, _: Reference | None) -> MatrixShape:
+        """A 4×4 matrix."""
+        return matrix_shape(4, 4)

@@ -1,0 +1,44 @@
+"""Answer kind ``vector``: a list of values, such as (p_x, p_y, φ)."""
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from service.catalogue.fields import Formula, StrictModel, Text
+from service.catalogue.formulas import WrittenFormulas, list_of
+from service.catalogue.part import PartSpec
+from service.catalogue.screw_robot import Reference
+from service.catalogue.shapes import ListShape, list_shape
+from service.expressions import Kind
+
+
+class ComponentSpec(StrictModel):
+    """One component of a vector."""
+
+    name: Text = Field(description="Its name.", examples=["p_x"])
+    quantity: Kind = Field(description="What it is.")
+    expected: Formula = Field(description="What is right.", examples=["l1*c1 + l2*c12"])
+
+
+class VectorSpec(PartSpec):
+    """A list of values, each a length, an angle or a number, such as (p_x, p_y, φ)."""
+
+    answer_fields: ClassVar[tuple[str, ...]] = ("components",)
+
+    kind: Literal["vector"]
+    components: Annotated[list[ComponentSpec], Field(min_length=1, max_length=12)] = Field(
+        description="The values in order.",
+        examples=[[{"name": "phi", "quantity": "angle", "expected": "theta1 + theta2"}]],
+    )
+
+    def formulas(self) -> WrittenFormulas:
+        """What is right for each component."""
+        return list_of(
+            "components[{j}].expected",
+            [component.expected for component in self.components],
+            [component.quantity for component in self.components],
+        )
+
+    def shape(self, _: Reference | None) -> ListShape:
+        """A list of the components."""
+        return list_shape((each.name, each.quantity) for each in self.components)

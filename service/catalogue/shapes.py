@@ -1,0 +1,95 @@
+"""The shape of an answer, as a student is told it before answering."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from typing import ClassVar, Literal
+
+from pydantic import BaseModel, Field
+
+from service.expressions import Kind
+
+
+class AnswerShape(BaseModel, ABC):
+    """The shape of an answer. ``posted`` says how such an answer is posted."""
+
+    posted: ClassVar[str]
+
+    @abstractmethod
+    def in_words(self) -> str:
+        """The shape in one sentence: "a matrix of 4 rows and 4 columns"."""
+
+
+class MatrixShape(AnswerShape):
+    """What a matrix must look like."""
+
+    posted: ClassVar[str] = "a list of rows, each a list of entries"
+
+    columns: list[str]
+    rows: list[str]
+
+    def in_words(self) -> str:
+        """The shape in one sentence."""
+        return f"a matrix of {len(self.rows)} rows and {len(self.columns)} columns"
+
+
+class ComponentView(BaseModel):
+    """One value of a list: what it is called and what it is."""
+
+    name: str
+    quantity: Kind
+
+
+class ListShape(AnswerShape):
+    """What a list of values must look like; of Euler angles also the axes, in order."""
+
+    posted: ClassVar[str] = "a list of entries"
+
+    rows: list[str]
+    components: list[ComponentView]
+    sequence: str | None = Field(None, description='Such as "ZYZ"; "RPY" is Rz(α) Ry(β) Rx(γ).')
+    axes: Literal["moving", "fixed"] | None = None
+
+    def in_words(self) -> str:
+        """The shape in one sentence."""
+        values = listed(f"{each.name} ({each.quantity})" for each in self.components)
+        return clauses(
+            f"a list: {values}",
+            f"{self.sequence} about {self.axes} axes" if self.sequence else "",
+        )
+
+
+def matrix_shape(rows: int, columns: int) -> MatrixShape:
+    """The shape of a matrix of this size."""
+    return MatrixShape(columns=numbered(columns), rows=numbered(rows))
+
+
+def list_shape(components: Iterable[tuple[str, Kind]]) -> ListShape:
+    """The shape of a list of values, each with its name and what it is."""
+    views = [ComponentView(name=name, quantity=quantity) for name, quantity in components]
+    return ListShape(rows=numbered(len(views)), components=views)
+
+
+def numbered(count: int) -> list[str]:
+    """The labels "1", "2" and so on."""
+    return [str(i + 1) for i in range(count)]
+
+
+def choices(**stated: str) -> Iterable[str]:
+    """Clauses on what is the student's choice and what is given, each by its key in the file."""
+    for choice in ("free", "given"):
+        names = [_NAMES.get(name, name) for name, value in stated.items() if value == choice]
+        if names:
+            yield f"{listed(names)} {choice}"
+
+
+_NAMES = {"base": "base frame", "tool": "tool frame"}
+
+
+def clauses(*texts: str) -> str:
+    """The clauses of a sentence, without those that are empty."""
+    return "; ".join(filter(None, texts))
+
+
+def listed(names: Iterable[str]) -> str:
+    """The names with commas between them."""
+    return ", ".join(names)

@@ -1,0 +1,64 @@
+"""The one rule for brackets of the three printers.
+
+An operand stands in brackets where it binds less than its place needs, and where a sign would
+stand behind an operator. A drawn formula (LaTeX, MathML) needs fewer of them than text: the bar of
+a fraction groups what a ``/`` does not. But a power needs more: ``90°`` and ``1·10⁻³`` are more
+than one sign there.
+"""
+
+import re
+from typing import Final
+
+from service.expressions.tree import Binary, Negation, Node, Number, Unit
+
+# How tightly a form binds, and how tightly an operand has to bind in a place.
+SUM, PRODUCT, SIGNED, POWER, ATOM = range(5)
+_OPERATORS: Final = {"+": SUM, "-": SUM, "*": PRODUCT, "/": PRODUCT, "^": POWER}
+_SIGN: Final = re.compile("-|(?:<mrow>)*<mo>−</mo>")
+
+
+def needs_brackets(
+    node: Node, printed: str, place: int, *, first: bool = False, drawn: bool = True
+) -> bool:
+    """Whether ``node``, ``printed`` as an operand in ``place``, needs brackets there.
+
+    The ``first`` operand has no operator before it, so that it may begin with a sign.
+    """
+    if _precedence(node, drawn=drawn) < place:
+        return True
+    return not first and _SIGN.match(printed) is not None
+
+
+def _precedence(node: Node, *, drawn: bool) -> int:
+    match node:
+        case Binary("/") | Unit() if drawn:
+            return POWER
+        case Binary(operator):
+            return _OPERATORS[operator]
+        case Negation():
+            return SIGNED
+        case Number() if drawn and is_power_of_ten(node):
+            return POWER
+        case _:
+            return ATOM
+
+
+def is_power_of_ten(node: Node) -> bool:
+    """Whether ``node`` is a number that is drawn as a product: ``1e-3``."""
+    return type(node) is Number and "e" in node.literal.lower()
+
+
+def begins_with_digit(node: Node) -> bool:
+    """Whether ``node`` is drawn with a digit first, so that a product before it needs a dot."""
+    match node:
+        case Number():
+            return True
+        case Unit(operand):
+            return begins_with_digit(operand)
+        case Binary("^" | "*", left):
+            return begins_with_digit(left)
+        case Binary("/", left):
+            # A product needs its dot before a bar, too: 2½ is no product.
+            return type(left) is not Negation
+        case _:
+            return False

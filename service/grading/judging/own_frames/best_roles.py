@@ -1,0 +1,94 @@
+"""The roles of the handed-in rows, of several possible ones those with the nearest valid table."""
+
+from collections.abc import Sequence
+
+from service.catalogue.parts.dh_table import DhTableSpec
+from service.grading.judging.own_frames.few_cells import NearestTable
+from service.grading.judging.own_frames.nearest_table import nearest_for_roles
+from service.grading.judging.own_frames.rounded_angles import with_exact_angles
+from service.grading.judging.own_frames.row_roles import (
+    FrameFreedom,
+    Role,
+    freedom_of,
+    roles_of,
+)
+from service.grading.part import Grading
+from service.grading.reading.table import HandedInRow
+from service.kinematics.dh import Convention
+from service.kinematics.frame_choice import WRONG_CELL
+
+
+def best_roles(
+    part: DhTableSpec, rows: tuple[HandedInRow, ...], convention: Convention, grading: Grading
+) -> tuple[tuple[Role, ...], NearestTable]:
+    """The roles of the rows, and the valid table nearest to them."""
+    joints, freedom = grading.exercise.robot.joints, freedom_of(part)
+    roles = roles_in(rows, convention, grading)
+    nearest = nearest_with_tool_row(roles, convention, freedom, grading)
+    if nearest.cost < WRONG_CELL:
+        return roles, nearest
+    other, price = None, 0.0
+    if len(nearest.roles) < len(rows):
+        # A row of zeros that was left out may be one in which something is missing.
+        other = roles_in(rows, convention, grading, expected_rows=len(rows))
+    elif len(rows) == len(joints) and _lacks_row(len(rows), convention, grading):
+        # The row that is missing need not be the last.
+        other, price = roles_in(rows, convention, grading, in_order=False), WRONG_CELL
+    elif len(rows) > len(joints):
+        # A wrong variable may have made a joint's row look like a fixed one.
+        other = roles_in(rows, convention, grading, in_order=True)
+    if other is None or _are_alike(other, roles):
+        return roles, nearest
+    found = nearest_for_roles(other, convention, freedom, grading)
+    return (other, found) if found.cost + price < nearest.cost else (roles, nearest)
+
+
+def roles_in(
+    rows: tuple[HandedInRow, ...],
+    convention: Convention,
+    grading: Grading,
+    expected_rows: int | None = None,
+    *,
+    in_order: bool | None = None,
+) -> tuple[Role, ...]:
+    """Which handed-in row is for which joint, with rounded angles made exact.
+
+    Without ``expected_rows`` as many are expected as the reference has. ``in_order`` says whether
+    the rows are in the order of the joints, where that is known.
+    """
+    robot = grading.exercise.robot
+    reference = robot.tables.get(convention)
+    expected_rows = expected_rows or len(robot.joints if reference is None else reference.rows)
+    rows = without_idle_rows(rows, expected_rows)
+    roles = roles_of(rows, robot.joints, grading.samples, expected_rows, in_order=in_order)
+    return with_exact_angles(roles, grading.exercise, grading.samples)
+
+
+def nearest_with_tool_row(
+    roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
+) -> NearestTable:
+    """The nearest valid table: with the rows as they are, or with the tool row that they lack."""
+    nearest = nearest_for_roles(roles, convention, freedom, grading)
+    if nearest.cost < WRONG_CELL or not _lacks_row(len(roles), convention, grading):
+        return nearest
+    longer = nearest_for_roles((*roles, Role(None, None)), convention, freedom, grading)
+    return longer if longer.cost + WRONG_CELL <= nearest.cost else nearest
+
+
+def without_idle_rows(rows: tuple[HandedInRow, ...], expected_rows: int) -> tuple[HandedInRow, ...]:
+    """The rows without those at the end that are too many and move nothing."""
+    while len(rows) > expected_rows and rows[-1].is_zero:
+        rows = rows[:-1]
+    return rows
+
+
+def _lacks_row(count: int, convention: Convention, grading: Grading) -> bool:
+    """Whether the reference's table has more rows."""
+    reference = grading.exercise.robot.tables.get(convention)
+    return reference is not None and len(reference.rows) > count
+
+
+def _are_alike(one: Sequence[Role], other: Sequence[Role]) -> bool:
+    """Whether as many rows are for the same joints, and the same are missing."""
+    first, second = ([(role.joint, role.row is None) for role in roles] for roles in (one, other))
+    return first == second

@@ -1,0 +1,55 @@
+"""Every tolerance of grading, each with its reason; those of poses are in kinematics.
+
+Lengths are measured in the exercise's typical length, angles in radians, unless it is said
+otherwise.
+"""
+
+from typing import Final
+
+# Two answers: far above what rounding does to a formula of 200 operations, far below any slip.
+# Relative to the size of the expected value, or to its scale, if that is larger.
+EXACT_VALUE: Final = 1e-9
+# A number with three figures: 1.57 for π/2, 0.707 for 1/√2. Relative to its size.
+ROUNDED_VALUE: Final = 1e-3
+
+# By how much a value changes with the joints, and by how much it should.
+SAME_MOTION: Final = 1e-6
+# By how much a value must change from sample to sample to depend on the joints at all.
+DEPENDS_ON_JOINTS: Final = 1e-9
+
+# A value, and the same at all samples: then it is a constant.
+CONSTANT: Final = 1e-9
+# An entry that is printed as a number must not vary at all.
+PRINTED_NUMBER: Final = 1e-12
+# A number, and a whole multiple of a letter or a fraction of π: looser, since what is left over
+# after a least-squares fit is compared.
+WHOLE_MULTIPLE: Final = 1e-6
+# Two constants in the comparison of slips, letters and numbers apart.
+SAME_TERM: Final = 1e-6
+# A constant angle, and a multiple of 15°.
+MULTIPLE_OF_STEP: Final = 1e-9
+# A factor between two units of length, and the whole number that it stands for.
+SAME_FACTOR: Final = 1e-9
+
+# A cell, and the reference's, at the first sample: beyond what rounding does, so that the table is
+# certainly not the reference's own.
+PLAINLY_DIFFERENT: Final = 0.02
+# A length so many times the robot's own loses figures; but no cell so many that it is this far off.
+HUGE_LENGTH: Final = 100.0
+HUGE_CELL: Final = 1e-6
+
+# A cell as written, and in the intended table: if they differ, the cell is wrong. Where the
+# convention or the unit of all angles was mistaken, both are computed from the same numbers.
+UNCHANGED_CELL: Final = 1e-9
+INTENDED_CELL: Final = 1e-6
+# The pose of an intended table, and the reference's: rounded angles that are multiplied over a
+# whole arm lose four figures. Relative to the arm's reach.
+INTENDED_POSE: Final = 1e-2
+
+# A matrix, and the link transform of the row that was computed from it.
+LINK_TRANSFORM: Final = 1e-6
+
+# The derivative of a pose by a joint variable: the step of the difference, and the singular value,
+# relative to the largest, that counts as 0 in spite of the error that the step makes.
+JOINT_STEP: Final = 1e-5
+NO_MOTION: Final = 1e-3

@@ -1,0 +1,42 @@
+"""Whether every answer kind has its three files, looked at when the program starts."""
+
+from collections.abc import Mapping, Set
+from pathlib import Path
+from typing import Final
+
+from service.catalogue.parts import SPECS, KindError
+from service.grading.kinds import KINDS
+
+# By its files: SymPy, which the model answers need, takes half a second to import.
+_SOLUTIONS: Final = Path(__file__).parent / "solutions" / "kinds"
+
+
+def check_kinds() -> None:
+    """Check that catalogue, grading and solutions know the same kinds. Raises KindError."""
+    refuse_half_made(
+        {
+            "service/catalogue/parts": SPECS.keys(),
+            "service/grading/kinds": KINDS.keys(),
+            "service/solutions/kinds": _solved_kinds(),
+        }
+    )
+
+
+def _solved_kinds() -> set[str]:
+    return {
+        file.stem
+        for file in _SOLUTIONS.glob("*.py")
+        if "\ndef answer(" in file.read_text(encoding="utf-8")
+    }
+
+
+def refuse_half_made(kinds: Mapping[str, Set[str]]) -> None:
+    """Check that each folder has the same kinds. Raises KindError naming the files that lack."""
+    every = sorted(frozenset[str]().union(*kinds.values()))
+    problems = []
+    for kind in every:
+        lacking = [f"{folder}/{kind}.py" for folder, known in kinds.items() if kind not in known]
+        if lacking:
+            problems.append(f"The answer kind {kind!r} is half made: write {', '.join(lacking)}.")
+    if problems:
+        raise KindError("\n".join(problems))

@@ -1,0 +1,218 @@
+"""The DH rows that lead from a frame to the next axis: every one that there is.
+
+A row moves by Rot_z(θ) Trans_z(d) Trans_x(a) Rot_x(α). Seen from the frame where the row starts,
+the next target is a transform. How much of it the row must meet depends on its kind: of a revolute
+axis the line, of a prismatic axis the direction, of the tool the whole frame. Where the geometry
+leaves a value open, the value that was written is as good as the reference's, and both are tried.
+
+Shapes: H hypotheses, K candidates for each, L samples. Targets are ``(H, L, 4, 4)``, rows
+``(..., 4, L)`` in the column order a, α, d, θ, the written row is ``(4, L)`` with NaN where there
+is no usable number; angles in radians.
+"""
+
+from enum import Enum, IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.kinematics.chain import ALPHA, THETA, A, D
+from service.kinematics.tolerances import ALONG_NORMAL, PARALLEL
+from service.kinematics.transforms import Matrices, Numbers
+
+_X_SIGNS = np.array([[1.0], [-1.0], [1.0], [-1.0]])
+_Z_SIGNS = np.array([[1.0], [1.0], [-1.0], [-1.0]])
+
+
+class AxisRelation(IntEnum):
+    """How one axis lies to another."""
+
+    SKEW = 0
+    PARALLEL = 1
+    COINCIDENT = 2
+
+
+class TargetKind(Enum):
+    """What a row leads to, and so how much of the frame there is determined."""
+
+    REVOLUTE = "a line that the next z axis lies on"
+    PRISMATIC = "a direction of the next z axis"
+    FIXED = "a frame of a fixed row, which may be anywhere"
+    TOOL = "the given end-effector frame"
+    OPEN = "an end-effector frame of the student's choice"
+
+
+def candidate_rows(
+    target: Matrices, written: Numbers, kind: TargetKind, length_scale: float
+) -> Numbers:
+    """Every row that leads to the target: ``(H, K, 4, L)``.
+
+    The z axes of all H targets must have one relation (skew, parallel, coincident) to z here.
+    """
+    if kind is TargetKind.TOOL:
+        return row_to_frame(target)[:, None]
+    if kind is TargetKind.OPEN:
+        return written_or(written, row_to_frame(target)[:, None])
+    relation = AxisRelation(axis_relations(target[:1], length_scale)[0])
+    if kind is TargetKind.PRISMATIC:
+        if relation is AxisRelation.SKEW:
+            return _with_open_lengths(_to_skew(target, written), written)
+        return _to_parallel_direction(target, written, relation)
+    rows = _TO_LINE[relation](target, written)
+    if kind is TargetKind.FIXED and not np.isnan(written).any():
+        as_written = np.broadcast_to(written, (len(target), 1, *written.shape))
+        rows = np.concatenate([as_written, rows], axis=1)
+    return rows
+
+
+def axis_relations(target: Matrices, length_scale: float) -> NDArray[np.int_]:
+    """The AxisRelation of each target's z axis to the z axis here: ``(H,)``."""
+    sine = np.hypot(target[..., 0, 2], target[..., 1, 2])
+    offset = np.hypot(target[..., 0, 3], target[..., 1, 3])
+    parallel = np.all(sine < PARALLEL, axis=-1)
+    coincident = parallel & np.all(offset < PARALLEL * length_scale, axis=-1)
+    found: NDArray[np.int_] = np.add(parallel, coincident, dtype=np.int_)
+    return found
+
+
+def row_to_frame(target: Matrices) -> Numbers:
+    """The one row that can lead to a whole frame, ``(H, 4, L)``.
+
+    It does so only if x of the frame is at right angles to z here and meets it (the two DH
+    conditions; Spong, Hutchinson, Vidyasagar, §3.2.1): see ``is_unreachable``.
+    """
+    theta = np.arctan2(target[..., 1, 0], target[..., 0, 0])
+    alpha = np.arctan2(target[..., 2, 1], target[..., 2, 2])
+    a = target[..., 0, 3] * np.cos(theta) + target[..., 1, 3] * np.sin(theta)
+    return np.stack([a, alpha, target[..., 2, 3], theta], axis=1)
+
+
+def is_unreachable(target: Matrices, length_scale: float) -> NDArray[np.bool_]:
+    """Where no DH row leads to the whole frame: ``(H,)``."""
+    x_along_z = np.abs(target[..., 2, 0]).max(axis=-1)
+    norm = np.hypot(target[..., 0, 0], target[..., 1, 0])
+    cross = target[..., 0, 0] * target[..., 1, 3] - target[..., 1, 0] * target[..., 0, 3]
+    distance = np.abs(cross / np.maximum(norm, PARALLEL)).max(axis=-1)
+    unreachable: NDArray[np.bool_] = (x_along_z > PARALLEL) | (distance > PARALLEL * length_scale)
+    return unreachable
+
+
+def written_or(written: Numbers, other: Numbers) -> Numbers:
+    """The written values, or the others where no usable number was written."""
+    return np.where(np.isnan(written), other, written)
+
+
+def _to_skew(target: Matrices, written: Numbers) -> Numbers:
+    """Axes that are not parallel: x along the common normal, either way, and z either way."""
+    ux, uy, uz = (target[..., i, 2] for i in range(3))
+    px, py, pz = (target[..., i, 3] for i in range(3))
+    sine = np.hypot(ux, uy)
+    theta = np.arctan2(ux, -uy)
+    a = (py * ux - px * uy) / sine
+    x_sign, z_sign = _signs(target, theta, a, written)
+    alpha = np.arctan2(x_sign * z_sign * sine[:, None], z_sign * uz[:, None])
+    d = pz - uz * (px * ux + py * uy) / sine**2
+    return _rows(x_sign * a[:, None], alpha, d[:, None], _half_turned(theta, x_sign))
+
+
+def _to_parallel(target: Matrices, written: Numbers) -> Numbers:
+    """Parallel axes: x points from one to the other, and d is open."""
+    px, py, pz = (target[..., i, 3] for i in range(3))
+    theta, a = np.arctan2(py, px), np.hypot(px, py)
+    x_sign, z_sign = _signs(target, theta, a, written)
+    alpha = _parallel_twist(target, z_sign)
+    return np.concatenate(
+        [
+            _rows(x_sign * a[:, None], alpha, d[:, None], _half_turned(theta, x_sign))
+            for d in (written_or(written[D], pz), pz)
+        ],
+        axis=1,
+    )
+
+
+def _to_coincident(target: Matrices, written: Numbers) -> Numbers:
+    """One line: θ and d are open."""
+    pz = target[..., 2, 3]
+    x_angle = np.arctan2(target[..., 1, 0], target[..., 0, 0])
+    alpha = _parallel_twist(target, _Z_SIGNS)
+    theta = _half_turned(x_angle, _X_SIGNS * np.ones_like(alpha))
+    return np.concatenate(
+        [
+            _rows(np.zeros(1), alpha, d[:, None], angle)
+            for d in (written_or(written[D], pz), pz)
+            for angle in (written_or(written[THETA], theta), theta)
+        ],
+        axis=1,
+    )
+
+
+_TO_LINE = {
+    AxisRelation.SKEW: _to_skew,
+    AxisRelation.PARALLEL: _to_parallel,
+    AxisRelation.COINCIDENT: _to_coincident,
+}
+
+
+def _with_open_lengths(rows: Numbers, written: Numbers) -> Numbers:
+    """A direction that is not parallel to z here: the axis may lie anywhere, so a and d are open.
+
+    Each by itself is as written or as in ``rows``.
+    """
+    options = []
+    for columns in ((A, D), (A,), (D,), ()):
+        moved = rows.copy()
+        for column in columns:
+            moved[:, :, column] = written_or(written[column], rows[:, :, column])
+        options.append(moved)
+    return np.concatenate(options, axis=1)
+
+
+def _to_parallel_direction(target: Matrices, written: Numbers, relation: AxisRelation) -> Numbers:
+    """A direction that is parallel to z here: a, d and θ are open."""
+    on_line = _TO_LINE[relation](target, written)
+    as_written = np.empty((len(target), 2, 4, target.shape[1]))
+    as_written[:] = written_or(written, on_line[:, :1])
+    as_written[:, :, ALPHA] = _parallel_twist(target, np.array([[1.0], [-1.0]]))
+    with_reference_offset = as_written.copy()
+    with_reference_offset[:, :, D] = target[:, None, :, 2, 3]
+    with_written_length = on_line.copy()
+    with_written_length[:, :, A] = written_or(written[A], on_line[:, :, A])
+    return np.concatenate([as_written, with_reference_offset, with_written_length, on_line], axis=1)
+
+
+def _signs(
+    target: Matrices, theta: Numbers, a: Numbers, written: Numbers
+) -> tuple[Numbers, Numbers]:
+    """The ways that x and z may point: two arrays of signs that broadcast to ``(H, K, L)``.
+
+    x lies along a normal at the angle ``theta`` ``(H, L)`` and goes the length ``a`` there, or
+    points the other way. Where ``a`` is a difference of link lengths, it changes its sign from
+    sample to sample while x does not. So x first takes the way of the reference's x, and where the
+    axis was moved, also the way that the written θ and a point.
+    """
+    x_angle = np.arctan2(target[..., 1, 0], target[..., 0, 0])
+    along = np.cos(theta - x_angle)
+    is_along = np.abs(np.abs(along) - 1).max(axis=-1, keepdims=True) < ALONG_NORMAL
+    ways = [np.where(is_along, along, 1.0)]
+    for way in (np.cos(theta - written[THETA]), a * written[A]):
+        pattern = np.sign(way * ways[0])
+        if not np.isnan(way).any() and np.ptp(pattern, axis=-1).any():
+            ways.append(way)
+    one_way = np.where(np.array(ways) < 0, -1.0, 1.0).swapaxes(0, 1)
+    x_sign = np.concatenate([one_way, -one_way, one_way, -one_way], axis=1)
+    z_sign = np.repeat([1.0, -1.0], 2 * len(ways))[:, None]
+    return x_sign, z_sign
+
+
+def _half_turned(theta: Numbers, x_sign: Numbers) -> Numbers:
+    """The angle of x: ``theta`` ``(H, L)``, or half a turn on, for each sign ``(H, K, L)``."""
+    return theta[:, None] + np.where(x_sign < 0, np.pi, 0.0)
+
+
+def _parallel_twist(target: Matrices, z_sign: Numbers) -> Numbers:
+    """α between parallel axes, 0 or π, for each sign ``(K, 1)``: ``(H, K, L)``."""
+    return np.where(target[:, None, :, 2, 2] * z_sign > 0, 0.0, np.pi)
+
+
+def _rows(a: Numbers, alpha: Numbers, d: Numbers, theta: Numbers) -> Numbers:
+    """Columns that broadcast to ``(H, K, L)`` as rows ``(H, K, 4, L)``."""
+    return np.stack(np.broadcast_arrays(a, alpha, d, theta), axis=2)

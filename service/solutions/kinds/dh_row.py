@@ -1,0 +1,56 @@
+"""The model answer of kind ``dh_row``: the row of a transform, or that it has none."""
+
+import numpy as np
+import sympy
+
+from service.catalogue import Exercise, grid_values
+from service.catalogue.formulas import EXACT
+from service.catalogue.parts.dh_row import DhRowSpec
+from service.catalogue.robot import ROW_QUANTITIES
+from service.catalogue.variables import TRIALS, trial_values
+from service.kinematics.dh import Convention
+from service.kinematics.dh_row import dh1_residual, dh2_residual
+from service.solutions import layout
+from service.solutions.algebra import Algebra
+from service.solutions.model_solution import PrintedAnswer
+from service.solutions.orientation import as_angle
+from service.solutions.work import Work
+
+_MOST_STEPS = 60
+
+
+def answer(part: DhRowSpec, work: Work) -> PrintedAnswer:
+    """The row, or that there is none."""
+    row = _dh_row(part, work.exercise, work.algebra)
+    if row is None:
+        return layout.no_row()
+    write = {"angle": work.writer.angle, "length": work.writer.number}
+    nodes = [write[kind](cell) for kind, cell in zip(ROW_QUANTITIES, row, strict=True)]
+    return layout.row(nodes, "1", part.convention)
+
+
+def _dh_row(part: DhRowSpec, exercise: Exercise, algebra: Algebra) -> list[sympy.Expr] | None:
+    """The row (a, α, d, θ) of the part's transform, or None where it has none.
+
+    Read off the link transforms' own entries (Spong, Hutchinson, Vidyasagar, *Robot Modeling and
+    Control*, eq. 3.10; Craig, *Introduction to Robotics*, eq. 3.6).
+    """
+    grid = exercise.formulas[part.id]
+    numbers = np.moveaxis(grid_values(grid, trial_values(exercise.variables), TRIALS), -1, 0)
+    broken = [dh1_residual(numbers, part.convention), dh2_residual(numbers, part.convention)]
+    if np.abs(broken).max() > EXACT:
+        return None
+    T = algebra.matrix(grid)
+    x, y, z = T[:3, 3]
+    if part.convention is Convention.STANDARD:
+        a, d = x * T[0, 0] + y * T[1, 0], z
+        alpha, theta = as_angle(T[2, 1], T[2, 2]), as_angle(T[1, 0], T[0, 0])
+    else:
+        a, d = x, y * T[1, 2] + z * T[2, 2]
+        alpha, theta = as_angle(-T[1, 2], T[2, 2]), as_angle(-T[0, 1], T[0, 0])
+    return [_simplified(a), alpha, _simplified(d), theta]
+
+
+def _simplified(length: sympy.Expr) -> sympy.Expr:
+    """Such as l for l cos² φ + l sin² φ; a long formula would take seconds, and stays."""
+    return sympy.trigsimp(sympy.expand(length)) if length.count_ops() < _MOST_STEPS else length

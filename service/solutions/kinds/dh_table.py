@@ -1,0 +1,17 @@
+"""The model answer of kind ``dh_table``: the reference's table, in the convention asked for."""
+
+from service.catalogue.parts.dh_table import DhTableSpec
+from service.kinematics.dh import Convention
+from service.solutions import layout
+from service.solutions.model_solution import PrintedAnswer
+from service.solutions.work import Work
+
+
+def answer(part: DhTableSpec, work: Work) -> PrintedAnswer:
+    """The table; where either convention will do, it names its own."""
+    robot = work.exercise.robot
+    asked = part.convention
+    convention = asked if isinstance(asked, Convention) else robot.convention
+    table = robot.tables[convention]
+    rows = [work.table_row(row) for row in table.rows]
+    return layout.table(rows, table.labels, convention, named=asked == "either")

@@ -1,0 +1,16 @@
+"""The model answer of kind ``euler_angles``."""
+
+from service.catalogue.parts.euler_angles import EulerAnglesSpec
+from service.solutions import layout
+from service.solutions.model_solution import PrintedAnswer
+from service.solutions.orientation import euler_angles
+from service.solutions.work import Work
+
+
+def answer(part: EulerAnglesSpec, work: Work) -> PrintedAnswer:
+    """The angles as the file gives them, or those of the robot's pose."""
+    given = work.as_written(part)
+    if given:
+        return layout.listed(given[0])
+    angles = euler_angles(work.pose_motions(part), part.turns, part.axes)
+    return layout.listed(list(map(work.writer.angle, angles)))

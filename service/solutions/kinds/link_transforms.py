@@ -1,0 +1,17 @@
+"""The model answer of kind ``link_transforms``: the transforms of the reference's rows."""
+
+from service.catalogue.parts.link_transforms import LinkTransformsSpec
+from service.solutions.model_solution import PrintedAnswer
+from service.solutions.work import Work
+
+
+def answer(part: LinkTransformsSpec, work: Work) -> PrintedAnswer:
+    """The matrices one after the other, each with its name."""
+    matrices = work.link_matrices(part.convention)
+    return PrintedAnswer(
+        "\n\n".join(f"A{label} =\n{matrix.text}" for label, matrix in matrices.items()),
+        "\n".join(
+            f"A_{{{label}}} = {matrix.latex}" + r" \quad" for label, matrix in matrices.items()
+        ),
+        [matrix.answer for matrix in matrices.values()],
+    )

@@ -1,0 +1,18 @@
+"""The model answer of kind ``position``."""
+
+from service.catalogue.parts.position import PositionSpec
+from service.solutions import layout
+from service.solutions.model_solution import PrintedAnswer
+from service.solutions.motions import multiplied
+from service.solutions.work import Work
+
+
+def answer(part: PositionSpec, work: Work) -> PrintedAnswer:
+    """The coordinates as the file gives them, or those of the robot's frame."""
+    given = work.as_written(part)
+    if given:
+        return layout.listed(given[0])
+    position = multiplied(work.pose_motions(part)).position
+    return layout.listed(
+        [work.writer.number(position["xyz".index(letter)]) for letter in part.coordinates]
+    )

@@ -1,0 +1,26 @@
+"""The model answer of kind ``rotation``."""
+
+from service.catalogue.parts.rotation import RotationSpec
+from service.solutions import layout
+from service.solutions.model_solution import PrintedAnswer
+from service.solutions.motions import Motion, Turn, X, Y, Z, multiplied
+from service.solutions.work import Work
+
+_AXES = {"x": X, "y": Y, "z": Z}
+
+
+def answer(part: RotationSpec, work: Work) -> PrintedAnswer:
+    """The rotation as the file gives it, the product of its turns, or that of the robot."""
+    given = work.as_written(part) if part.steps is None else None
+    return layout.matrix(given) if given else work.matrix(multiplied(_turns(part, work)).rotation)
+
+
+def _turns(part: RotationSpec, work: Work) -> list[Motion]:
+    """The turns that the rotation is made of; about a fixed axis they go before all others."""
+    angles = work.given(part)
+    if part.steps is None or angles is None:
+        return work.pose_motions(part)
+    motions: list[Motion] = []
+    for step, angle in zip(part.steps, angles[0], strict=True):
+        motions.insert(0 if step.about == "fixed" else len(motions), Turn(_AXES[step.axis], angle))
+    return motions

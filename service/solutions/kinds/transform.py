@@ -1,0 +1,15 @@
+"""The model answer of kind ``transform``."""
+
+from service.catalogue.parts.transform import TransformSpec
+from service.solutions import layout
+from service.solutions.model_solution import PrintedAnswer
+from service.solutions.motions import multiplied
+from service.solutions.work import Work
+
+
+def answer(part: TransformSpec, work: Work) -> PrintedAnswer:
+    """The transform as the file gives it, or the pose of the robot."""
+    given = work.as_written(part)
+    return (
+        layout.matrix(given) if given else work.matrix(multiplied(work.pose_motions(part)).matrix())
+    )

@@ -1,0 +1,13 @@
+"""The model answer of kind ``vector``: the list that the file gives."""
+
+from service.catalogue.parts.vector import VectorSpec
+from service.solutions import layout
+from service.solutions.model_solution import PrintedAnswer
+from service.solutions.work import Work
+
+
+def answer(part: VectorSpec, work: Work) -> PrintedAnswer:
+    """The components in order."""
+    given = work.as_written(part)
+    assert given is not None
+    return layout.listed(given[0])

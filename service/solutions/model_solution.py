@@ -1,0 +1,68 @@
+"""A model solution: what is right in each part, as it is sent and shown."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from pydantic import Field
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """A matrix as a textbook prints it."""
+
+    text: str
+    latex: str
+
+
+@dataclass(frozen=True, slots=True)
+class PrintedAnswer(Shown):
+    """An answer; ``answer`` is its JSON value, None where it is longer than may be handed in."""
+
+    answer: object
+
+
+@dataclass(frozen=True, slots=True)
+class LinkSolution(Shown):
+    """The link transform of one row of the robot's table."""
+
+    label: str
+
+
+@dataclass(frozen=True, slots=True)
+class PartAnswer(Shown):
+    """The right answer to one part."""
+
+    part: str
+    kind: str
+    title: str
+    answer: Annotated[
+        Any, Field(description="The same as it is posted; `text` may be posted as well.")
+    ]
+
+
+@dataclass(frozen=True, slots=True)
+class ModelSolution:
+    """What is right in each part of an exercise, and how one comes to it."""
+
+    exercise: str
+    version: str
+    notation: Annotated[
+        Mapping[str, str],
+        Field(description="What each shorthand stands for: c12 for cos(theta1 + theta2)."),
+    ]
+    parts: tuple[PartAnswer, ...]
+    links: Annotated[
+        tuple[LinkSolution, ...],
+        Field(
+            description="The link transforms of the robot's own table; none where it has no table."
+        ),
+    ]
+    pose: Annotated[Shown | None, Field(description="From the base frame to the tool frame.")] = (
+        None
+    )
+
+    @property
+    def answers(self) -> dict[str, object]:
+        """The parts' answers as a submission holds them."""
+        return {part.part: part.answer for part in self.parts}

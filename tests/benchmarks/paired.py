@@ -1,0 +1,69 @@
+"""Two checkouts measured side by side: this one, that one, this one, that one."""
+
+import json
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import median
+
+HERE = Path(__file__).parents[2]
+PROBE = Path(__file__).with_name("probe.py")
+# A line that is slower by more counts as slower.
+TOLERATED = 1.03
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One line of the benchmark in both checkouts: medians, in multiples of the floor."""
+
+    what: str
+    here: float
+    there: float
+
+    @property
+    def ratio(self) -> float:
+        return self.here / self.there
+
+    @property
+    def slower(self) -> bool:
+        return self.ratio > TOLERATED
+
+
+def python_of(checkout: Path) -> str:
+    """The Python of a checkout's own environment."""
+    if checkout == HERE:
+        return sys.executable
+    folder = checkout / ".venv" / ("Scripts" if sys.platform == "win32" else "bin")
+    return str(folder / "python")
+
+
+def measured(checkout: Path, *, with_server: bool) -> dict[str, float]:
+    """Each line of a checkout's benchmark as a multiple of its floor, measured once."""
+    options = [] if with_server else ["--no-server"]
+    result = subprocess.run(
+        [python_of(checkout), "-P", str(PROBE), *options],
+        cwd=checkout, env=os.environ | {"PYTHONPATH": str(checkout)},
+        stdout=subprocess.PIPE, text=True, check=True,
+    )  # fmt: skip
+    figures: dict[str, float] = json.loads(result.stdout)
+    return figures
+
+
+def compare(there: Path, rounds: int, *, with_server: bool) -> list[Comparison]:
+    """Measure both checkouts in turn, so many times; the lines that both have."""
+    pairs = [
+        (measured(HERE, with_server=with_server), measured(there, with_server=with_server))
+        for _ in range(rounds)
+    ]
+    ours, theirs = pairs[0]
+    return [
+        Comparison(
+            what,
+            median(here[what] for here, _ in pairs),
+            median(there[what] for _, there in pairs),
+        )
+        for what in ours
+        if what in theirs
+    ]

@@ -1,0 +1,45 @@
+"""CONTRIBUTING.md names files, folders and targets that exist, and its map lacks no package."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SERVICE = ROOT / "service"
+PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+# The folders that paths on the page begin in.
+STARTS = (ROOT, SERVICE, SERVICE / "expressions", SERVICE / "grading")
+
+
+def on_the_map() -> Iterator[Path]:
+    """The files and folders of the map; what is further indented lies inside."""
+    above: list[tuple[int, Path]] = []
+    chart = PAGE[PAGE.index("## The map") : PAGE.index("## Five recipes")]
+    for indent, names in re.findall(r"^    ( *)((?:\w+(?:/|\.py) +)+)", chart, re.MULTILINE):
+        above = [(depth, path) for depth, path in above if depth < len(indent)]
+        inside = above[-1][1] if above else ROOT
+        paths = [inside / name for name in names.split()]
+        above.append((len(indent), paths[-1]))
+        yield from paths
+
+
+def test_the_map_shows_what_is_there_and_every_package() -> None:
+    shown = list(on_the_map())
+    assert [path for path in shown if not path.exists()] == []
+    packages = {file.parent for file in SERVICE.glob("*/__init__.py")}
+    assert packages - set(shown) == set()
+
+
+@pytest.mark.xfail(strict=True, reason="some rooms of the house are still to be built")
+def test_the_files_of_the_page_exist() -> None:
+    named = re.findall(r"`((?:[\w.-]+/)+(?:[\w-]+\.\w+)?)`", PAGE)
+    assert len(named) > 20
+    assert [n for n in named if not any((start / n).exists() for start in STARTS)] == []
+
+
+def test_the_targets_of_the_page_exist() -> None:
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    targets = set(re.findall(r"^([a-z]+):", makefile, re.MULTILINE))
+    assert set(re.findall(r"make ([a-z]+)\b", PAGE)) <= targets

@@ -1,0 +1,177 @@
+"""The parser takes what its grammar says, and no text brings it near Python's recursion limit."""
+
+import re
+import sys
+from collections.abc import Sequence
+from contextlib import suppress
+from functools import cache
+from inspect import currentframe, getsource, isfunction
+from random import Random
+from typing import Literal
+from unittest.mock import Mock
+
+import pytest
+
+from service.expressions import LIMITS, ExpressionError, Vocabulary, read
+from service.expressions.errors import UnreadableError
+from service.expressions.parsing import parser
+from service.expressions.parsing.lexer import END, Token
+from service.expressions.parsing.tree_builder import Builder
+
+# A part of a rule: a symbol, or what may be repeated or left out, as alternatives of sequences.
+Part = tuple[str, "str | list[list[Part]]"]
+UNITS: tuple[Literal["radians", "degrees"], ...] = ("radians", "degrees")
+CLOSING = {"{": "}", "[": "]", "(": ")"}
+
+
+def grammar() -> dict[str, list[list[Part]]]:
+    """The rules as the module's docstring states them."""
+    text = str(parser.__doc__).split("\n\n")[2]
+    rules = re.split(r"^ +(\w+) +=", text, flags=re.MULTILINE)[1:]
+    return {
+        name: alternatives(re.findall(r"\w+|[{}\[\]()|]", body))
+        for name, body in zip(rules[::2], rules[1::2], strict=True)
+    }
+
+
+def alternatives(words: list[str], closing: str = "") -> list[list[Part]]:
+    """The alternatives up to ``closing``; their words are taken off the front of ``words``."""
+    found: list[list[Part]] = [[]]
+    while words:
+        word = words.pop(0)
+        if word == closing:
+            break
+        if word == "|":
+            found.append([])
+        elif word in CLOSING:
+            found[-1].append((word, alternatives(words, CLOSING[word])))
+        else:
+            found[-1].append(("", word))
+    return found
+
+
+GRAMMAR = grammar()
+TERMINALS = sorted(set(re.findall(r"\b[A-Z]+\b", str(GRAMMAR))))
+
+
+class Recogniser:
+    """Where in ``terminals`` the parts of the grammar may end that begin at a place."""
+
+    def __init__(self, terminals: Sequence[str]) -> None:
+        self.terminals = terminals
+        self.rule = cache(self._rule)
+
+    def _rule(self, name: str, start: int) -> frozenset[int]:
+        if name.isupper():
+            return frozenset({start + 1} if self.terminals[start : start + 1] == [name] else ())
+        return self.any_of(GRAMMAR[name], start)
+
+    def any_of(self, choices: list[list[Part]], start: int) -> frozenset[int]:
+        return frozenset().union(*(self.sequence(parts, start) for parts in choices))
+
+    def sequence(self, parts: list[Part], start: int) -> frozenset[int]:
+        places = frozenset({start})
+        for part in parts:
+            places = frozenset().union(*(self.part(part, place) for place in places))
+        return places
+
+    def part(self, part: Part, start: int) -> frozenset[int]:
+        bracket, inside = part
+        if isinstance(inside, str):
+            return self.rule(inside, start)
+        if bracket == "(":
+            return self.any_of(inside, start)
+        found = frozenset({start})
+        longer = self.any_of(inside, start)
+        while bracket == "{" and not longer <= found:
+            found |= longer
+            longer = frozenset().union(*(self.any_of(inside, place) for place in found))
+        return found | longer
+
+
+def is_sentence(terminals: list[str]) -> bool:
+    return len(terminals) in Recogniser(terminals).rule("sum", 0)
+
+
+def sentence(random: Random, name: str = "sum", depth: int = 7) -> list[str]:
+    """Terminals that the grammar derives from ``name``; short ones where ``depth`` is used up."""
+    if name.isupper():
+        return [name]
+    return expansion(random, GRAMMAR[name], depth - 1)
+
+
+def expansion(random: Random, choices: list[list[Part]], depth: int) -> list[str]:
+    found: list[str] = []
+    for bracket, inside in random.choice(choices) if depth > 0 else choices[0]:
+        if isinstance(inside, str):
+            found += sentence(random, inside, depth)
+        elif bracket == "(" or (depth > 0 and random.random() < 0.4):
+            found += expansion(random, inside, depth)
+    return found
+
+
+def accepts(terminals: list[str]) -> bool:
+    tokens: list[Token] = [(each, Mock(), at, at) for at, each in enumerate((*terminals, END))]
+    try:
+        parser.parse(tokens, Mock(spec=Builder))
+    except UnreadableError:
+        return False
+    return True
+
+
+def test_the_grammar_names_every_method() -> None:
+    methods = re.findall(r"builder\.(\w+)", getsource(parser))
+    public = {name for name, member in vars(Builder).items() if isfunction(member)}
+    assert set(methods) == {name for name in public if not name.startswith("_")}
+    assert len(TERMINALS) == 17
+
+
+def test_what_the_grammar_derives_is_parsed() -> None:
+    random = Random(0)
+    for _ in range(1500):
+        terminals = sentence(random)
+        assert accepts(terminals), terminals
+
+
+def test_what_it_does_not_derive_is_refused() -> None:
+    random = Random(1)
+    refused = 0
+    for _ in range(1500):
+        terminals = sentence(random)[:25]
+        at = random.randrange(len(terminals) + 1)
+        terminals[at : at + random.randrange(2)] = random.choices(TERMINALS, k=random.randrange(3))
+        derived = is_sentence(terminals)
+        refused += not derived
+        assert accepts(terminals) == derived, terminals
+    assert 200 < refused < 1400
+
+
+CHAINS = [
+    "-", "+", "-+", "√", "tg ", "sin ", "2^-", "k^-+", "tg k^", "tg 2k^", "tg ½k^-", "√√-", "√(",
+    "tg √", "(", "|", "cos(", "-(", "½", "k deg", "2^(", "sin^2 ", "k*-", "k/-", r"\frac{1}{", "k ",
+    "atan2(k,", "[{(", "deg(",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("chain", CHAINS)
+def test_no_chain_nears_the_recursion_limit(chain: str, arm: Vocabulary) -> None:
+    depth, frame = 0, currentframe()
+    while frame is not None:
+        depth, frame = depth + 1, frame.f_back
+    times = LIMITS.characters // len(chain) - 1
+    limit = sys.getrecursionlimit()
+    sys.setrecursionlimit(depth + 400)
+    try:
+        for text in (chain * times, chain * times + "k", chain * 39 + "k" + ")" * 39):
+            for unit in UNITS:
+                with suppress(ExpressionError):
+                    read(text, arm, angle_unit=unit)
+    finally:
+        sys.setrecursionlimit(limit)
+
+
+@pytest.mark.parametrize("chain", ["-", "√", "tg ", "tg k^", "tg 2k^"])
+def test_a_long_chain_is_too_deep_or_too_large(chain: str, arm: Vocabulary) -> None:
+    text = chain * (LIMITS.characters // len(chain) - 1) + "k"
+    with pytest.raises(ExpressionError, match=r"nested more than|operations and operands"):
+        read(text, arm)

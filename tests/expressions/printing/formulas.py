@@ -1,0 +1,28 @@
+"""Formulas as typed, in normal text and in LaTeX."""
+
+FORMULAS = [
+    ("2q1", "2*theta1", r"2 \theta_{1}"),
+    ("l1 c12", "l1*cos(theta1 + theta2)", r"l_{1} \cos\left(\theta_{1} + \theta_{2}\right)"),
+    ("q1 + 90°", "theta1 + 90deg", r"\theta_{1} + 90^{\circ}"),
+    ("pi/2", "pi/2", r"\frac{\pi}{2}"),
+    ("-π/2", "-pi/2", r"-\frac{\pi}{2}"),
+    ("sin²q1", "sin(theta1)^2", r"\sin^{2}\left(\theta_{1}\right)"),
+    ("√(l1²+1)", "sqrt(l1^2 + 1)", r"\sqrt{l_{1}^{2} + 1}"),
+    ("abs(k)", "abs(k)", r"\left|k\right|"),
+    ("atan2(s1,c1)", "atan2(sin(theta1), cos(theta1))",
+     r"\operatorname{atan2}\left(\sin\left(\theta_{1}\right), \cos\left(\theta_{1}\right)\right)"),
+    ("1e-3", "1e-3", r"1 \cdot 10^{-3}"),
+    ("2*3", "2*3", r"2 \cdot 3"),
+    ("k*-2", "k*(-2)", r"k \left(-2\right)"),
+    ("k-(l1-l2)", "k - (l1 - l2)", r"k - \left(l_{1} - l_{2}\right)"),
+    ("k*(-l1/2)", "k*(-l1/2)", r"k \left(-\frac{l_{1}}{2}\right)"),
+    ("k-(-l1*2)", "k - (-l1*2)", r"k - \left(-l_{1} \cdot 2\right)"),
+    ("k-(-l1)", "k - (-l1)", r"k - \left(-l_{1}\right)"),
+    ("-(l1+l2)", "-(l1 + l2)", r"-\left(l_{1} + l_{2}\right)"),
+    ("(l1/l2)^2", "(l1/l2)^2", r"\left(\frac{l_{1}}{l_{2}}\right)^{2}"),
+    ("l1/(l2/k)", "l1/(l2/k)", r"\frac{l_{1}}{\frac{l_{2}}{k}}"),
+    ("2^(k+1)", "2^(k + 1)", "2^{k + 1}"),
+    ("k^-2", "k^-2", "k^{-2}"),
+    ("k deg", "k deg", r"k^{\circ}"),
+    ("2rad", "2rad", r"2\,\mathrm{rad}"),
+]  # fmt: skip

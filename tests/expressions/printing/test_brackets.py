@@ -1,0 +1,37 @@
+"""The three printers put brackets in the same places, but for what only a drawn formula groups."""
+
+import re
+import xml.etree.ElementTree as ET
+
+import pytest
+
+from service.expressions import Vocabulary, read
+
+
+@pytest.mark.parametrize(
+    ("source", "text", "drawn"),
+    [
+        ("k*(-2)", "k*(-2)", "k(-2)"),
+        ("(-k)*2", "-k*2", "-k2"),
+        ("k-(-l1*2)", "k - (-l1*2)", "k-(-l12)"),
+        ("k-((-l1+l2)*2)", "k - (-l1 + l2)*2", "k-(-l1+l2)2"),
+        ("k*(l1/l2)", "k*(l1/l2)", "kl1l2"),
+        ("k*(-l1/l2)", "k*(-l1/l2)", "k(-l1l2)"),
+        ("k*(-l1*2/l2)", "k*(-l1*2/l2)", "k-l12l2"),
+        ("(l1/l2)^2", "(l1/l2)^2", "(l1l2)2"),
+        ("(90deg)^2", "90deg^2", "(90°)2"),
+        ("1e3^2", "1e3^2", "(1103)2"),
+        ("k*1e3", "k*1e3", "k1103"),
+        ("-(l1*2)", "-(l1*2)", "-l12"),
+        ("-(l1+l2)", "-(l1 + l2)", "-(l1+l2)"),
+    ],
+)
+def test_brackets(source: str, text: str, drawn: str, arm: Vocabulary) -> None:
+    expression = read(source, arm)
+    latex = re.sub(
+        r"\\(?:left|right|cdot|frac|circ)|[ {}_^]", "", expression.latex().replace(r"^{\circ}", "°")
+    )
+    mathml = "".join(ET.fromstring(expression.mathml()).itertext())
+    assert expression.text() == text
+    assert latex == drawn
+    assert re.sub("[\u2062⋅]", "", mathml).replace("−", "-") == drawn

@@ -1,0 +1,13 @@
+"""Normal text, which reads back to the same tree."""
+
+import pytest
+
+from service.expressions import Vocabulary, read
+from tests.expressions.printing.formulas import FORMULAS
+
+
+@pytest.mark.parametrize(("source", "text"), [formula[:2] for formula in FORMULAS])
+def test_text(source: str, text: str, arm: Vocabulary) -> None:
+    expression = read(source, arm)
+    assert expression.text() == text
+    assert read(text, arm).tree == expression.tree

@@ -1,0 +1,62 @@
+"""Each repair on its cases: texts that it refuses, and near ones that are read.
+
+The cases of ``service/expressions/repairs/<name>.py`` stand in ``corpus/repairs/<name>.txt``, one
+a line, in the names of ``ROBOT``:
+
+    text that is refused | code | from-to and what stands there | repaired text, or -
+    text that is read | its meaning as normal text
+"""
+
+from pathlib import Path
+
+import pytest
+
+from service.expressions import ExpressionError, Symbol, Vocabulary, read, repairs
+from service.expressions.repairs import RULES
+from tests.expressions import corpus_files
+from tests.expressions.corpus_files import ROBOT, RepairCase, repair_cases
+
+MODULES = {file.stem for file in Path(repairs.__file__).parent.glob("*.py")}
+HELPERS = {"__init__", "failure", "nearest_name"}
+NAMES = corpus_files.repairs()
+CASES = [(name, case) for name in NAMES for case in repair_cases(name)]
+REFUSED = [pytest.param(name, case, id=case.place) for name, case in CASES if case.code]
+ACCEPTED = [pytest.param(name, case, id=case.place) for name, case in CASES if not case.code]
+# What a repair needs besides the names of the robot.
+DECLARED = {"ambiguous_number": [Symbol("e1", "length"), Symbol("e", "number")]}
+
+
+def vocabulary(repair: str) -> Vocabulary:
+    return Vocabulary([*ROBOT.symbols, *DECLARED[repair]]) if repair in DECLARED else ROBOT
+
+
+def test_every_rule_is_registered_once_and_has_cases() -> None:
+    registered = [str(rule.__module__).rsplit(".", 1)[1] for rule in RULES]
+    assert sorted(registered) == sorted(MODULES - HELPERS) == NAMES
+    assert {name for name, case in CASES if case.code} == set(NAMES)
+    assert {name for name, case in CASES if not case.code} == set(NAMES)
+    assert len(CASES) > 560
+
+
+@pytest.mark.parametrize(("repair", "case"), REFUSED)
+def test_refused(repair: str, case: RepairCase) -> None:
+    names = vocabulary(repair)
+    with pytest.raises(ExpressionError) as caught:
+        read(case.text, names)
+    error = caught.value
+    assert (error.code, "-".join(map(str, error.span))) == (case.code, case.span), error.message
+    assert error.suggestion == case.answer
+    # A message may begin with what was written: JSON's true.
+    begins = error.message[0]
+    assert begins.isupper() or not begins.isalpha() or isinstance(case.text, bool), error.message
+    assert error.message.endswith((".", "?")), error.message
+    if case.part:
+        assert str(case.text)[slice(*error.span)] == case.part
+    if case.answer is not None:
+        read(case.answer, names)
+
+
+@pytest.mark.parametrize(("repair", "case"), ACCEPTED)
+def test_accepted(repair: str, case: RepairCase) -> None:
+    """A near text is read, so the rule leaves it alone."""
+    assert read(case.text, vocabulary(repair)).text() == case.answer

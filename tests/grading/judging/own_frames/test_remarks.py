@@ -1,0 +1,70 @@
+"""The remarks on frames that are valid but not the reference's."""
+
+from collections.abc import Mapping
+
+import pytest
+
+from service.catalogue import Exercise
+from service.grading import Severity
+from tests.grading.support.robots import Row
+from tests.grading.support.submitting import full_marks, graded_table
+
+# Each table departs in one frame by one of the identities in docs/frame-choice.md; the frame that
+# it departs in is seen from the convention: row i holds d and θ of z_{i-1} in a standard table and
+# of z_i in a modified one.
+DEPARTURES: list[tuple[str, str, tuple[Row, ...]]] = [
+    (
+        "planar-rrr",
+        "You put origin 2 elsewhere on z2; that is a valid choice.",
+        (
+            ("0", "0", "0", "q1"),
+            ("l1", "0", "0.3", "q2"),
+            ("l2", "0", "-0.3", "q3"),
+            ("l3", "0", "0", "0"),
+        ),
+    ),
+    (
+        "planar-rrr",
+        "You let x2 point the other way; that is a valid choice.",
+        (
+            ("0", "0", "0", "q1"),
+            ("l1", "0", "0", "q2 + pi"),
+            ("-l2", "0", "0", "q3 - pi"),
+            ("l3", "0", "0", "0"),
+        ),
+    ),
+    (
+        "rrrp",
+        "You put origin 1 elsewhere on z1; that is a valid choice.",
+        (
+            ("l2", "0", "l1 + 0.2", "q1"),
+            ("l3", "180deg", "-0.2", "q2"),
+            ("0", "0", "l4", "q3"),
+            ("0", "0", "q4", "0"),
+        ),
+    ),
+    (
+        "stanford-arm",
+        "You turned z2 over; that is a valid choice.",
+        (
+            ("0", "-90deg", "0", "theta1"),
+            ("0", "-90deg", "d2", "theta2"),
+            ("0", "180deg", "-d3", "0"),
+            ("0", "-90deg", "0", "theta4"),
+            ("0", "90deg", "0", "theta5"),
+            ("0", "0", "d6", "theta6"),
+        ),
+    ),
+]
+
+
+@pytest.mark.parametrize(
+    ("exercise", "remark", "rows"), DEPARTURES, ids=[message for _, message, _ in DEPARTURES]
+)
+def test_the_frame_that_departs_is_named_and_no_other(
+    exercise: str, remark: str, rows: tuple[Row, ...], catalogue: Mapping[str, Exercise]
+) -> None:
+    report = graded_table(catalogue[exercise], rows)
+    assert full_marks(report)
+    assert [message.message for message in report.feedback] == [remark]
+    assert report.feedback[0].severity is Severity.INFO

@@ -1,0 +1,84 @@
+"""One slip that could be mended in several cells: the likeliest is blamed.
+
+The RRRP arm's first three axes are parallel, z3 and z4 point down: the pose holds only the sum
+d1 + d2 − d3 − d4 = l1 − l4 − q4 (Robotic Fundamentals, Forward Kinematics, Example 2).
+"""
+
+from collections.abc import Mapping
+
+import pytest
+
+from service.catalogue import Exercise
+from service.grading import PartReport
+from tests.grading.support.submitting import graded_table, not_correct
+
+BLAMED: dict[str, tuple[tuple[str, str, str], str, str]] = {
+    # d of rows 1 to 3; the row that is blamed; what is right there
+    "an offset forgotten, the reference's frames": (("l1", "0", "0"), "3", "l4"),
+    "an offset added, the reference's frames": (("l1", "l3", "l4"), "2", "0"),
+    "origin 1 elsewhere, the sign turned behind it": (("l1 + 0.2", "0.2", "l4"), "2", "-0.2"),
+    "an offset at the wrong joint, its sign turned": (("l1 + l4", "0", "0"), "1", "l1 - l4"),
+    "two origins elsewhere, a number that is none": (("l1 + l2", "-l2", "0.3"), "3", "l4"),
+}
+
+
+@pytest.mark.parametrize(("offsets", "row", "right"), BLAMED.values(), ids=list(BLAMED))
+def test_the_likeliest_cell_is_blamed(
+    offsets: tuple[str, str, str], row: str, right: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    d1, d2, d3 = offsets
+    report = graded_table(
+        catalogue["rrrp"],
+        [
+            ("l2", "0", d1, "q1"),
+            ("l3", "180deg", d2, "q2"),
+            ("0", "0", d3, "q3"),
+            ("0", "0", "q4", "0"),
+        ],
+    )
+    assert list(not_correct(report)) == [(row, "d")]
+    [message] = messages(report)
+    assert "it is the sum of the offsets along it that counts" in message
+    assert message.endswith(f"It should be {right}.")
+
+
+def messages(report: PartReport) -> list[str]:
+    return [m.message for row in report.rows for cell in row.cells for m in cell.feedback]
+
+
+def test_a_row_of_zeros_may_be_one_in_which_something_is_missing(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    """z3 and z4 point up, so that a fixed row must turn the last frame over; its α is left at 0."""
+    report = graded_table(
+        catalogue["rrrp-proximal"],
+        [
+            ("0", "0", "l1", "q1"),
+            ("l2", "0", "0", "q2"),
+            ("l3", "0", "-l4", "-q3"),
+            ("0", "0", "-q4", "0"),
+            ("0", "0", "0", "0"),
+        ],
+    )
+    assert list(not_correct(report)) == [("e", "alpha")]
+
+
+def test_a_table_in_the_other_convention_is_judged_as_it_was_meant(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    """The Stanford arm in modified rows, with z2 turned over, where the standard ones are asked."""
+    report = graded_table(
+        catalogue["stanford-arm"],
+        [
+            ("0", "0", "0", "theta1"),
+            ("0", "-90deg", "d2", "theta2"),
+            ("0", "-90deg", "-d3", "0"),
+            ("0", "180deg", "0", "theta4"),
+            ("0", "-90deg", "0", "theta5"),
+            ("0", "90deg", "d6", "theta6"),
+        ],
+    )
+    assert [m.code for m in report.feedback] == ["other_convention", "own_frame_choice"]
+    assert "turned z2 over" in report.feedback[1].message
+    # Row i should have the α that was written in row i + 1.
+    assert set(not_correct(report)) == {(row, "alpha") for row in ("1", "3", "4", "5", "6")}

@@ -1,0 +1,164 @@
+"""The row of a transform, or that it has none."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pytest
+
+from service.catalogue import Exercise
+from service.grading import Verdict
+from tests.grading.support.exercise_texts import Make, all_codes, graded, one_part
+from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
+
+Cells = dict[str, Any]
+
+FIRST: Cells = {"a": "l", "alpha": "-90deg", "d": "h", "theta": "phi"}
+FOURTH: Cells = {"a": 3, "alpha": 0, "d": 2, "theta": "pi/2"}
+NONE: Cells = {"none": True}
+
+
+@pytest.fixture
+def conditions(catalogue: Mapping[str, Exercise]) -> Exercise:
+    return catalogue["dh-conditions"]
+
+
+@pytest.mark.parametrize(
+    ("part_id", "answer"),
+    [
+        ("first", FIRST),
+        ("first", {"rows": [FIRST]}),
+        ("first", {**FIRST, "alpha": "3pi/2", "theta": "phi - 2pi"}),
+        ("second", NONE),
+        ("second", "none"),
+        ("third", " None "),
+        ("third", "none."),
+        ("third", '"none"'),
+        ("third", '{"none": true}'),
+        ("second", {**NONE, "a": "", "alpha": None, "d": " "}),
+        ("second", {**NONE, "why": "x1 is not perpendicular to z0"}),
+        ("fourth", FOURTH),
+        ("fourth", {"none": False, **FOURTH}),
+        ("fourth", {"none": None, **FOURTH}),
+        ("fourth", {"a": 3, "α": 0, "d_i": 2, "θ": "pi/2"}),
+        ("fourth", [3, 0, 2, "pi/2"]),
+        ("fourth", [[3, 0, 2, "pi/2"]]),
+        ("fourth", "3, 0, 2, pi/2"),
+        ("fourth", "a,alpha,d,theta\n3,0,2,pi/2"),
+    ],
+)
+def test_what_is_right(part_id: str, answer: object, conditions: Exercise) -> None:
+    report = part(handed_in(conditions, {part_id: answer}), part_id)
+    assert full_marks(report), report
+    assert [row.label for row in report.rows] == ["1"]
+
+
+@pytest.mark.parametrize(
+    ("part_id", "answer", "code"),
+    [
+        ("first", NONE, "dh_row_exists"),
+        ("second", {"a": "l", "alpha": 0, "d": "h", "theta": "phi"}, "dh_not_perpendicular"),
+        ("third", {"a": "l", "alpha": "phi", "d": "h", "theta": 0}, "dh_not_intersecting"),
+    ],
+)
+def test_a_row_for_none_and_none_for_a_row(
+    part_id: str, answer: object, code: str, conditions: Exercise
+) -> None:
+    report = part(handed_in(conditions, {part_id: answer}), part_id)
+    assert (report.verdict, report.points) == (Verdict.INCORRECT, 0)
+    assert [message.code for message in report.rows[0].feedback] == [code]
+
+
+@pytest.mark.parametrize(
+    ("cells", "blamed", "codes"),
+    [
+        ({"a": 2, "d": 3}, {"a", "d"}, {"exchanged_parameters"}),
+        ({"alpha": "pi/2", "theta": 0}, {"alpha", "theta"}, {"exchanged_parameters"}),
+        ({"a": -3}, {"a"}, {"sign"}),
+        ({"theta": "-90deg"}, {"theta"}, {"sign"}),
+        ({"theta": "90"}, {"theta"}, {"degrees_as_radians"}),
+        ({"d": "2.5"}, {"d"}, {"value"}),
+        ({"d": "(2"}, {"d"}, {"unbalanced_bracket"}),
+    ],
+)
+def test_a_wrong_cell_costs_itself(
+    cells: Cells, blamed: set[str], codes: set[str], conditions: Exercise
+) -> None:
+    report = part(handed_in(conditions, {"fourth": FOURTH | cells}), "fourth")
+    assert {cell for _, cell in not_correct(report)} == blamed
+    assert report.points == pytest.approx(4 - len(blamed))
+    assert codes <= all_codes(report) <= codes | {"sign", "quarter_turn"}
+
+
+@pytest.mark.parametrize(
+    "answer", [[], 1, "", "no row", {"none": "yes"}, {"rows": [FIRST, FIRST]}, {"rows": 3}, [1, 2]]
+)
+def test_another_shape_is_no_answer(answer: object, conditions: Exercise) -> None:
+    report = part(handed_in(conditions, {"first": answer}), "first")
+    assert report.points == 0
+    assert report.verdict in (Verdict.UNREADABLE, Verdict.MISSING)
+
+
+@pytest.mark.parametrize("part_id", ["second", "fourth"])
+@pytest.mark.parametrize(
+    "answer",
+    [
+        {**NONE, **FOURTH},
+        {**NONE, "a": 0},
+        {**NONE, "θ": "phi"},
+        {**NONE, "a": "", "alpha (deg)": 90},
+        {**NONE, "rows": [FOURTH]},
+        {"none": "yes", **FOURTH},
+    ],
+)
+def test_none_with_a_row_contradicts_itself(
+    part_id: str, answer: object, conditions: Exercise
+) -> None:
+    report = part(handed_in(conditions, {part_id: answer}), part_id)
+    assert (report.verdict, report.points) == (Verdict.UNREADABLE, 0)
+    assert all_codes(report) == {"contradiction"}
+
+
+@pytest.mark.parametrize(
+    "text", ["no", "no row", "-", "impossible", "3, 0, 2", "3 0 2", "3,0\n2,1"]
+)
+def test_text_that_is_no_row_is_told_what_a_row_is(text: str, conditions: Exercise) -> None:
+    report = part(handed_in(conditions, {"fourth": text}), "fourth")
+    assert (report.verdict, all_codes(report)) == (Verdict.UNREADABLE, {"wrong_shape"})
+    [message] = report.feedback
+    assert "one row" in message.message
+    assert "none" in message.message
+    assert "table" not in message.message
+
+
+MODIFIED = one_part(
+    "dh_row",
+    """convention = "modified"
+transform = [
+    ["cos(phi)", "-sin(phi)", "0", "l"],
+    ["0", "0", "1", "k"],
+    ["-sin(phi)", "-cos(phi)", "0", "0"],
+    ["0", "0", "0", "1"],
+]""",
+)
+
+
+def test_the_modified_convention(make_exercise: Make) -> None:
+    """Rot_x(−90°) Trans_x(l) Rot_z(φ) Trans_z(k), multiplied out by hand."""
+    exercise = make_exercise(MODIFIED)
+    row = {"a": "l", "alpha": "-pi/2", "d": "k", "theta": "phi"}
+    assert full_marks(graded(exercise, row))
+    assert all_codes(graded(exercise, "none")) == {"dh_row_exists"}
+
+
+def test_the_row_of_the_other_convention(make_exercise: Make) -> None:
+    """A turn about z alone and a shift along x, which either convention could begin with."""
+    exercise = make_exercise(
+        one_part(
+            "dh_row",
+            'transform = [["0", "-1", "0", "0"], ["1", "0", "0", "l"], ["0", "0", "1", "0"], '
+            '["0", "0", "0", "1"]]',
+        )
+    )
+    assert full_marks(graded(exercise, {"a": "l", "alpha": 0, "d": 0, "theta": "pi/2"}))
+    inverse = {"a": "-l", "alpha": 0, "d": 0, "theta": "-pi/2"}
+    assert all_codes(graded(exercise, inverse)) >= {"sign"}

@@ -1,0 +1,176 @@
+"""Tables that were once judged wrongly, each found by trying to break the grader."""
+
+from collections.abc import Mapping
+
+import pytest
+
+from service.catalogue import Exercise
+from service.grading import PartReport
+from service.grading.work_budget import MAX_REPAIRS
+from tests.grading.support.robots import EXACT, STANFORD
+from tests.grading.support.submitting import graded_table, handed_in, not_correct, part, table
+
+Rows = list[tuple[str, str, str, str]]
+
+# The exercise, the table, and the cells that are wrong in it.
+BLAMED: dict[str, tuple[str, Rows, list[tuple[str, str]]]] = {
+    "a sliding joint's sign, in a small robot": (
+        "scara",
+        [
+            ("a1", "0", "0", "theta1"),
+            ("a2", "180deg", "0", "theta2"),
+            ("0", "0", "-d3", "0"),
+            ("0", "0", "d4", "theta4"),
+        ],
+        [("3", "d")],
+    ),
+    "a sliding joint's variable is nowhere, beside huge offsets": (
+        "scara",
+        [
+            ("a1", "0", "0", "theta1"),
+            ("a2", "180deg", "0", "theta2"),
+            ("0", "0", "9e8", "0"),
+            ("0", "0", "d4 - 9e8", "theta4"),
+        ],
+        [("3", "d")],
+    ),
+    "a foreign variable, small enough to be rounding": (
+        "stanford-arm",
+        [
+            ("0", "-pi/2", "0", "theta1 + 0.0005*theta2"),
+            ("0", "1.57 + 0.0001*theta1", "d2", "theta2"),
+            *EXACT.rows(STANFORD)[2:],
+        ],
+        [("1", "theta"), ("2", "alpha")],
+    ),
+    "a number beside the variable, small enough to be rounding": (
+        "stanford-arm",
+        [
+            *EXACT.rows(STANFORD)[:2],
+            ("0", "0", "d3 + 0.0003", "0"),
+            *EXACT.rows(STANFORD)[3:],
+        ],
+        [("3", "d")],
+    ),
+}
+
+
+@pytest.mark.parametrize(("exercise", "rows", "wrong"), BLAMED.values(), ids=list(BLAMED))
+def test_these_cells_are_wrong_and_no_others(
+    exercise: str, rows: Rows, wrong: list[tuple[str, str]], catalogue: Mapping[str, Exercise]
+) -> None:
+    assert list(not_correct(graded_table(catalogue[exercise], rows))) == wrong
+
+
+def test_a_millimetre_beside_a_thousand_kilometres_is_wrong(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    """In which of the two rows cannot be told: only the sum of the offsets counts."""
+    rows = [("a1", "0", "1e6", "theta1"), ("a2", "0", "-1e6 + 0.0009", "theta2")]
+    wrong = list(not_correct(graded_table(catalogue["planar-rr"], rows)))
+    assert wrong in ([("1", "d")], [("2", "d")])
+
+
+def test_an_unread_cell_reddens_no_other(catalogue: Mapping[str, Exercise]) -> None:
+    """Row 3 may hold d3 + 0.5, so that nothing is wrong with row 4."""
+    rows = [
+        ("a1", "0", "0", "theta1"),
+        ("a2", "pi", "0", "theta2"),
+        ("0", "0", "", "0"),
+        ("0", "0", "d4 - 0.5", "theta4"),
+    ]
+    assert list(not_correct(graded_table(catalogue["scara"], rows))) == [("3", "d")]
+
+
+def codes(report: PartReport) -> list[str]:
+    return [message.code for message in report.feedback]
+
+
+def test_a_missing_row_in_the_middle_is_found_by_the_variables(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    rows = [("0", "0", "0", "q1"), ("l2", "0", "0", "q3"), ("l3", "0", "0", "0")]
+    report = graded_table(catalogue["planar-rrr"], rows)
+    assert codes(report) == ["missing_row"]
+    assert report.points == pytest.approx(0.75 * report.max_points)
+
+
+def test_of_an_axis_with_no_other_offset_no_sum_is_told(catalogue: Mapping[str, Exercise]) -> None:
+    rows = [*EXACT.rows(STANFORD)[:5], ("0", "0", "0", "theta6")]
+    report = graded_table(catalogue["stanford-arm"], rows)
+    [message] = [m.message for cell in report.rows[5].cells for m in cell.feedback]
+    assert "sum" not in message
+
+
+def test_frames_that_lead_nowhere_are_not_called_a_valid_choice(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    rows = [
+        ("0", "0", "l1", "q1"),
+        ("l1", "0", "0", "q2"),
+        ("l3", "180deg", "l4", "-q3"),
+        ("0.7", "0", "q4", "0"),
+    ]
+    assert codes(graded_table(catalogue["rrrp-proximal"], rows)) == ["tool_not_reached"]
+
+
+# The Stanford arm with the signs of all α turned.
+SIGNS_TURNED = [
+    ("0", "90deg", "0", "theta1"),
+    ("0", "-90deg", "d2", "theta2"),
+    ("0", "0", "d3", "0"),
+    ("0", "90deg", "0", "theta4"),
+    ("0", "-90deg", "0", "theta5"),
+    ("0", "0", "d6", "theta6"),
+]
+
+
+def test_a_slip_of_the_whole_table_and_its_cells_agree(catalogue: Mapping[str, Exercise]) -> None:
+    """Two half turns of θ would mend the table as well; that is not what was meant."""
+    report = graded_table(catalogue["stanford-arm"], SIGNS_TURNED)
+    assert codes(report) == ["column_sign"]
+    assert set(not_correct(report)) == {(row, "alpha") for row in "1245"}
+    found = [m.code for row in report.rows for cell in row.cells for m in cell.feedback]
+    assert found == ["column_sign"] * 4
+
+
+def test_two_half_turns_are_not_taken_for_a_slip_of_the_whole_table(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    rows = [list(row) for row in EXACT.rows(STANFORD)]
+    rows[0][3], rows[5][3] = "theta1 + pi", "theta6 + pi"
+    report = graded_table(catalogue["stanford-arm"], rows)
+    assert codes(report) == []
+    assert list(not_correct(report)) == [("1", "theta"), ("6", "theta")]
+
+
+def test_repairs_are_looked_for_in_so_many_cells_and_no_more(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    rows = [[f"(tehta1 + {i}.{j}" for j in range(4)] for i in range(6)]
+    report = part(handed_in(catalogue["stanford-arm"], {"table": table(rows)}), "table")
+    messages = [m.message for row in report.rows for cell in row.cells for m in cell.feedback]
+    helped = ["Did you mean (theta1 + " in message for message in messages]
+    assert helped == [True] * MAX_REPAIRS + [False] * (24 - MAX_REPAIRS)
+
+
+def test_rounded_angles_and_a_fixed_row_raise_nothing(catalogue: Mapping[str, Exercise]) -> None:
+    """Their rows are made anew each time, and must not be told apart by their values."""
+    rows = [
+        ("0", "0", "l1", "q1"),
+        ("l2", "3.14", "0", "-q2"),
+        ("l3", "0", "l4", "-q3"),
+        ("0", "0", "q4 + l1", "0"),
+        ("0", "0", "0", "1.57"),
+    ]
+    assert not_correct(graded_table(catalogue["rrrp-proximal"], rows))
+
+
+def test_a_value_under_an_unknown_name_is_not_said_to_be_missing(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    answer = table(EXACT.rows(STANFORD))
+    answer["rows"][1]["alpha [rad]"] = answer["rows"][1].pop("alpha")
+    report = part(handed_in(catalogue["stanford-arm"], {"table": answer}), "table")
+    [message] = report.rows[1].cells[1].feedback
+    assert message.code == "wrong_shape"

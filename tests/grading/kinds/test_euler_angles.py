@@ -1,0 +1,197 @@
+"""Three angles: every triple of the rotation is right; where it is wrong, few are blamed."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from service.catalogue import Exercise
+from service.grading import FeedbackLevel, Verdict
+from service.grading.kinds.euler_angles import nearest_triple
+from service.kinematics.rotations import PROPER, SEQUENCES
+from tests.grading.support.exercise_texts import SPATIAL_RRR, Make, all_codes, graded, one_part
+from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
+
+RPY = one_part("euler_angles", 'sequence = "RPY"', SPATIAL_RRR)
+
+
+@pytest.fixture
+def spatial(make_exercise: Make) -> Exercise:
+    return make_exercise(RPY)
+
+
+BETA = "atan2(-s23, sqrt((c1 c23)^2 + (s1 c23)^2))"
+RIGHT = {
+    "by inspection": ["theta1", "-(theta2 + theta3)", "90deg"],
+    "the other triple": ["theta1 + pi", "pi + theta2 + theta3", "-pi/2"],
+    "whole turns": ["theta1 - 2pi", "2pi - theta2 - theta3", "450deg"],
+    # Robotic Fundamentals (UMFM4X-15-M): β = Atan2(−r31, √(r11² + r21²)) and so on.
+    "the lecture's own formulas": [
+        f"atan2(s1 c23/cos({BETA}), c1 c23/cos({BETA}))",
+        BETA,
+        f"atan2(c23/cos({BETA}), 0)",
+    ],
+    "the root with a minus": [
+        "atan2(-s1 c23, -c1 c23)",
+        "atan2(-s23, -sqrt((c1 c23)^2 + (s1 c23)^2))",
+        "atan2(-c23, 0)",
+    ],
+    "rounded": ["theta1", "-theta2 - theta3", "1.571"],
+    "a column": [["theta1"], ["-theta2 - theta3"], ["pi/2"]],
+    "pasted": "[theta1, -theta2-theta3, pi/2]",
+    "pasted LaTeX": r"\begin{bmatrix} \theta_1 \\ -\theta_2-\theta_3 \\ \pi/2 \end{bmatrix}",
+}
+
+
+@pytest.mark.parametrize("name", RIGHT)
+def test_every_triple_of_the_rotation_is_right(name: str, spatial: Exercise) -> None:
+    report = graded(spatial, RIGHT[name])
+    assert full_marks(report), report
+    assert [row.label for row in report.rows] == ["1", "2", "3"]
+
+
+def test_degrees(spatial: Exercise) -> None:
+    assert full_marks(graded(spatial, ["theta1", "-theta2-theta3", 90], "degrees"))
+
+
+def test_the_erratum_of_the_lecture(spatial: Exercise) -> None:
+    """The lecture prints β = θ2 + θ3; from its own formula β = −(θ2 + θ3)."""
+    report = graded(spatial, ["theta1", "theta2 + theta3", "90deg"])
+    assert not_correct(report) == {("2", "1"): Verdict.INCORRECT}
+    assert report.points == pytest.approx(4)
+    [message] = report.rows[1].cells[0].feedback
+    assert (message.code, message.row, message.cell) == ("sign", "2", "1")
+    assert "sign of this angle is wrong" in message.message
+    assert "Change its sign." in message.message
+
+
+def test_the_erratum_in_the_shipped_exercise(catalogue: Mapping[str, Exercise]) -> None:
+    exercise = catalogue["spatial-rrr"]
+    right = handed_in(exercise, {"rpy": ["theta1", "-(theta2 + theta3)", "90deg"]})
+    printed = handed_in(exercise, {"rpy": ["theta1", "theta2 + theta3", "90deg"]})
+    assert full_marks(part(right, "rpy"))
+    assert not_correct(part(printed, "rpy")) == {("2", "1"): Verdict.INCORRECT}
+    assert all_codes(part(printed, "rpy")) == {"sign"}
+
+
+def test_a_hint_does_not_give_the_correction_away(spatial: Exercise) -> None:
+    answers = {"it": ["theta1", "theta2 + theta3", "90deg"]}
+    report = part(handed_in(spatial, answers, feedback=FeedbackLevel.VERDICTS), "it")
+    [message] = report.rows[1].cells[0].feedback
+    assert "Change its sign." not in message.message
+
+
+WRONG: dict[str, tuple[list[Any], set[str], set[str]]] = {
+    "one sign": (["-theta1", "-theta2-theta3", "pi/2"], {"1"}, {"sign"}),
+    "two signs": (["-theta1", "theta2+theta3", "pi/2"], {"1", "2"}, {"sign"}),
+    "degrees": (["theta1", "-theta2-theta3", "90"], {"3"}, {"degrees_as_radians"}),
+    "the last first": (["pi/2", "-theta2-theta3", "theta1"], {"1", "3"}, {"angle_order"}),
+    "arguments exchanged": (
+        ["atan2(c1, s1)", "-theta2-theta3", "pi/2"],
+        {"1"},
+        {"swapped_atan2"},
+    ),
+    "a joint too few": (["theta1", "-theta2", "pi/2"], {"2"}, {"value"}),
+    "half a turn": (["theta1 + pi", "-theta2-theta3", "pi/2"], {"1"}, {"half_turn"}),
+    "no value": (["theta1", "1/0", "pi/2"], {"2"}, {"undefined"}),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_slip_costs_the_angles_that_it_spoils(name: str, spatial: Exercise) -> None:
+    answer, blamed, codes = WRONG[name]
+    report = graded(spatial, answer)
+    assert {row for row, _ in not_correct(report)} == blamed
+    assert report.points == pytest.approx(6 - 2 * len(blamed))
+    # A note of the reader's on the order of the arguments says no more than what is to be read.
+    assert all_codes(report) - {"atan2_order"} == codes
+
+
+def test_an_unreadable_angle_costs_itself_only(spatial: Exercise) -> None:
+    report = graded(spatial, ["theta1", "(theta2", ""])
+    assert not_correct(report) == {("2", "1"): Verdict.UNREADABLE, ("3", "1"): Verdict.MISSING}
+
+
+@pytest.mark.parametrize("answer", [[], ["0"] * 4, {"a": 1}, 5, True, [["0", "0"], ["0", "0"]]])
+def test_another_shape_cannot_be_read(answer: object, spatial: Exercise) -> None:
+    report = graded(spatial, answer)
+    assert report.points == 0
+    assert all_codes(report) <= {"wrong_shape", "wrong_type", "missing"}
+    assert report.verdict in (Verdict.UNREADABLE, Verdict.PARTIAL)
+
+
+SINGULAR = one_part("euler_angles", 'sequence = "ZYZ"\nexpected = ["phi", "0", "psi"]')
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [["phi", "0", "psi"], ["psi", "0", "phi"], ["phi + psi", "0", "0"], [1, 0, "phi+psi-1"]],
+)
+def test_in_a_singular_configuration_the_sum_counts(answer: object, make_exercise: Make) -> None:
+    report = graded(make_exercise(SINGULAR), answer)
+    assert full_marks(report)
+    assert all_codes(report) == {"singular_orientation"}
+
+
+@pytest.mark.parametrize("answer", [["phi", "0", "0"], ["phi", "0", "-psi"], ["phi", "0.1", "psi"]])
+def test_in_a_singular_configuration_not_everything_is_right(
+    answer: object, make_exercise: Make
+) -> None:
+    report = graded(make_exercise(SINGULAR), answer)
+    assert report.verdict is Verdict.PARTIAL
+    assert len(not_correct(report)) == 1
+
+
+@pytest.mark.parametrize("axes", ["moving", "fixed"])
+@pytest.mark.parametrize("sequence", SEQUENCES)
+def test_every_sequence(sequence: str, axes: str, make_exercise: Make) -> None:
+    fields = f'sequence = "{sequence}"\naxes = "{axes}"\nexpected = ["phi", "psi + 0.3", "k - 0.5"]'
+    exercise = make_exercise(one_part("euler_angles", fields))
+    middle = "-psi - 0.3" if sequence in PROPER else "pi - psi - 0.3"
+    assert full_marks(graded(exercise, ["phi", "psi + 0.3", "k - 0.5"]))
+    assert full_marks(graded(exercise, ["phi - pi", middle, "k - 0.5 + pi"]))
+    assert not_correct(graded(exercise, ["phi", "psi + 0.3", "k - 0.4"]))
+
+
+def test_the_angles_of_another_sequence_are_named(make_exercise: Make) -> None:
+    """The same three turns about fixed axes, for moving ones."""
+    fields = 'sequence = "XYZ"\naxes = "moving"\nexpected = ["0.3", "0.5", "0.7"]'
+    exercise = make_exercise(one_part("euler_angles", fields))
+    turns = Rotation.from_euler("XYZ", [0.3, 0.5, 0.7])
+    others: list[tuple[Any, str]] = [
+        ("xyz", "XYZ about fixed axes"),
+        ("ZXZ", "ZXZ about moving axes"),
+    ]
+    for name, said in others:
+        answer = [float(angle) for angle in turns.as_euler(name)]
+        [message] = graded(exercise, answer).feedback
+        assert message.code == "other_euler_sequence"
+        assert said in message.message
+
+
+@given(
+    st.sampled_from(SEQUENCES),
+    st.booleans(),
+    st.tuples(*[st.floats(-3, 3)] * 3),
+    st.integers(0, 2),
+)
+def test_the_nearest_triple_keeps_two_of_three_angles(
+    sequence: str, fixed: bool, angles: tuple[float, float, float], slipped: int
+) -> None:
+    """However the rotation's own angles come out, two right angles are found to be right."""
+    name = sequence.lower() if fixed else sequence
+    rotation = Rotation.from_euler(name, angles).as_matrix()[None]
+    written = np.array(angles)[:, None].copy()
+    written[slipped] += 0.9
+    nearest = nearest_triple(written, rotation, sequence, fixed=fixed)
+    np.testing.assert_allclose(
+        Rotation.from_euler(name, nearest[:, 0]).as_matrix(), rotation[0], atol=1e-6
+    )
+    outer = np.sin(angles[1]) if sequence in PROPER else np.cos(angles[1])
+    if abs(outer) > 0.05 and abs(np.sin(angles[1] + 0.45)) > 0.1:
+        off = np.abs(np.exp(1j * nearest[:, 0]) - np.exp(1j * written[:, 0]))
+        assert (off < 1e-6).sum() == 2

@@ -1,0 +1,74 @@
+"""Link transforms, in the frames of the reference and in those of the student's table."""
+
+from collections.abc import Callable
+
+import pytest
+
+from service.catalogue import Exercise
+from service.grading import Verdict
+from tests.grading.support.scara import (
+    A1,
+    A3,
+    A4,
+    IDENTITY,
+    LINKS,
+    SCARA,
+    TABLE,
+    a2_with,
+    graded,
+    table,
+    wrong_cells,
+)
+
+
+@pytest.fixture
+def scara(make_exercise: Callable[[str], Exercise]) -> Exercise:
+    return make_exercise(SCARA)
+
+
+def test_the_printed_link_transforms_are_right(scara: Exercise) -> None:
+    parts = graded(scara, table=table(TABLE), links=LINKS)
+    assert parts["links"].verdict is Verdict.CORRECT
+    assert parts["links"].points == 8
+    assert not parts["links"].follow_through
+    assert [row.label for row in parts["links"].rows][:5] == [
+        "A1.1",
+        "A1.2",
+        "A1.3",
+        "A1.4",
+        "A2.1",
+    ]
+
+
+def test_they_are_graded_in_the_frames_that_the_student_s_table_chose(scara: Exercise) -> None:
+    """z2 is left pointing up and turned over one row later: α2 = 0, α3 = π, d3 reversed."""
+    own = [TABLE[0], ("a2", "0", "0", "q2"), ("0", "pi", "-d3", "0"), TABLE[3]]
+    own_links = [
+        A1,
+        [["c2", "-s2", "0", "a2*c2"], ["s2", "c2", "0", "a2*s2"], *A1[2:]],
+        [list("1000"), ["0", "-1", "0", "0"], ["0", "0", "-1", "-d3"], list("0001")],
+        A4,
+    ]
+    assert graded(scara, table=table(own), links=own_links)["links"].points == 8
+    assert graded(scara, links=own_links)["links"].points == 8
+    in_other_frames = graded(scara, table=table(own), links=LINKS)["links"]
+    assert in_other_frames.points < 8
+    assert {row.split(".")[0] for row, _ in wrong_cells(in_other_frames)} == {"A2", "A3"}
+
+
+def test_without_a_table_a_wrong_matrix_is_named(scara: Exercise) -> None:
+    part = graded(scara, links=[A1, a2_with("a1"), A3, A4])["links"]
+    assert wrong_cells(part) == {("A2.1", "4"), ("A2.2", "4")}
+
+
+def test_a_matrix_left_off_is_missing_and_the_others_are_graded(scara: Exercise) -> None:
+    part = graded(scara, table=table(TABLE), links=LINKS[:3])["links"]
+    assert {row for row, _ in wrong_cells(part)} == {"A4.1", "A4.2", "A4.3", "A4.4"}
+    assert part.points == 6
+
+
+@pytest.mark.parametrize("answer", [5, "x", {}, [5], [[["1"]] * 9], [IDENTITY] * 5, [[]]])
+def test_what_is_no_list_of_matrices_is_unreadable(scara: Exercise, answer: object) -> None:
+    part = graded(scara, links=answer)["links"]
+    assert part.verdict is Verdict.UNREADABLE
+    assert part.points == 0

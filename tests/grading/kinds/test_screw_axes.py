@@ -1,0 +1,138 @@
+"""Screw axes: space and body, sliding joints, signs, and what a row is worth."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pytest
+
+from service.catalogue import Exercise
+from service.grading import Verdict
+from tests.grading.support.exercise_texts import SPATIAL_RRR, Make, all_codes, graded, one_part
+from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
+
+Screws = list[list[Any]]
+
+SPACE: Screws = [[0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 0, 0], [0, 0, 1, 0, "-L1", 0]]
+BODY: Screws = [[0, 0, 1, 0, "L1 + L2", 0], [0, 0, 0, 1, 0, 0], [0, 0, 1, 0, "L2", 0]]
+
+
+@pytest.fixture
+def rpr(catalogue: Mapping[str, Exercise]) -> Exercise:
+    return catalogue["planar-rpr-poe"]
+
+
+def changed(screws: Screws, i: int, row: list[Any]) -> Screws:
+    return [*screws[:i], row, *screws[i + 1 :]]
+
+
+@pytest.mark.parametrize(
+    ("part_id", "screws"),
+    [
+        ("space-screws", SPACE),
+        ("body-screws", BODY),
+        ("space-screws", "[0 0 1 0 0 0; 0 0 0 1 0 0; 0 0 1 0 -L1 0]"),
+    ],
+)
+def test_the_lectures_axes(part_id: str, screws: object, rpr: Exercise) -> None:
+    report = part(handed_in(rpr, {part_id: screws}), part_id)
+    assert full_marks(report), report
+    assert [row.label for row in report.rows] == ["1", "2", "3"]
+    assert {cell.label for row in report.rows for cell in row.cells} == set("123456")
+
+
+# robots.md, "Planar RPR": what is changed, in which row, and what is said of it.
+SLIPS: dict[str, tuple[str, int, list[Any], str]] = {
+    "v = ω × q": ("space-screws", 2, [0, 0, 1, 0, "L1", 0], "moment_sign"),
+    "body for space": ("space-screws", 2, BODY[2], "body_for_space"),
+    "space for body": ("body-screws", 0, SPACE[0], "space_for_body"),
+    "reversed": ("space-screws", 2, [0, 0, -1, 0, "L1", 0], "axis_reversed"),
+    "slides the other way": ("space-screws", 1, [0, 0, 0, -1, 0, 0], "axis_reversed"),
+    "ω not of unit length": ("space-screws", 2, [0, 0, 2, 0, "-2 L1", 0], "not_normalised"),
+    "v not of unit length": ("space-screws", 1, [0, 0, 0, "L1", 0, 0], "not_normalised"),
+    "slides in ω": ("space-screws", 1, [1, 0, 0, 0, 0, 0], "infinite_pitch"),
+    "slides in both": ("space-screws", 1, [1, 0, 0, 1, 0, 0], "infinite_pitch"),
+    "turns in v": ("space-screws", 0, [0, 0, 0, 0, 0, 1], "infinite_pitch"),
+    "turns nowhere": ("space-screws", 2, [0, 0, 0, 0, 0, 1], "infinite_pitch"),
+    "halves exchanged": ("space-screws", 2, [0, "-L1", 0, 0, 0, 1], "exchanged_halves"),
+    "the point": ("space-screws", 2, [0, 0, 1, "L1", 0, 0], "point_for_velocity"),
+    "a pitch": ("space-screws", 2, [0, 0, 1, 0, "-L1", "0.5"], "pitch"),
+}
+
+
+@pytest.mark.parametrize("name", SLIPS)
+def test_a_slip_is_named_in_its_row(name: str, rpr: Exercise) -> None:
+    part_id, i, row, code = SLIPS[name]
+    screws = SPACE if part_id == "space-screws" else BODY
+    report = part(handed_in(rpr, {part_id: changed(screws, i, row)}), part_id)
+    assert {label for label, _ in not_correct(report)} == {str(i + 1)}
+    assert [message.code for message in report.rows[i].feedback] == [code]
+    assert not any(cell.feedback for cell in report.rows[i].cells)
+    assert report.points <= 5
+
+
+def test_another_slip_is_told_number_by_number(rpr: Exercise) -> None:
+    screws = changed(SPACE, 2, [0, 0, 1, 0, "-L1 - L2", 0])
+    report = part(handed_in(rpr, {"space-screws": screws}), "space-screws")
+    assert not_correct(report) == {("3", "5"): Verdict.INCORRECT}
+    assert report.rows[2].cells[4].feedback
+    assert report.points == 5
+
+
+def test_zeros_earn_little(rpr: Exercise) -> None:
+    """Fifteen of the eighteen numbers are 0; ω and v count as wholes."""
+    report = part(handed_in(rpr, {"space-screws": [[0] * 6] * 3}), "space-screws")
+    assert len(not_correct(report)) == 4
+    assert report.points == pytest.approx(report.max_points / 3)
+
+
+def test_a_missing_joint_and_a_short_row(rpr: Exercise) -> None:
+    answer = [SPACE[0], [0, 0, 0]]
+    report = part(handed_in(rpr, {"space-screws": answer}), "space-screws")
+    verdicts = [row.verdict for row in report.rows]
+    assert verdicts == [Verdict.CORRECT, Verdict.UNREADABLE, Verdict.MISSING]
+
+
+@pytest.mark.parametrize("answer", [[], [[0] * 6] * 4, {"rows": []}, 1, [0] * 6])
+def test_another_shape_cannot_be_read(answer: object, rpr: Exercise) -> None:
+    report = part(handed_in(rpr, {"space-screws": answer}), "space-screws")
+    assert (report.verdict, report.points) == (Verdict.UNREADABLE, 0)
+    assert all_codes(report) == {"wrong_shape"}
+
+
+FREE = one_part(
+    "screw_axes",
+    'frame = "space"\ndirections = "free"\nexpected = [["0", "0", "1", "0", "-l", "0"]]',
+)
+
+
+def test_where_directions_are_free_an_axis_may_be_reversed(make_exercise: Make) -> None:
+    exercise = make_exercise(FREE)
+    report = graded(exercise, [[0, 0, -1, 0, "l", 0]])
+    assert full_marks(report)
+    assert all_codes(report) == {"own_direction"}
+    assert graded(exercise, [[0, 0, -1, 0, "-l", 0]]).verdict is Verdict.PARTIAL
+    given = make_exercise(FREE.replace('directions = "free"\n', ""))
+    assert all_codes(graded(given, [[0, 0, -1, 0, "l", 0]])) == {"axis_reversed"}
+
+
+def test_one_axis_needs_no_list_around_it(make_exercise: Make) -> None:
+    assert full_marks(graded(make_exercise(FREE), [0, 0, 1, 0, "-l", 0]))
+
+
+def test_the_axes_of_a_robot_that_is_given_by_its_table(make_exercise: Make) -> None:
+    """Spatial RRR at home: z0 up through the origin, then two axes along −y at x = R, R + L1."""
+    space = make_exercise(one_part("screw_axes", 'frame = "space"', SPATIAL_RRR))
+    answer: Screws = [
+        [0, 0, 1, 0, 0, 0],
+        [0, -1, 0, 0, 0, "-R"],
+        [0, -1, 0, 0, 0, "-R - L1"],
+    ]
+    assert full_marks(graded(space, answer))
+    body = make_exercise(one_part("screw_axes", 'frame = "body"', SPATIAL_RRR))
+    # The tool's y is up and its z along −y0; it lies R + L1 + L2 out.
+    answer = [
+        [0, 1, 0, 0, 0, "-R - L1 - L2"],
+        [0, 0, 1, 0, "L1 + L2", 0],
+        [0, 0, 1, 0, "L2", 0],
+    ]
+    assert full_marks(graded(body, answer))

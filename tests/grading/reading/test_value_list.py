@@ -1,0 +1,121 @@
+"""Lists of values: how they are written, and what is said to what is none."""
+
+import pytest
+
+from service.grading import Verdict
+from tests.grading.support.exercise_texts import Make, all_codes, graded, one_part
+from tests.grading.support.submitting import cell, full_marks, not_correct
+
+POINT = one_part(
+    "vector",
+    """components = [
+    { name = "x", quantity = "length", expected = "l" },
+    { name = "y", quantity = "number", expected = "k" },
+]""",
+)
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        ["l", "k", 0],
+        ["l", "k", 0.0],
+        ["l", "k", " 0 "],
+        [["l"], ["k"], [0]],
+        [["l", "k", 0]],
+        "l, k, 0",
+        "[l; k; 0]",
+        "l\nk\n0",
+        "(l, k, 0)",
+        r"\begin{bmatrix} l \\ k \\ 0 \end{bmatrix}",
+    ],
+)
+def test_a_third_zero_is_left_aside_and_said_to_be(answer: object, make_exercise: Make) -> None:
+    report = graded(make_exercise(POINT), answer)
+    assert full_marks(report), report
+    assert [row.label for row in report.rows] == ["1", "2"]
+    assert all_codes(report) == {"zero_left_aside"}
+    [message] = cell(report, "2", "1").feedback
+    if isinstance(answer, str):
+        assert message.span is not None
+        assert answer[slice(*message.span)].strip() == "0"
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        ["l", "k", 1],
+        ["l", "k", "0.0"],
+        ["l", "k", "0*l"],
+        ["l", "k", False],
+        ["l", "k", None],
+        ["l", 0, "k"],
+        ["l", "k", 0, 0],
+        ["l", "k", 0, 1],
+        "l, k, 0, 1",
+        "l, k, l",
+    ],
+)
+def test_any_other_third_value_is_refused(answer: object, make_exercise: Make) -> None:
+    report = graded(make_exercise(POINT), answer)
+    assert (report.verdict, all_codes(report)) == (Verdict.UNREADABLE, {"wrong_shape"})
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "(2 l, k k)",
+        "[2 l, k k]",
+        "[2 l + 0, k k]",
+        "2 l; k k",
+        "2 l\nk k",
+        "  2 l ;  k k",
+        "(2 l, sqrt((k k)^2))",
+    ],
+)
+def test_products_may_be_written_with_blanks(text: str, make_exercise: Make) -> None:
+    """Where only one reading has as many values as are asked for, it is that one."""
+    vector = one_part(
+        "vector",
+        """components = [
+    { name = "x", quantity = "length", expected = "2*l" },
+    { name = "y", quantity = "number", expected = "k^2" },
+]""",
+    )
+    assert full_marks(graded(make_exercise(vector), text))
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("no", "wrong_shape"),
+        ("l", "wrong_shape"),
+        ("l k", "wrong_shape"),
+        # MATLAB reads three values here.
+        ("[l -l, k]", "mixed_separators"),
+        ("[l k, k, l k]", "mixed_separators"),
+        ('{"x": 1, "y": 2, "z": 3}', "mixed_separators"),
+        ("1 2 3\n4 5\n6 7", "ambiguous_columns"),
+    ],
+)
+def test_what_is_no_list_is_not_told_of_tables(text: str, code: str, make_exercise: Make) -> None:
+    report = graded(make_exercise(POINT), text)
+    assert (report.verdict, all_codes(report)) == (Verdict.UNREADABLE, {code})
+    [message] = report.feedback
+    assert "list of 2 values" in message.message
+    for word in ("row", "column", "table", "matrix"):
+        assert word not in message.message
+
+
+@pytest.mark.parametrize("answer", [[["l"], ["k"], ["l"]], [["l", "k"], ["l", "k"]], [["l"], []]])
+def test_lists_in_a_list_are_no_list_of_values(answer: object, make_exercise: Make) -> None:
+    assert all_codes(graded(make_exercise(POINT), answer)) == {"wrong_shape"}
+
+
+def test_equations_in_a_list_are_repaired_one_by_one(make_exercise: Make) -> None:
+    report = graded(make_exercise(POINT), "x = l\ny = k")
+    assert not_correct(report) == {
+        ("1", "1"): Verdict.UNREADABLE,
+        ("2", "1"): Verdict.UNREADABLE,
+    }
+    assert all_codes(report) == {"equation"}

@@ -1,0 +1,87 @@
+"""Handing in answers, and finding one's way about the report."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from service.catalogue import Exercise
+from service.grading import (
+    CellReport,
+    FeedbackLevel,
+    PartReport,
+    Report,
+    RowReport,
+    Submission,
+    Verdict,
+    grade,
+)
+from tests.grading.support.robots import COLUMNS, AngleUnit
+
+
+def table(rows: Iterable[Sequence[object]]) -> dict[str, Any]:
+    """A table as the answer to a ``dh_table`` part."""
+    return {"rows": [dict(zip(COLUMNS, row, strict=True)) for row in rows]}
+
+
+def handed_in(
+    exercise: Exercise,
+    answers: Mapping[str, object],
+    angle_unit: AngleUnit = "radians",
+    feedback: FeedbackLevel = FeedbackLevel.FULL,
+) -> Report:
+    return grade(exercise, Submission(answers, angle_unit=angle_unit, feedback=feedback))
+
+
+def part(report: Report, part_id: str) -> PartReport:
+    [found] = [part for part in report.parts if part.part == part_id]
+    return found
+
+
+def graded_table(
+    exercise: Exercise, rows: Iterable[Sequence[object]], angle_unit: AngleUnit = "radians"
+) -> PartReport:
+    return part(handed_in(exercise, {"table": table(rows)}, angle_unit), "table")
+
+
+def graded_pose(
+    exercise: Exercise, matrix: object, angle_unit: AngleUnit = "radians"
+) -> PartReport:
+    return part(handed_in(exercise, {"pose": matrix}, angle_unit), "pose")
+
+
+def row(report: PartReport, label: str) -> RowReport:
+    [found] = [row for row in report.rows if row.label == label]
+    return found
+
+
+def cell(report: PartReport, row_label: str, cell_label: str) -> CellReport:
+    [found] = [cell for cell in row(report, row_label).cells if cell.label == cell_label]
+    return found
+
+
+def codes(cell: CellReport) -> list[str]:
+    return [message.code for message in cell.feedback]
+
+
+def not_correct(report: PartReport) -> dict[tuple[str, str], Verdict]:
+    """The verdict of each cell that is not correct, by its row and its own label."""
+    return {
+        (row.label, cell.label): cell.verdict
+        for row in report.rows
+        for cell in row.cells
+        if cell.verdict is not Verdict.CORRECT
+    }
+
+
+def full_marks(report: PartReport) -> bool:
+    return (
+        report.verdict is Verdict.CORRECT
+        and report.points == report.max_points
+        and not not_correct(report)
+        and all(row.points == row.max_points for row in report.rows)
+    )
+
+
+def as_data(report: Report) -> dict[str, Any]:
+    """The report as nested dicts and lists, ready for ``json.dumps``."""
+    return asdict(report)

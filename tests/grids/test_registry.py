@@ -1,0 +1,188 @@
+"""Each format gives the cells that were written in it."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from service.grids import read_grid
+from tests.grids.writers import FORMATS, MATRICES, Rows
+
+POSE = [
+    ["c12", "-s12", "0", "a1*c1+a2*c12"],
+    ["s12", "c12", "0", "a1*s1+a2*s12"],
+    ["0", "0", "1", "-d3"],
+    ["0", "0", "0", "1"],
+]
+CALLS = [["atan2(y,x)", "q1", "(a+b)*c"], ["1", "(a+b)", "-(a)"], ["q[0]", "cos(q1)", "1e-3"]]
+ROUND = [["atan2(y, x)", "(a1 + b) * c"], ["-cos(q1 - q2)", "2 * sin(q1)"]]
+
+
+def cells(text: str) -> list[list[str]]:
+    return [[cell.text for cell in row] for row in read_grid(text).rows]
+
+
+@pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.parametrize("rows", [POSE, CALLS], ids=["pose", "calls"])
+def test_a_matrix_comes_back_as_written(name: str, rows: Rows) -> None:
+    assert cells(FORMATS[name](rows)) == rows
+
+
+# Where blanks alone separate, a sum or product with blanks is read by MATLAB's rule.
+@pytest.mark.parametrize("name", FORMATS)
+def test_blanks_and_commas_in_brackets_split_nothing(name: str) -> None:
+    assert cells(FORMATS[name](ROUND)) == ROUND
+
+
+WORDS = st.from_regex(r"[a-cqθ0-9](?:[a-c0-9*/+-]{0,5}[a-c0-9])?", fullmatch=True)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+@settings(max_examples=8)
+@given(rows=st.lists(st.lists(WORDS, min_size=3, max_size=3), min_size=2, max_size=5))
+def test_any_words_come_back(name: str, rows: list[list[str]]) -> None:
+    assert cells(FORMATS[name](rows)) == rows
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_each_span_is_the_place_of_its_cell(name: str) -> None:
+    text = FORMATS[name](POSE)
+    for row in read_grid(text).rows:
+        for cell in row:
+            assert text[slice(*cell.whole)] == cell.text
+            for i, letter in enumerate(cell.text):
+                assert text[slice(*cell.span(i, i + 1))] == letter
+
+
+@pytest.mark.parametrize("name", sorted(FORMATS))
+def test_line_ends_of_any_system(name: str) -> None:
+    text = FORMATS[name](POSE).replace("\r\n", "\n")
+    assert cells(text.replace("\n", "\r\n")) == POSE
+    assert cells("\n" + text + "\n\n") == POSE
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        # MATLAB's rule for blanks and signs
+        ("[c1 -s1 0]", [["c1", "-s1", "0"]]),
+        ("[c1 - s1 0]", [["c1 - s1", "0"]]),
+        ("[c1 -  s1 0]", [["c1 -  s1", "0"]]),
+        ("[c1- s1 0]", [["c1- s1", "0"]]),
+        ("[c1-s1 0]", [["c1-s1", "0"]]),
+        ("[c1 + -s1 0]", [["c1 + -s1", "0"]]),
+        ("[ -c1 +s1 ]", [["-c1", "+s1"]]),
+        ("[- c1 0]", [["- c1", "0"]]),
+        ("[a * b, c]", [["a * b", "c"]]),
+        ("[a .* b c]", [["a .* b", "c"]]),
+        ("[a ./b c]", [["a ./b", "c"]]),
+        ("[(a - b) -(c)]", [["(a - b)", "-(c)"]]),
+        ("[1 2\n3 4]", [["1", "2"], ["3", "4"]]),
+        ("[1 2 % one\n3 4 # two\n]", [["1", "2"], ["3", "4"]]),
+        ("[1 ...\n 2; 3 4]", [["1", "2"], ["3", "4"]]),
+        ("[1, 2,; 3, 4;]", [["1", "2"], ["3", "4"]]),
+        ("syms q1 q2\nA = [1 2; 3 4];", [["1", "2"], ["3", "4"]]),
+        (">> A = [1 2; 3 4]", [["1", "2"], ["3", "4"]]),
+        ("T(q1, q2) = [1 2; 3 4]", [["1", "2"], ["3", "4"]]),
+        ("[[1 2]; [3 4]]", [["1", "2"], ["3", "4"]]),
+        ("['a' 'b'; 'c' 'd']", [["a", "b"], ["c", "d"]]),
+        ("sym([1 2; 3 4])", [["1", "2"], ["3", "4"]]),
+        # a function and its argument, a number and its unit
+        ("[sin q1 cos (q2) 0]", [["sin q1", "cos (q2)", "0"]]),
+        ("[sin^2 q1 atan2 (y, x)]", [["sin^2 q1", "atan2 (y, x)"]]),
+        ("[90 deg 90 ° -45 deg]", [["90 deg", "90 °", "-45 deg"]]),
+        # the star of a joint variable is no product with what stands in the next column
+        ("[0 d3* 0; 1 2 3]", [["0", "d3*", "0"], ["1", "2", "3"]]),
+        # commas and blanks
+        ("[l1 c1 + l2 c12, 0; s1, 1]", [["l1 c1 + l2 c12", "0"], ["s1", "1"]]),
+        ("[c1 -s1, 0; 1 2 3]", [["c1", "-s1", "0"], ["1", "2", "3"]]),
+        # Python
+        ("[[a, b],\n [c, d],]", [["a", "b"], ["c", "d"]]),
+        ("[a, b]", [["a", "b"]]),
+        ("Matrix([a, b])", [["a"], ["b"]]),
+        ("np.array([a, b])", [["a", "b"]]),
+        ("Matrix([\n[a, b],\n[c, d]])", [["a", "b"], ["c", "d"]]),
+        ("np.array(sp.Matrix([[a, b]]), dtype=float)", [["a", "b"]]),
+        ("[(a + b), (c + d)]", [["(a + b)", "(c + d)"]]),
+        ("Out[3]: [[a, b], [c, d]]", [["a", "b"], ["c", "d"]]),
+        ("matrix([a, b], [c, d])", [["a", "b"], ["c", "d"]]),
+        ("{{a, b}, {c, d}}", [["a", "b"], ["c", "d"]]),
+        ("[a, b],\n[c, d]", [["a", "b"], ["c", "d"]]),
+        # JSON: escapes are undone, but a LaTeX command is none
+        (r'[["\u03b81", "\"x\""], ["\\theta", "\theta"]]', [["θ1", '"x"'], ["\\theta", "\\theta"]]),
+        ("[[0, 1.5], [-2, 1e-3]]", [["0", "1.5"], ["-2", "1e-3"]]),
+        # LaTeX
+        (r"a & b \\ c & d \\", [["a", "b"], ["c", "d"]]),
+        (r"\begin{bmatrix}a&b\\[2pt]c&d\end{bmatrix}", [["a", "b"], ["c", "d"]]),
+        (r"\begin{bmatrix}a&b\\ [c] & d\end{bmatrix}", [["a", "b"], ["[c]", "d"]]),
+        (r"\begin{bmatrix}a&b\\*[1.5ex]c&d\end{bmatrix}", [["a", "b"], ["c", "d"]]),
+        (r"\begin{bmatrix}a\&x&{b&y}\end{bmatrix}", [[r"a\&x", "{b&y}"]]),
+        (r"\begin{tabular*}{3cm}[t]{@{}l|p{2cm}@{}} a & b \end{tabular*}", [["a", "b"]]),
+        (
+            r"\begin{array}{cc} a & b \tabularnewline \cline{1-2} c & d \end{array}",
+            [["a", "b"], ["c", "d"]],
+        ),
+        (r"\left(\begin{matrix} a & b \end{matrix}\right).", [["a", "b"]]),
+        (r"\begin{align*} T &= \begin{bmatrix} a & b \end{bmatrix} \\ \end{align*}", [["a", "b"]]),
+        (r"\cos{\left(q_1 \right)} & \bigl[ x \Bigr] \\", [[r"\cos{(q_1 )}", "[ x ]"]]),
+        (r"T = A_1 A_2 = \begin{bmatrix} a & b \end{bmatrix}", [["a", "b"]]),
+        ("\\begin{matrix} a % first\n & 5\\% \\end{matrix}", [["a", "5\\%"]]),
+        (r"\begin{tabular}{cc} $a_1$ & $x$ + $y$ \end{tabular}", [["a_1", "x  +  y"]]),
+        # HTML
+        ("<table><tr><td>x<sup>2</sup><td>90<sup>o</sup></table>", [["x^(2)", "90°"]]),
+        ("<tr><th>a<sub>i-1</sub></th><th>&alpha;&nbsp;</th></tr>", [["a_{i-1}", "α"]]),
+        ("<tr><td>θ<sub>1</sub><sup>*</sup><td><b>d</b><br>3", [["θ_{1}*", "d 3"]]),
+        ("<tr><td>1 < 2 & 3<td>&lt;", [["1 < 2 & 3", "<"]]),
+        ("<table><style>td{}</style><tr><td colspan='1'>a<td>b</table>", [["a", "b"]]),
+        # spreadsheets
+        ('"a ""x""",b\n"atan2(y, x)",c', [['a "x"', "b"], ["atan2(y, x)", "c"]]),
+        ("a\tb\t\t\nc\td\t\t\n\t\t\t\n", [["a", "b"], ["c", "d"]]),
+        ("\t\ta\tb\n\t\tc\td", [["a", "b"], ["c", "d"]]),
+        ('"a\nb"\tc\nd\te', [["a\nb", "c"], ["d", "e"]]),
+        ("(a, 0, 0, q1\n1, 2, 3, 4", [["(a", "0", "0", "q1"], ["1", "2", "3", "4"]]),
+        ("(a, 0\n1), 2", [["(a", "0"], ["1)", "2"]]),
+        ("atan2(y, x), 1\n2, (a, b)", [["atan2(y, x)", "1"], ["2", "(a, b)"]]),
+        ("0,5;1\n2;3", [["0,5", "1"], ["2", "3"]]),
+        ("a,\tb,\tc\nd,\te,\tf", [["a", "b", "c"], ["d", "e", "f"]]),
+        ("\ufeffa,b\nc,d", [["a", "b"], ["c", "d"]]),
+        # Markdown
+        ("|a \\| b|c|\n|-|-|\n|`d`|**e**|", [["a \\| b", "c"], ["d", "e"]]),
+        ("| | a |\n|---|---|\n| 1 | b |", [["", "a"], ["1", "b"]]),
+        ("+---+---+\n| a | b |\n+===+===+\n| c | d |\n+---+---+", [["a", "b"], ["c", "d"]]),
+        # columns
+        ("a   b\n-------\n1   q1 + 90", [["a", "b"], ["1", "q1 + 90"]]),
+        ("a  link length\n1  2x", [["a", "link length"], ["1", "2x"]]),
+    ],
+)  # fmt: skip
+def test_what_is_written(text: str, expected: list[list[str]]) -> None:
+    assert cells(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "marked"),
+    [
+        ("[c1 -s1; s1 c1]", "blank_before_sign", "-s1"),
+        ("[l1 c1 + l2 c12, 0; s1, 1]", "commas_separate", "l1 c1 + l2 c12, 0; s1, 1"),
+        ("a b\nc d", "blank_columns", "a"),
+    ],
+)
+def test_two_readings_are_told(text: str, code: str, marked: str) -> None:
+    [note] = read_grid(text).notes
+    assert (note.code, text[slice(*note.span)]) == (code, marked)
+
+
+@pytest.mark.parametrize("name", ["MATLAB", "nested list", "CSV", "Markdown", "bmatrix"])
+def test_one_reading_needs_no_note(name: str) -> None:
+    assert read_grid(MATRICES.get(name, FORMATS[name])(POSE)).notes == ()
+
+
+def test_a_span_in_a_changed_cell_is_that_of_what_was_typed() -> None:
+    text = "<table><tr><td>&alpha;<sub>1</sub>+foo</td></tr></table>"
+    [[cell]] = read_grid(text).rows
+    assert cell.text == "α_{1}+foo"
+    assert text[slice(*cell.span(6, 9))] == "foo"
+    assert text[slice(*cell.span(0, 1))] == "&alpha;"
+
+
+def test_sizes_are_told_in_words() -> None:
+    assert read_grid("[1 2; 3 4]").size == "2 × 2"
+    assert read_grid("1,2,3\n4,5").size == "2 × 2 to 3"

@@ -1,0 +1,35 @@
+"""The three registries of answer kinds agree, and a half-made kind is refused at the start."""
+
+import sys
+from types import ModuleType
+
+import pytest
+
+from service.catalogue import parts
+from service.catalogue.parts import SPECS, KindError
+from service.grading.kinds import KINDS
+from service.kinds_check import check_kinds, refuse_half_made
+from service.solutions.kinds import ANSWERS
+
+
+def test_the_three_registries_agree() -> None:
+    assert list(SPECS) == sorted(KINDS) == list(ANSWERS)
+    check_kinds()
+
+
+def test_the_files_that_a_kind_lacks_are_named() -> None:
+    found = {"parts": {"matrix", "gear"}, "kinds": {"matrix"}, "answers": {"matrix", "cam"}}
+    with pytest.raises(KindError) as error:
+        refuse_half_made(found)
+    assert str(error.value).splitlines() == [
+        "The answer kind 'cam' is half made: write parts/cam.py, kinds/cam.py.",
+        "The answer kind 'gear' is half made: write kinds/gear.py, answers/gear.py.",
+    ]
+
+
+def test_a_file_without_its_class_is_refused() -> None:
+    gear = ModuleType("service.catalogue.parts.gear")
+    gear.__file__ = "parts/gear.py"
+    with pytest.raises(KindError, match=r'parts/gear\.py: write one subclass .* Literal\["gear"\]'):
+        parts._spec(gear)
+    assert "service.catalogue.parts.gear" not in sys.modules
