@@ -7,18 +7,12 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from service.grids import GRID_LIMITS, Grid, GridError, read_grid
-from tests.grids.writers import FORMATS
+from tests.grids.writers import FORMATS, POSE
 
 # Seconds of process time for one text. The budget of 50 ms is for the benchmarks and the long fuzz;
 # here, traced for coverage on any machine, only a stall is a failure.
 STALL = 1.0
 
-POSE = [
-    ["c12", "-s12", "0", "a1*c1+a2*c12"],
-    ["s12", "c12", "0", "a1*s1+a2*s12"],
-    ["0", "0", "1", "-d3"],
-    ["0", "0", "0", "1"],
-]
 SEEDS = [write(POSE) for write in FORMATS.values()]
 FRAGMENTS = [
     "[", "]", "(", ")", "{", "}", "<", ">", "&", "\\", "|", "'", '"', "%", "#", "...", ";", ",",
