@@ -56,24 +56,11 @@ def _strict(function: Function) -> Function:
 
 
 _FUNCTIONS: Final[dict[str | None, Function]] = {
-    "+": np.add,
-    "-": np.subtract,
-    "*": np.multiply,
-    "/": np.divide,
-    "^": np.power,
-    "²": np.square,
-    "negative": np.negative,
-    "sin": np.sin,
-    "cos": np.cos,
-    "tan": np.tan,
-    "asin": np.arcsin,
-    "acos": np.arccos,
-    "atan": np.arctan,
-    "atan2": np.arctan2,
-    "sqrt": np.sqrt,
-    "abs": np.absolute,
+    "+": np.add, "-": np.subtract, "*": np.multiply, "/": np.divide, "^": np.power, "²": np.square,
+    "negative": np.negative, "sin": np.sin, "cos": np.cos, "tan": np.tan, "asin": np.arcsin,
+    "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "sqrt": np.sqrt, "abs": np.absolute,
     "exp": np.exp,
-}
+}  # fmt: skip
 _STRICT: Final = {name: f"strict {name}" for name in _MAY_HIDE_NON_FINITE}
 _FUNCTIONS.update({strict: _strict(_FUNCTIONS[name]) for name, strict in _STRICT.items()})
 

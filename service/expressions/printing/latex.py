@@ -23,15 +23,9 @@ from service.expressions.tree import (
 )
 
 _FUNCTIONS: Final = {
-    "sin": r"\sin",
-    "cos": r"\cos",
-    "tan": r"\tan",
-    "asin": r"\arcsin",
-    "acos": r"\arccos",
-    "atan": r"\arctan",
-    "atan2": r"\operatorname{atan2}",
-    "exp": r"\exp",
-}
+    "sin": r"\sin", "cos": r"\cos", "tan": r"\tan", "asin": r"\arcsin", "acos": r"\arccos",
+    "atan": r"\arctan", "atan2": r"\operatorname{atan2}", "exp": r"\exp",
+}  # fmt: skip
 
 
 def to_latex(node: Node) -> str:

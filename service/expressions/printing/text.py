@@ -1,11 +1,6 @@
 """A tree -> normal text, which reads back to the same tree."""
 
-from service.expressions.printing.brackets import (
-    ATOM,
-    POWER,
-    PRODUCT,
-    needs_brackets,
-)
+from service.expressions.printing.brackets import ATOM, POWER, PRODUCT, needs_brackets
 from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
 
 
