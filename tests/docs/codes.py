@@ -46,6 +46,7 @@ def codes_in(files: Mapping[str, str]) -> list[Told]:
     """Every code that is handed over in these files. Raises HiddenCodeError."""
     trees = {file: ast.parse(text) for file, text in files.items()}
     classes = dict(found for tree in trees.values() for found in _classes(tree))
+    classes = dict(found for tree in trees.values() for found in _heirs(tree, classes)) | classes
     functions = dict(found for tree in trees.values() for found in _functions(tree))
     constants = [given for tree in trees.values() for given in _given(tree.body)]
     told: list[Told] = []
@@ -78,6 +79,14 @@ def _classes(tree: ast.Module) -> Iterator[tuple[str, int]]:
                 arguments = _arguments(statement)
         if CODE in arguments:
             yield node.name, arguments.index(CODE)
+
+
+def _heirs(tree: ast.Module, classes: Mapping[str, int]) -> Iterator[tuple[str, int]]:
+    """The classes that inherit from one that carries a code."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ClassDef):
+            bases = {base.id for base in node.bases if isinstance(base, ast.Name)}
+            yield from ((node.name, classes[base]) for base in bases & classes.keys())
 
 
 def _functions(tree: ast.Module) -> Iterator[tuple[str, int]]:
