@@ -47,6 +47,7 @@ def codes_in(files: Mapping[str, str]) -> list[CodeUse]:
     trees = {file: ast.parse(text) for file, text in files.items()}
     nodes = {file: list(ast.walk(tree)) for file, tree in trees.items()}
     classes = dict(found for each in nodes.values() for found in _classes(each))
+    classes = dict(found for each in nodes.values() for found in _heirs(each, classes)) | classes
     passing_on = {file: dict(_functions(each)) for file, each in nodes.items()}
     functions = {name: at for found in passing_on.values() for name, at in found.items()}
     constants = [given for tree in trees.values() for given in _given(tree.body)]
@@ -80,6 +81,14 @@ def _classes(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, int]]:
                 arguments = _arguments(statement)
         if CODE in arguments:
             yield node.name, arguments.index(CODE)
+
+
+def _heirs(nodes: Iterable[ast.AST], classes: Mapping[str, int]) -> Iterator[tuple[str, int]]:
+    """The classes that inherit from one that carries a code."""
+    for node in nodes:
+        if isinstance(node, ast.ClassDef):
+            bases = {base.id for base in node.bases if isinstance(base, ast.Name)}
+            yield from ((node.name, classes[base]) for base in bases & classes.keys())
 
 
 def _functions(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, int]]:
