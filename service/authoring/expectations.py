@@ -4,11 +4,12 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import Final
 
-from service.authoring.grading import graded, in_words, told
+from service.authoring.grading import graded, in_words
 from service.authoring.remarks import Remark, failed, warning
 from service.catalogue import CheckSpec, Exercise
 from service.catalogue.schema import ExpectSpec
 from service.grading import PartReport, Verdict
+from service.grading.report import messages_of
 
 # How many checks of each kind make a mistake in the exercise unlikely.
 WANTED: Final = {"right": 1, "equivalent": 1, "wrong": 2}
@@ -57,7 +58,7 @@ def _differences(expected: ExpectSpec, report: PartReport) -> Iterator[str]:
         yield f"should be {expected.verdict}"
     if expected.points is not None and abs(expected.points - report.points) > _SAME:
         yield f"should get {expected.points:g} points"
-    codes = sorted({message.code for message in told(report)})
+    codes = sorted({message.code for message, _ in messages_of(report)})
     missing = [code for code in expected.codes or () if code not in codes]
     if missing:
         had = f"the codes {', '.join(codes)}" if codes else "no code at all"

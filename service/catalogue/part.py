@@ -44,7 +44,9 @@ class PartSpec(StrictModel, ABC):
             },
         ),
     ]
-    title: Text = Field(description="Its title.", examples=["Denavit-Hartenberg table"])
+    title: Text = Field(
+        description="The title that students see.", examples=["Denavit-Hartenberg table"]
+    )
     prompt: str = Field(
         "",
         description="The task, in one sentence or more.",

@@ -22,7 +22,7 @@ Structure = Annotated[
     StringConstraints(pattern=r"^[RP]{1,10}$"),
     Field(
         description="One letter for each joint: R turns, P slides; at most 10.",
-        examples=["RRP"],
+        examples=["RP"],
         json_schema_extra={
             "advice": "write one letter for each joint, R if it turns and P if it slides, at most "
             "10"
@@ -35,7 +35,7 @@ Joints = Annotated[
         min_length=1,
         description="The joint variables in order. A number in the first one is the number of the "
         "first joint.",
-        examples=[["theta1", "theta2", "d3"]],
+        examples=[["theta1", "d2"]],
     ),
 ]
 
@@ -46,8 +46,10 @@ class SymbolSpec(StrictModel):
     A joint variable needs no entry, but may have one that says more about it.
     """
 
-    kind: Kind = Field(description="What it is.")
-    description: Text = Field(description="Its meaning.", examples=["length of link 1"])
+    kind: Kind = Field(description="Whether it is an angle, a length or a plain number.")
+    description: Text = Field(
+        description="What it stands for, as students are told.", examples=["length of link 1"]
+    )
     unit: str = Field(
         "",
         description='Its unit, as students are told; without one "rad" for an angle and "m" for a '
@@ -165,7 +167,9 @@ class ExpectSpec(StrictModel):
 class CheckSpec(StrictModel):
     """One answer to the exercise, graded whenever the file is checked."""
 
-    title: Text = Field(description="Its title.", examples=["x1 the other way round, in degrees"])
+    title: Text = Field(
+        description="A few words on what is tried.", examples=["x1 the other way round, in degrees"]
+    )
     kind: Literal["right", "equivalent", "wrong"] = Field(
         description='"right" and "equivalent" must get full marks unless ``expect`` says '
         'otherwise; "wrong" must lose some, as ``expect`` says.'

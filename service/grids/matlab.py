@@ -69,10 +69,10 @@ def _sign_notes(signs: list[SourceText]) -> tuple[Note, ...]:
 
 def _ambiguous(by_commas: list[list[SourceText]], by_blanks: list[list[SourceText]]) -> GridError:
     at = next(i for i, row in enumerate(by_commas) if len(row) != len(by_blanks[i]))
-    few, many = by_commas[at], by_blanks[at]
+    row, longer = by_commas[at], by_blanks[at]
     return GridError(
         "mixed_separators",
-        f"This row has {len(few)} values if only commas separate them, and {len(many)} if blanks "
+        f"This row has {len(row)} values if only commas separate them, and {len(longer)} if blanks "
         "do as well. Put a comma between all values.",
-        (few[0].whole[0], few[-1].whole[1]),
+        (row[0].whole[0], row[-1].whole[1]),
     )

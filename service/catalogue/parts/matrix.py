@@ -25,7 +25,8 @@ class MatrixSpec(PartSpec):
     )
     quantity: Kind | list[Kind] = Field(
         "number",
-        description="What the entries are, or a list with what each column is.",
+        description="Whether the entries are angles, lengths or plain numbers: one word for all, "
+        "or one for each column.",
         examples=[["number", "length"]],
     )
 

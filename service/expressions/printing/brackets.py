@@ -6,7 +6,6 @@ a fraction groups what a ``/`` does not. But a power needs more: ``90°`` and ``
 than one sign there.
 """
 
-import re
 from typing import Final
 
 from service.expressions.tree import Binary, Negation, Node, Number, Unit
@@ -14,16 +13,12 @@ from service.expressions.tree import Binary, Negation, Node, Number, Unit
 # How tightly a form binds, and how tightly an operand has to bind in a place.
 SUM, PRODUCT, SIGNED, POWER, ATOM = range(5)
 _OPERATORS: Final = {"+": SUM, "-": SUM, "*": PRODUCT, "/": PRODUCT, "^": POWER}
-# MathML wraps a signed operand, and the product or sum that begins with it, in rows.
-_DRAWN_SIGN: Final = re.compile("(?:<mrow>)*<mo>−</mo>")
 
 
-def needs_brackets(
-    node: Node, printed: str, place: int, *, first: bool = False, drawn: bool = True
-) -> bool:
-    """Whether ``node``, ``printed`` as an operand in ``place``, needs brackets there.
+def needs_brackets(node: Node, place: int, *, signed: bool, drawn: bool = True) -> bool:
+    """Whether ``node`` needs brackets as an operand in ``place``, in a drawn formula or in text.
 
-    The ``first`` operand has no operator before it, so that it may begin with a sign.
+    ``signed`` tells whether it would put a sign behind an operator.
     """
     precedence = ATOM
     # A chain of types takes a third of the time of ``match``.
@@ -35,12 +30,7 @@ def needs_brackets(
         precedence = SIGNED
     elif drawn and (kind is Unit or is_power_of_ten(node)):
         precedence = POWER
-    return precedence < place or (not first and _begins_with_sign(printed))
-
-
-def _begins_with_sign(printed: str) -> bool:
-    begin = printed[0]
-    return begin == "-" or (begin == "<" and _DRAWN_SIGN.match(printed) is not None)
+    return signed or precedence < place
 
 
 def is_power_of_ten(node: Node) -> bool:

@@ -89,4 +89,5 @@ def _power(base: Node, exponent: Node) -> str:
 
 def _at(node: Node, place: int, *, first: bool = False) -> str:
     latex = to_latex(node)
-    return rf"\left({latex}\right)" if needs_brackets(node, latex, place, first=first) else latex
+    signed = not first and latex[0] == "-"
+    return rf"\left({latex}\right)" if needs_brackets(node, place, signed=signed) else latex

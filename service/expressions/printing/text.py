@@ -33,5 +33,5 @@ def to_text(node: Node) -> str:
 
 def _at(node: Node, place: int, *, first: bool = False) -> str:
     text = to_text(node)
-    brackets = needs_brackets(node, text, place, first=first, drawn=False)
-    return f"({text})" if brackets else text
+    signed = not first and text[0] == "-"
+    return f"({text})" if needs_brackets(node, place, signed=signed, drawn=False) else text

@@ -1,4 +1,4 @@
-"""The argument of a repair rule, its type, and what several rules share."""
+"""The argument of a repair rule, its type, and helpers of several rules."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
