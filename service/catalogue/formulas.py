@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from service.catalogue.fields import Formula, Homogeneous, Screw
-from service.catalogue.variables import TRIALS, SymbolValues, Variable, trial_values
+from service.catalogue.variables import TRIALS, Variable, trial_values
 from service.expressions import Expression, ExpressionError, Kind, Vocabulary, read
+from service.expressions.evaluation.samples import SymbolValues
 from service.kinematics.transforms import Numbers
 
 FormulaGrid = tuple[tuple[Expression, ...], ...]

@@ -7,8 +7,8 @@ from functools import cached_property
 import numpy as np
 
 from service.catalogue.formulas import FormulaField
-from service.catalogue.variables import SymbolValues
 from service.expressions import Expression, Kind
+from service.expressions.evaluation.samples import SymbolValues
 from service.kinematics.chain import (
     COLUMNS,
     Row,
