@@ -48,7 +48,7 @@ class SymbolSpec(StrictModel):
 
     kind: Kind = Field(description="Whether it is an angle, a length or a plain number.")
     description: Text = Field(
-        description="What it stands for, as students are told.", examples=["length of link 1"]
+        description="Its meaning, as students are told.", examples=["length of link 1"]
     )
     unit: str = Field(
         "",

@@ -25,8 +25,8 @@ class MatrixSpec(PartSpec):
     )
     quantity: Kind | list[Kind] = Field(
         "number",
-        description="Whether the entries are angles, lengths or plain numbers: one word for all, or one "
-        "for each column.",
+        description="Whether the entries are angles, lengths or plain numbers: one word for all, "
+        "or one for each column.",
         examples=[["number", "length"]],
     )
 
