@@ -10,12 +10,12 @@ from service.grading.reading.entry import AngleUnit
 def graded(
     exercise: Exercise, answers: Mapping[str, object], angle_unit: AngleUnit = "radians"
 ) -> dict[str, PartReport]:
-    """What becomes of each part, by its id."""
+    """The report on each part, by its id."""
     submission = Submission(answers, angle_unit, FeedbackLevel.FULL)
     return {part.part: part for part in grade(exercise, submission).parts}
 
 
-def told(report: PartReport) -> Iterator[Feedback]:
+def messages(report: PartReport) -> Iterator[Feedback]:
     """All messages on a part: on itself, its rows and their cells."""
     yield from report.feedback
     for row in report.rows:
@@ -26,6 +26,6 @@ def told(report: PartReport) -> Iterator[Feedback]:
 
 def in_words(report: PartReport) -> str:
     """Verdict, points and the first message of a part, for a remark."""
-    # What is said of a single cell says more than what is said of the whole.
-    message = next((f": {each.message}" for each in reversed(list(told(report)))), "")
+    # A message on a single cell says more than one on the whole.
+    message = next((f": {each.message}" for each in reversed(list(messages(report)))), "")
     return f"{report.verdict.value}, {report.points:g} of {report.max_points:g} points{message}"

@@ -24,7 +24,7 @@ BELOW_PASS_MARK = 1
 
 
 class Format(StrEnum):
-    """How a report is written."""
+    """The form in which a report is written."""
 
     TEXT = "text"
     JSON = "json"
@@ -32,7 +32,7 @@ class Format(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Graded:
-    """What became of one file: a report, or the reason why there is none."""
+    """The result for one file: a report, or the reason why there is none."""
 
     file: Path
     report: Report | None

@@ -149,7 +149,7 @@ def _cell_feedback(cells: Iterable[CellReport]) -> Iterator[tuple[Feedback, Verd
 
 
 def _places(messages: Iterable[Feedback]) -> str:
-    """Where the messages belong: ``row 1 d, theta; row 2``."""
+    """The places of the messages: ``row 1 d, theta; row 2``."""
     cells: dict[str, list[str]] = {}
     for message in messages:
         if message.row is not None:
