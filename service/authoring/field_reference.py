@@ -44,8 +44,8 @@ _PARTS: Final = f"""\
 Every part has these keys and the key `kind`; the further keys of each kind follow below. The kinds
 are {_KINDS}."""
 _POSES: Final = """\
-Parts of these kinds take what is right from a pose of the robot. Where the part gives the answer
-itself, these keys are left out."""
+Parts of these kinds ask for a pose of the robot, or for something that it has. Leave these keys out
+where the part gives the answer itself."""
 
 
 def page() -> str:
@@ -106,7 +106,7 @@ def _rows(fields: Mapping[str, FieldInfo], schema: Schema) -> Iterator[str]:
 
 
 def _markdown(text: str) -> str:
-    """The first paragraph of a text, what stands in quotes and double backticks as code."""
+    """The first paragraph of a text, with quoted words and double backticks as code."""
     paragraph = " ".join(text.partition("\n\n")[0].split())
     return re.sub(r'"[\w-]+"', r"`\g<0>`", paragraph.replace("``", "`"))
 

@@ -11,7 +11,7 @@ from service.grading.report import messages_of
 def graded(
     exercise: Exercise, answers: Mapping[str, object], angle_unit: AngleUnit = "radians"
 ) -> dict[str, PartReport]:
-    """What becomes of each part, by its id."""
+    """The report on each part, by its id."""
     submission = Submission(answers, angle_unit, FeedbackLevel.FULL)
     return {part.part: part for part in grade(exercise, submission).parts}
 

@@ -1,4 +1,4 @@
-"""Pydantic's findings in an exercise file, with what to write instead."""
+"""Advice to authors on each of pydantic's findings in an exercise file."""
 
 import difflib
 import inspect
@@ -21,7 +21,7 @@ Location = Sequence[int | str]
 
 
 def advised(detail: Mapping[str, Any]) -> str:
-    """One of pydantic's findings, in a sentence that says what to write."""
+    """One of pydantic's findings, in a sentence with the repair."""
     reason: str = detail["msg"].removeprefix("Value error, ")
     location: Location = detail["loc"]
     last = location[-1] if location else ""

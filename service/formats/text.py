@@ -153,7 +153,7 @@ def _messages(part: PartReport) -> Iterator[tuple[str, Feedback, Verdict]]:
 
 
 def _places(messages: Iterable[Feedback]) -> str:
-    """Where the messages belong: ``row 1 d, theta; row 2``."""
+    """The places of the messages: ``row 1 d, theta; row 2``."""
     cells: dict[str, list[str]] = {}
     for message in messages:
         if message.row is not None:

@@ -36,13 +36,14 @@ class Hypothesis(Generic[Answer]):
     """
 
     answer: Answer
-    finding: Finding | Callable[[], tuple[Finding, ...]]
+    finding: Finding | Callable[[], Finding | tuple[Finding, ...]]
     entries: Index = ...
 
     @property
     def findings(self) -> tuple[Finding, ...]:
         """The findings, one for each misconception."""
-        return (self.finding,) if isinstance(self.finding, Finding) else self.finding()
+        found = self.finding if isinstance(self.finding, Finding) else self.finding()
+        return (found,) if isinstance(found, Finding) else found
 
 
 @dataclass(frozen=True, slots=True)

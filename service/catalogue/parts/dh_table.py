@@ -14,7 +14,7 @@ from service.kinematics.dh import Convention
 
 
 class DhTableShape(AnswerShape):
-    """What a table must look like, and whose choice its frames are."""
+    """The shape of a table, and whose choice its frames are."""
 
     posted: ClassVar[str] = '`{"rows": [{"a", "alpha", "d", "theta"}, …]}`'
 

@@ -32,7 +32,7 @@ class MatrixSpec(PartSpec):
 
     @property
     def quantities(self) -> tuple[tuple[Kind, ...], ...]:
-        """What each entry is."""
+        """The quantity of each entry."""
         columns = len(self.expected[0])
         row = (self.quantity,) * columns if isinstance(self.quantity, str) else self.quantity
         return (tuple(row),) * len(self.expected)

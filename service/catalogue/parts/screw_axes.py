@@ -12,7 +12,7 @@ from service.catalogue.shapes import AnswerShape, choices, clauses, listed, numb
 
 
 class ScrewAxesShape(AnswerShape):
-    """What a list of screw axes (ω; v) must look like: one six-vector for each row."""
+    """The shape of a list of screw axes (ω; v): one six-vector for each row."""
 
     posted: ClassVar[str] = "a list of six-vectors (ω; v)"
 

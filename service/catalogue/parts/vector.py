@@ -32,7 +32,7 @@ class VectorSpec(PartSpec):
     )
 
     def formulas(self) -> WrittenFormulas:
-        """What is right for each component."""
+        """The right value of each component."""
         return list_of(
             "components[{j}].expected",
             [component.expected for component in self.components],

@@ -84,13 +84,12 @@ def sine_for_cosine(case: WrongEntry) -> Formulas:
             yield Rewritten(tree, partial(_exchanged_at, place))
 
 
-def _exchanged_at(place: Node) -> tuple[Finding, ...]:
-    finding = Finding(
+def _exchanged_at(place: Node) -> Finding:
+    return Finding(
         "sine_for_cosine",
         "Sine and cosine are exchanged in one place of this entry.",
         f"{to_text(place)} should be {to_text(exchanged(place))}.",
     )
-    return (finding,)
 
 
 def sum_of_cosines(case: WrongEntry) -> Formulas:

@@ -97,10 +97,9 @@ def _wrong_table(
     freedom, subset = freedom_of(part), samples.subset(FEW)
 
     def valid(tables: Numbers, convention: Convention) -> NDArray[np.bool_]:
-        at_subset = samples.subset_of(tables, FEW)
-        return valid_tables(at_subset, roles, convention, freedom, exercise, subset, INTENDED_POSE)
+        return valid_tables(tables, roles, convention, freedom, exercise, subset, INTENDED_POSE)
 
-    return WrongTable(written, valid)
+    return WrongTable(written, written.subset(FEW), valid)
 
 
 def _intended(

@@ -7,7 +7,7 @@ explains the answer.
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
-from itertools import combinations
+from itertools import combinations, islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,13 +29,17 @@ Validity = Callable[[NDArray[np.float64], Convention], NDArray[np.bool_]]
 
 @dataclass(frozen=True, slots=True)
 class WrongTable:
-    """A wrong table; ``valid`` tells which tables ``(T, rows, 4, samples)`` describe the robot."""
+    """A wrong table at all samples, and at a subset that is enough to compare it.
+
+    ``valid`` tells which tables ``(T, rows, 4, samples)``, at the subset, describe the robot.
+    """
 
     written: WrittenTable
+    subset: WrittenTable
     valid: Validity
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> list[AnyHypothesis]:
-        """Those hypotheses that change the table to a valid one, all tried at once."""
+        """Those hypotheses, at the subset, that change the table to a valid one; all at once."""
         tried = list(hypotheses)
         explains = np.zeros(len(tried), dtype=np.bool_)
         for convention in Convention:
@@ -43,19 +47,21 @@ class WrongTable:
             if places:
                 tables = np.array([tried[i].answer.values for i in places])
                 explains[places] = self.valid(tables, convention)
-                if convention is self.written.convention:
-                    change = np.abs(tables - self.written.values).max(axis=(1, 2, 3))
+                if convention is self.subset.convention:
+                    change = np.abs(tables - self.subset.values).max(axis=(1, 2, 3))
                     explains[places] &= change > INTENDED_POSE
         return [tried[i] for i in np.flatnonzero(explains)]
 
 
 def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
     """The link's own columns, a and α or one of them, stand one row too early or too late."""
+    rows = list(range(len(table.constants)))
+    up, down = [*rows[1:], rows[0]], [rows[-1], *rows[:-1]]
     for columns in (slice(A, ALPHA + 1), slice(A, A + 1), slice(ALPHA, ALPHA + 1)):
         for late in (True, False):
             finding = partial(_shifted, " and ".join(SYMBOLS[columns]), late)
             constants = table.constants.copy()
-            constants[:, columns] = np.roll(table.constants[:, columns], -1 if late else 1, axis=0)
+            constants[:, columns] = table.constants[up if late else down, columns]
             yield Repaired(table.changed(constants), finding)
             if table.reference is not None:
                 # The row that fell off the end is not in the student's table.
@@ -65,14 +71,13 @@ def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
                 yield Repaired(table.changed(completed), finding)
 
 
-def _shifted(named: str, late: bool) -> tuple[Finding, ...]:
-    finding = Finding(
+def _shifted(named: str, late: bool) -> Finding:
+    return Finding(
         "link_columns_shifted",
         f"{named} stand one row too {'late' if late else 'early'}: check which link each of them "
         f"describes.",
         f"Move {named} {'up' if late else 'down'} by one row.",
     )
-    return (finding,)
 
 
 def column_sign(table: WrittenTable) -> Iterator[RepairedTable]:
@@ -84,14 +89,13 @@ def column_sign(table: WrittenTable) -> Iterator[RepairedTable]:
             yield Repaired(table.changed(constants), partial(_turned_sign, column))
 
 
-def _turned_sign(column: int) -> tuple[Finding, ...]:
-    finding = Finding(
+def _turned_sign(column: int) -> Finding:
+    return Finding(
         "column_sign",
         f"{SYMBOLS[column]} has the wrong sign throughout: it is measured {MEASURED[column]}, "
         f"positive by the right-hand rule.",
         f"Turn the sign of every {SYMBOLS[column]}.",
     )
-    return (finding,)
 
 
 def columns_swapped(table: WrittenTable) -> Iterator[RepairedTable]:
@@ -119,15 +123,14 @@ def _exchanged(cells: Table, rows: slice, one: int, other: int) -> Table:
     return exchanged
 
 
-def _swapped(one: str, other: str, row: int | None) -> tuple[Finding, ...]:
+def _swapped(one: str, other: str, row: int | None) -> Finding:
     where = "" if row is None else f" in row {row + 1}"
-    finding = Finding(
+    return Finding(
         "columns_swapped",
         f"{one} and {other} are exchanged{where}: one is measured along or about x, the other "
         f"along or about z.",
         f"Exchange {one} and {other}{where}.",
     )
-    return (finding,)
 
 
 def row_order(table: WrittenTable) -> Iterator[RepairedTable]:
@@ -147,14 +150,13 @@ def _with_exchanged(rows: range, i: int, j: int) -> list[int]:
     return order
 
 
-def _reordered(order: list[int]) -> tuple[Finding, ...]:
+def _reordered(order: list[int]) -> Finding:
     moved = [str(i + 1) for i, row in enumerate(order) if row != i]
-    finding = Finding(
+    return Finding(
         "row_order",
         f"Rows {' and '.join(moved) if len(moved) == 2 else ', '.join(moved)} stand in the wrong "
         f"order: row i belongs to joint i, counted from the base.",
     )
-    return (finding,)
 
 
 BASIC = written_table.MISCONCEPTIONS
@@ -166,14 +168,28 @@ def explaining(case: WrongTable, *, combine: bool) -> list[RepairedTable]:
 
     If none does and ``combine`` allows, the first pair of misconceptions that does.
     """
-    found = case.explained_by(hypotheses_of(case.written, MISCONCEPTIONS))
-    if found or not combine:
-        return found
-    return case.explained_by(_pairs(case.written))[:1]
+    found = list(_explaining(case, _single))
+    return found or (list(islice(_explaining(case, _pairs), 1)) if combine else [])
+
+
+def _explaining(
+    case: WrongTable, hypotheses: Callable[[WrittenTable], Iterator[RepairedTable]]
+) -> Iterator[RepairedTable]:
+    """The hypotheses, at all samples, that explain the table at the subset."""
+    tried = list(hypotheses(case.subset))
+    explains = set(map(id, case.explained_by(tried)))
+    pairs = zip(tried, hypotheses(case.written), strict=False)
+    found = (complete for at_subset, complete in pairs if id(at_subset) in explains)
+    return islice(found, len(explains))
+
+
+def _single(table: WrittenTable) -> Iterator[RepairedTable]:
+    """The hypotheses of one misconception."""
+    return hypotheses_of(table, MISCONCEPTIONS)
 
 
 def _pairs(table: WrittenTable) -> Iterator[RepairedTable]:
-    """Hypotheses of two misconceptions at once, one of them basic."""
+    """The hypotheses of two misconceptions at once, one of them basic."""
     for i, basic in enumerate(BASIC):
         for first in basic(table):
             for second in hypotheses_of(first.answer, MISCONCEPTIONS[i + 1 :]):

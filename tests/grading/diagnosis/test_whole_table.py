@@ -12,6 +12,7 @@ from service.catalogue import Joint
 from service.grading.diagnosis import whole_table
 from service.grading.diagnosis.whole_table import MISCONCEPTIONS, WrongTable, explaining
 from service.grading.judging.own_frames import written_table
+from service.grading.judging.own_frames.written_table import WrittenTable
 from service.grading.samples import HALF, SAMPLES, Samples
 from service.kinematics.chain import ALPHA, THETA, A, D, Table
 from service.kinematics.dh import Convention
@@ -51,7 +52,7 @@ def valid(candidates: NDArray[np.float64], convention: Convention) -> NDArray[np
 def wrong(table: Table) -> WrongTable:
     """The table where ``right()`` would be right."""
     written = written_table.written_table(table, Convention.STANDARD, right(), JOINTS, SAMPLE)
-    return WrongTable(written, valid)
+    return WrongTable(written, written, valid)
 
 
 def in_modified_rows(table: Table) -> Table:
@@ -164,3 +165,9 @@ def test_two_misconceptions_at_once() -> None:
 def codes(case: WrongTable, *, combine: bool) -> list[str]:
     found = explaining(case, combine=combine)
     return [finding.code for repaired in found for finding in repaired.findings]
+
+
+def test_a_table_of_one_row() -> None:
+    one = WrittenTable(right()[:1], 0 * right()[:1], Convention.STANDARD, right()[:1])
+    for misconception in MISCONCEPTIONS:
+        assert all(each.answer.values.shape == (1, 4, SAMPLES) for each in misconception(one))

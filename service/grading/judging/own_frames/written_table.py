@@ -34,7 +34,7 @@ class WrittenTable:
         return self.constants + self.motion
 
     def subset(self, count: int) -> "WrittenTable":
-        """The same table at a subset of its samples."""
+        """The same table at the first ``count`` samples of each half."""
         constants, motion = (
             Samples.subset_of(cells, count) for cells in (self.constants, self.motion)
         )
