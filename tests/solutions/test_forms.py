@@ -7,6 +7,7 @@ import pytest
 
 from service.catalogue import Exercise
 from service.solutions import ModelSolution, Shown, solve
+from tests.solutions.solved import solved
 
 # Robotic Fundamentals (UMFM4X-15-M), Examples 1 to 3; Spong, Hutchinson, Vidyasagar, Robot Modeling
 # and Control, eqs. 3.14 (cylindrical), 3.15 (spherical wrist) and 3.20 to 3.29 (Stanford arm).
@@ -56,14 +57,14 @@ def entries(pose: Shown) -> list[list[str]]:
 
 @pytest.mark.parametrize("exercise_id", POSES)
 def test_the_pose(exercise_id: str, catalogue: Mapping[str, Exercise]) -> None:
-    pose = solve(catalogue[exercise_id]).pose
+    pose = solved(catalogue[exercise_id]).pose
     assert pose is not None
     assert entries(pose) == POSES[exercise_id]
 
 
 @pytest.fixture(scope="module")
 def stanford(catalogue: Mapping[str, Exercise]) -> ModelSolution:
-    return solve(catalogue["stanford-arm"])
+    return solved(catalogue["stanford-arm"])
 
 
 def test_the_stanford_arm_is_nested_as_the_textbook_nests_it(stanford: ModelSolution) -> None:
@@ -105,7 +106,7 @@ def test_the_table_is_as_the_author_wrote_it(stanford: ModelSolution) -> None:
 
 
 def test_a_wrist_has_its_joint_angles_for_zyz(catalogue: Mapping[str, Exercise]) -> None:
-    answers = solve(catalogue["spherical-wrist"]).answers
+    answers = solved(catalogue["spherical-wrist"]).answers
     assert answers["zyz"] == ["theta4", "theta5", "theta6"]
 
 
@@ -113,7 +114,7 @@ def test_the_roll_pitch_yaw_of_the_spatial_arm_are_not_the_lectures(
     catalogue: Mapping[str, Exercise],
 ) -> None:
     """The lecture prints β = θ2 + θ3, which its own formula does not give."""
-    answers = solve(catalogue["spatial-rrr"]).answers
+    answers = solved(catalogue["spatial-rrr"]).answers
     assert answers["rpy"] == ["theta1", "-theta2 - theta3", "pi/2"]
 
 
