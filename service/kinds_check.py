@@ -1,4 +1,4 @@
-"""Whether every answer kind has its three files, looked at when the program starts."""
+"""The check, when the program starts, that every answer kind has its three files."""
 
 from collections.abc import Mapping, Set
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What an installation decides, by environment variables that begin with DH_GRADER."""
+"""The settings of an installation: environment variables that begin with DH_GRADER."""
 
 import os
 from pathlib import Path

@@ -27,7 +27,7 @@ Every other failure is `application/problem+json` (RFC 9457).
 
 @asynccontextmanager
 async def _freeze_gc(_: FastAPI) -> AsyncIterator[None]:
-    """Take what the start has built out of the garbage collector's rounds.
+    """Exempt the program's own objects from the garbage collector's rounds.
 
     A body of many small lists sets off full rounds; over the program itself, too, they took twice
     as long as reading the body.

@@ -17,8 +17,8 @@ async def body_as(model: type[M], request: Request) -> M:
     """The body as this model; any Content-Type will do where it can be read as JSON.
 
     Forms and scripts that forget the header are common, and nothing here acts on a cookie that
-    another site could borrow. Raises ProblemError: 400 for what is no JSON, 415 where the header
-    says that it was not meant to be, 422 for another shape.
+    another site could borrow. Raises ProblemError: 400 for a body that is no JSON, 415 where the
+    header claims another type, 422 for another shape.
     """
     try:
         value = read_json(await request.body())

@@ -1,4 +1,4 @@
-"""What holds for every request and answer, around the framework."""
+"""The outermost layer, which every request and answer passes."""
 
 from fastapi import Request
 from starlette.datastructures import Headers, MutableHeaders

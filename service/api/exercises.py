@@ -1,4 +1,4 @@
-"""What the catalogue shows to a course: everything about an exercise but its answers."""
+"""The routes that list and describe exercises: everything but the answers."""
 
 from http import HTTPStatus
 from typing import Any

@@ -1,4 +1,4 @@
-"""Finding what a request names, or saying what there is instead."""
+"""The exercise and the parts that a request names, or a problem that lists the known ones."""
 
 from collections.abc import Iterable, Mapping
 from http import HTTPStatus

@@ -1,4 +1,4 @@
-"""How the OpenAPI page describes bodies and failures, with examples that the service really gives.
+"""Bodies and failures on the OpenAPI page, with examples that the service really gives.
 
 The examples are files, not computed at the start; a test holds them against the service's answers.
 """

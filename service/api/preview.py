@@ -23,7 +23,7 @@ from service.grading.reading.preview import preview_pasted
 
 JOINTS: Final = range(1, 10)
 
-# For a text that belongs to no exercise: what a robotics textbook's formulas are written in.
+# For a text that belongs to no exercise: the letters of a robotics textbook's formulas.
 GENERIC: Final = Vocabulary(
     [
         *(joint_variable(i) for i in JOINTS),
@@ -34,7 +34,7 @@ GENERIC: Final = Vocabulary(
 
 
 class PreviewRequest(BaseModel):
-    """A text, and where it is meant to stand."""
+    """A text, and the place that it is for."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -58,7 +58,7 @@ class PreviewRequest(BaseModel):
 class PreviewNote(BaseModel):
     """Something worth knowing about how the text was read; ``span`` is [from, to) in it."""
 
-    # Picked, with its subclasses, from what the reader says.
+    # Its fields are picked from the reader's notes and errors.
     model_config = ConfigDict(from_attributes=True)
 
     code: str
@@ -67,13 +67,13 @@ class PreviewNote(BaseModel):
 
 
 class PreviewError(PreviewNote):
-    """Why the text cannot be read."""
+    """The reason why the text cannot be read."""
 
     suggestion: str | None = Field(None, description="The whole text, repaired.")
 
 
 class PreviewCell(BaseModel):
-    """How one cell of a pasted table or matrix was read; labels are those of a report."""
+    """The reading of one cell of a pasted table or matrix; labels are those of a report."""
 
     model_config = ConfigDict(from_attributes=True)
 
@@ -90,7 +90,7 @@ class PreviewCell(BaseModel):
 
 
 class PreviewAnswer(BaseModel):
-    """How the text was read, or why it was not.
+    """The reading of the text, or the reason why it cannot be read.
 
     Of one entry there is `text`, `latex`, `mathml` and `symbols`, or only `error`. Of a pasted
     table or matrix there are `rows` of cells; `ok` then says that every cell was read.
@@ -109,7 +109,7 @@ class PreviewAnswer(BaseModel):
 
 
 def preview(body: PreviewRequest, vocabulary: Vocabulary) -> PreviewAnswer:
-    """How the text reads in this vocabulary."""
+    """The reading of the text in this vocabulary."""
     try:
         expression = read(body.text, vocabulary, quantity=body.quantity, angle_unit=body.angle_unit)
     except ExpressionError as error:
@@ -126,12 +126,12 @@ def preview(body: PreviewRequest, vocabulary: Vocabulary) -> PreviewAnswer:
     )
 
 
-# What stands between the cells of a table or matrix, and in no single entry.
+# Characters between the cells of a table or matrix, which no single entry holds.
 _BETWEEN_CELLS: Final = frozenset("\n\t;|&<[,")
 
 
 def preview_grid(body: PreviewRequest, exercise: Exercise, part: str) -> PreviewAnswer:
-    """How a whole pasted table or matrix reads, cell by cell."""
+    """The reading of a whole pasted table or matrix, cell by cell."""
     pasted = preview_pasted(body.text, exercise, part, body.angle_unit)
     symbols = {name for row in pasted.rows for cell in row for name in cell.symbols}
     return PreviewAnswer.model_validate(
@@ -163,7 +163,7 @@ def routes(catalogue: Catalogue) -> APIRouter:
         },
     )
     async def preview_text(request: Request) -> Response:
-        """Show how a text is read: normal text, LaTeX, MathML; or why not, and what was meant.
+        """Show how a text is read: normal text, LaTeX, MathML; or why not, and the text repaired.
 
         With `exercise` and `part` the text may also be a whole pasted table or matrix.
         """

@@ -140,7 +140,7 @@ async def _on_http_exception(request: Request, error: Exception) -> Response:
 
 
 def _on_other_method(request: Request, error: HTTPException) -> Response:
-    """Answers OPTIONS, and names what else there is: HEAD goes wherever GET does."""
+    """Answers OPTIONS, and names the other methods: HEAD goes wherever GET does."""
     methods = set((error.headers or {}).get("Allow", "").replace(" ", "").split(",")) - {""}
     methods |= {"HEAD", "OPTIONS"} if "GET" in methods else {"OPTIONS"}
     allow = {"Allow": ", ".join(sorted(methods))}
@@ -164,7 +164,7 @@ async def _on_disconnect(request: Request, _: Exception) -> Response:
 
 
 async def _on_exception(request: Request, _: Exception) -> Response:
-    """Says nothing of what happened; the server logs the traceback."""
+    """Gives no details; the server logs the traceback."""
     problem = ProblemError(
         HTTPStatus.INTERNAL_SERVER_ERROR,
         "The service failed at this request. Nothing is wrong with the answer itself; "

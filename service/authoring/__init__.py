@@ -1,4 +1,4 @@
-"""What an author wants to know of an exercise before students see it."""
+"""Remarks for the author of an exercise, before students see it."""
 
 from service.authoring.examine import examine
 from service.authoring.remarks import Level, Remark

@@ -35,7 +35,7 @@ def duplicate_parts(exercise: Exercise) -> Iterator[Remark]:
 
 
 def _task(part: PartSpec) -> dict[str, object]:
-    """What is asked for, apart from the formulas, frames and terms: those are compared by value."""
+    """The task without its formulas and frames, which are compared by value, and its terms."""
     return part.model_dump(exclude={*PosePartSpec.model_fields, *part.answer_fields})
 
 

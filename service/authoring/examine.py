@@ -1,4 +1,4 @@
-"""All that is looked at in an exercise."""
+"""All examinations of an exercise."""
 
 from collections.abc import Callable, Iterator
 
@@ -27,4 +27,4 @@ EXAMINATIONS: tuple[Callable[[Exercise], Iterator[Remark]], ...] = (
 
 def examine(exercise: Exercise) -> list[Remark]:
     """All remarks on an exercise: failures, and warnings."""
-    return [remark for look in EXAMINATIONS for remark in look(exercise)]
+    return [remark for examination in EXAMINATIONS for remark in examination(exercise)]

@@ -1,23 +1,24 @@
-"""The checks that the file carries: each answer graded, and held against what it must get."""
+"""The checks that the file carries: each answer graded, and held against its expectation."""
 
 from collections import Counter
 from collections.abc import Iterator
 from typing import Final
 
-from service.authoring.grading import graded, in_words, told
+from service.authoring.grading import graded, in_words
 from service.authoring.remarks import Remark, failed, warning
 from service.catalogue import CheckSpec, Exercise
 from service.catalogue.schema import ExpectSpec
 from service.grading import PartReport, Verdict
+from service.grading.report import messages_of
 
-# How many checks of each kind make a mistake in the exercise unlikely.
+# So many checks of each kind make a mistake in the exercise unlikely.
 WANTED: Final = {"right": 1, "equivalent": 1, "wrong": 2}
 # Points are rounded to six digits.
 _SAME: Final = 1e-5
 
 
 def failed_checks(exercise: Exercise) -> Iterator[Remark]:
-    """Checks whose answer does not get what the file says."""
+    """Checks whose answer does not get the result that the file expects."""
     for i, check in enumerate(exercise.checks):
         reports = graded(exercise, check.answers, check.angle_unit)
         for part, problem in _problems(check, reports):
@@ -25,7 +26,7 @@ def failed_checks(exercise: Exercise) -> Iterator[Remark]:
 
 
 def missing_checks(exercise: Exercise) -> Iterator[Remark]:
-    """That the file has too few checks of a kind."""
+    """A warning where the file has too few checks of a kind."""
     kinds = Counter[str](check.kind for check in exercise.checks)
     short = [kind for kind, wanted in WANTED.items() if kinds[kind] < wanted]
     if short:
@@ -57,7 +58,7 @@ def _differences(expected: ExpectSpec, report: PartReport) -> Iterator[str]:
         yield f"should be {expected.verdict}"
     if expected.points is not None and abs(expected.points - report.points) > _SAME:
         yield f"should get {expected.points:g} points"
-    codes = sorted({message.code for message in told(report)})
+    codes = sorted({message.code for message, _ in messages_of(report)})
     missing = [code for code in expected.codes or () if code not in codes]
     if missing:
         had = f"the codes {', '.join(codes)}" if codes else "no code at all"

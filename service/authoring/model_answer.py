@@ -40,7 +40,7 @@ def model_answer(exercise: Exercise) -> Iterator[Remark]:
 
 
 def _longest(answer: object) -> float:
-    """How many characters the longest entry of an answer has."""
+    """The number of characters of the longest entry of an answer."""
     match answer:
         case None:
             return math.inf

@@ -1,4 +1,4 @@
-"""What is said of an exercise file that can be read."""
+"""The remarks on an exercise file that can be read."""
 
 from dataclasses import dataclass
 from enum import StrEnum

@@ -9,7 +9,7 @@ from service.authoring.remarks import Remark, warning
 from service.catalogue import Exercise, Variable
 
 _SHORTHAND: Final = re.compile(r"[cCsS][0-9]+")
-# What each is mistaken for.
+# The reading that each is mistaken for.
 _MISLEADING: Final = {
     "e": "Euler's number",
     "E": "Euler's number, or a power of ten",

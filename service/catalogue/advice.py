@@ -1,4 +1,4 @@
-"""Pydantic's findings in an exercise file, with what to write instead."""
+"""Advice to authors on each of pydantic's findings in an exercise file."""
 
 import difflib
 import inspect
@@ -21,7 +21,7 @@ Location = Sequence[int | str]
 
 
 def advised(detail: Mapping[str, Any]) -> str:
-    """One of pydantic's findings, in a sentence that says what to write."""
+    """One of pydantic's findings, in a sentence with the repair."""
     reason: str = detail["msg"].removeprefix("Value error, ")
     location: Location = detail["loc"]
     last = location[-1] if location else ""
@@ -62,7 +62,7 @@ def _model(location: Location) -> type[BaseModel]:
             return SymbolSpec
         case ["parts", int(), str(kind), str(key), int(), *_]:
             field = SPECS[kind].model_fields.get(key)
-            return _entries(field.annotation if field else None) or SPECS[kind]
+            return table_in(field.annotation if field else None) or SPECS[kind]
         case ["parts", int(), str(kind), *_]:
             return SPECS[kind]
         case ["checks", int(), "expect", *_]:
@@ -73,8 +73,8 @@ def _model(location: Location) -> type[BaseModel]:
             return ExerciseSpec
 
 
-def _entries(annotation: object) -> type[BaseModel] | None:
+def table_in(annotation: object) -> type[BaseModel] | None:
     """The table that a list of tables holds, such as ``list[StepSpec] | None``."""
     if inspect.isclass(annotation) and issubclass(annotation, BaseModel):
         return annotation
-    return next(filter(None, map(_entries, get_args(annotation))), None)
+    return next(filter(None, map(table_in, get_args(annotation))), None)

@@ -1,4 +1,4 @@
-"""Whether the checks of an exercise file speak of the parts that it has."""
+"""The checks of an exercise file, held against its parts."""
 
 from collections.abc import Sequence
 
@@ -8,7 +8,7 @@ from service.catalogue.schema import CheckSpec
 
 
 def check_parts(checks: Sequence[CheckSpec], parts: Sequence[PartSpec]) -> None:
-    """Every check names parts that there are. Raises FieldError."""
+    """Check that every check names parts of the exercise. Raises FieldError."""
     most = {part.id: part.points for part in parts}
     for i, check in enumerate(checks):
         for field, named in (("answers", check.answers), ("expect", check.expect)):

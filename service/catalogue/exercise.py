@@ -1,4 +1,4 @@
-"""An exercise, compiled: its vocabulary, its reference robot, and what its parts ask for."""
+"""An exercise, compiled: its vocabulary, its reference robot, and its parts."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -16,9 +16,9 @@ from service.expressions import Vocabulary
 class Exercise:
     """One exercise of the catalogue; ``version`` changes with anything in its file but its checks.
 
-    ``reference`` is the robot, None where there is none; ``formulas`` what a part's file says is
-    right, by the part's id. ``length_scale`` is the longest length of it, to measure small
-    differences against.
+    ``reference`` is the robot, None where there is none; ``formulas`` holds the answers that the
+    file gives, by the part's id. ``length_scale`` is the longest length, the scale of small
+    differences.
     """
 
     id: str
@@ -59,7 +59,7 @@ class Exercise:
         return next((part for part in self.parts if part.id == part_id), None)
 
     def fields(self) -> Iterator[FormulaField]:
-        """Every formula of the file, with its field and what it is."""
+        """Every formula of the file, with its field and quantity."""
         if self.reference is not None:
             yield from self.reference.fields()
         for i, part in enumerate(self.parts):

@@ -19,7 +19,7 @@ NotBool = BeforeValidator(_no_truth_value)
 Formula = Annotated[str | float, NotBool]
 Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
 Identifier = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9]*(?:[-_][a-z0-9]+)*$")]
-Choice = Literal["given", "free"]
+GivenOrFree = Literal["given", "free"]
 FrameName = Literal["base", "tool"] | Annotated[StrictInt, Field(ge=0)]
 
 Triple = tuple[Formula, Formula, Formula]

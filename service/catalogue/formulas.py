@@ -1,7 +1,7 @@
 """The formulas of an exercise file: read, and tried at some values of their symbols.
 
-What the file says is right is tried before any student is marked against it: a rotation that is
-none is refused here.
+An answer that the file gives is tried before any student is marked against it: a matrix that is no
+rotation is refused here.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -10,12 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from service.catalogue.fields import Formula, Homogeneous, Screw
-from service.catalogue.variables import TRIALS, SymbolValues, Variable, trial_values
+from service.catalogue.variables import TRIALS, Variable, trial_values
 from service.expressions import Expression, ExpressionError, Kind, Vocabulary, read
+from service.expressions.evaluation.samples import SymbolValues
 from service.kinematics.transforms import Numbers
 
 FormulaGrid = tuple[tuple[Expression, ...], ...]
-# The field of a formula, the formula, and what its value is.
+# The field of a formula, the formula, and its quantity.
 FormulaField = tuple[str, Expression, Kind]
 
 # What rounding may leave of a 0 or 1 in an author's formulas.
@@ -42,7 +43,7 @@ class FieldError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class WrittenFormulas:
-    """Formulas as the file has them, row by row; ``quantities`` says what each one is.
+    """Formulas as the file has them, row by row; ``quantities`` has the quantity of each.
 
     ``path`` is the field of row i and column j, such as ``expected[{i}][{j}]``. ``check`` takes the
     field of them all and their numbers ``(rows, columns, TRIALS)``, and raises FieldError where
@@ -146,7 +147,7 @@ class FormulaReader:
 
 
 def check_rotation(field: str, numbers: Numbers) -> None:
-    """The numbers ``(3 or 4, 3 or 4, samples)`` hold rotations. Raises FieldError."""
+    """Check that numbers ``(3 or 4, 3 or 4, samples)`` hold rotations. Raises FieldError."""
     rotation = np.moveaxis(numbers[:3, :3], -1, 0)
     if np.abs(np.swapaxes(rotation, 1, 2) @ rotation - np.eye(3)).max() > EXACT:
         raise FieldError(
@@ -157,7 +158,7 @@ def check_rotation(field: str, numbers: Numbers) -> None:
 
 
 def check_transform(field: str, numbers: Numbers) -> None:
-    """The numbers ``(4, 4, samples)`` are homogeneous transforms. Raises FieldError."""
+    """Check that numbers ``(4, 4, samples)`` are homogeneous transforms. Raises FieldError."""
     check_rotation(field, numbers)
     if np.abs(numbers[3] - np.array([[0.0], [0.0], [0.0], [1.0]])).max() > EXACT:
         raise FieldError(field, "must end in the row 0, 0, 0, 1")

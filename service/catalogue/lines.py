@@ -1,4 +1,4 @@
-"""Where in a TOML text each of its values stands.
+"""The line of each value of a TOML text.
 
 tomllib tells the line of what is no TOML, but not of a value that is none here. The text has been
 read by it before: this only has to follow its values, not to judge them.
@@ -20,9 +20,9 @@ _SCALAR: Final = re.compile(r"[^,\]}#\n]*")
 
 
 def line_of(field: str, lines: dict[str, int]) -> int | None:
-    """The line of a field such as ``parts[1].points``, or of what encloses it; None if of nothing.
+    """The line of a field such as ``parts[1].points``, or of the nearest field around it, or None.
 
-    ``lines`` is what ``value_lines`` has found.
+    ``lines`` is the result of ``value_lines``.
     """
     while field and field not in lines:
         field = field[: max(field.rfind("."), field.rfind("["), 0)]

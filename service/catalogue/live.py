@@ -9,8 +9,8 @@ from typing import Final
 from service.catalogue.exercise import Exercise
 from service.catalogue.load import CatalogueError, exercise_files, load_catalogue, load_exercise
 
-# How long what was found on the disk is believed, in seconds.
-BELIEVED: Final = 1.0
+# The seconds between two looks at the disk.
+REFRESH_SECONDS: Final = 1.0
 
 Stamp = tuple[int, int, int]
 
@@ -28,8 +28,8 @@ def open_catalogue(folders: Sequence[Path], *, reload: bool) -> Mapping[str, Exe
 class LiveCatalogue(Mapping[str, Exercise]):
     """The exercises by id, read again where a file has changed.
 
-    Asking looks at the files' times, at most once in ``BELIEVED`` seconds, and reads those that
-    differ. A file that cannot be used keeps its last good version, and the log says why.
+    A question looks at the files' times, at most once in ``REFRESH_SECONDS``, and reads the files
+    that differ. A file that cannot be used keeps its last good version, and the log says why.
     """
 
     def __init__(
@@ -40,7 +40,7 @@ class LiveCatalogue(Mapping[str, Exercise]):
         self._stamps = _stamps(exercise_files(*self._folders))
         self._exercises: Mapping[str, Exercise] = load_catalogue(*self._folders)
         self._complaint = ""
-        self._look_at = clock() + BELIEVED
+        self._look_at = clock() + REFRESH_SECONDS
 
     def __getitem__(self, exercise_id: str) -> Exercise:
         return self._current()[exercise_id]
@@ -63,7 +63,7 @@ class LiveCatalogue(Mapping[str, Exercise]):
     def _current(self) -> Mapping[str, Exercise]:
         now = self._clock()
         if now >= self._look_at:
-            self._look_at = now + BELIEVED
+            self._look_at = now + REFRESH_SECONDS
             self._follow()
         return self._exercises
 
@@ -86,14 +86,14 @@ class LiveCatalogue(Mapping[str, Exercise]):
         self._stamps, self._exercises = stamps, found
 
     def _complain(self, complaint: str) -> None:
-        """Log what is wrong with the folders, once for as long as it stays so."""
+        """Log the fault of the folders, once as long as it lasts."""
         if complaint != self._complaint:
             _log.error("The exercises stay as they were:\n%s", complaint)
         self._complaint = complaint
 
 
 def _stamps(files: Sequence[Path]) -> dict[Path, Stamp]:
-    """What tells that a file has changed; a file that is just being replaced has none."""
+    """The stamp of each file, which changes with it; none while the file is being replaced."""
     stamps = {}
     for file in files:
         try:

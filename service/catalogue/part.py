@@ -1,4 +1,4 @@
-"""What every part of an exercise has, and what the program asks of its kind.
+"""The keys that every part has, and the questions that the program asks of its kind.
 
 The kinds themselves are the modules of ``parts/``.
 """
@@ -44,7 +44,9 @@ class PartSpec(StrictModel, ABC):
             },
         ),
     ]
-    title: Text = Field(description="Its title.", examples=["Denavit-Hartenberg table"])
+    title: Text = Field(
+        description="The title that students see.", examples=["Denavit-Hartenberg table"]
+    )
     prompt: str = Field(
         "",
         description="The task, in one sentence or more.",
@@ -72,11 +74,11 @@ class PartSpec(StrictModel, ABC):
         kind: str
 
     def formulas(self) -> WrittenFormulas | None:
-        """The formulas by which the file says what is right; None where the robot says it."""
+        """The right answer, where the file gives it in formulas; None where the robot gives it."""
         return None
 
     def check_reference(self, field: str, reference: Reference | None) -> None:
-        """The robot can say what is right in the part at ``field``. Raises FieldError."""
+        """Check that the robot gives the answer to the part at ``field``. Raises FieldError."""
         if reference is None:
             raise FieldError(
                 f"{field}.expected",
@@ -85,7 +87,7 @@ class PartSpec(StrictModel, ABC):
 
     @abstractmethod
     def shape(self, reference: Reference | None) -> AnswerShape:
-        """What an answer must look like."""
+        """The shape of an answer."""
 
 
 class PosePartSpec(PartSpec):
@@ -105,7 +107,7 @@ class PosePartSpec(PartSpec):
     home: bool = Field(False, description="Whether all joint variables are 0.")
 
     def check_reference(self, field: str, reference: Reference | None) -> None:
-        """The robot has both frames. Raises FieldError."""
+        """Check that the robot has both frames. Raises FieldError."""
         super().check_reference(field, reference)
         assert reference is not None
         for name, frame in (("from", self.start), ("to", self.to)):
@@ -135,7 +137,7 @@ class TablePartSpec(PartSpec):
         convention: Convention | str
 
     def check_reference(self, field: str, reference: Reference | None) -> None:
-        """The robot has a table, in the convention that is asked for. Raises FieldError."""
+        """Check that the robot has a table in the convention asked for. Raises FieldError."""
         if not isinstance(reference, Robot):
             raise FieldError(
                 f"{field}.kind",

@@ -1,4 +1,4 @@
-"""What pydantic finds in an exercise file -> the field and the reason, as authors name them."""
+"""Pydantic's findings in an exercise file -> the field and the reason, as authors name them."""
 
 import difflib
 import re
@@ -12,7 +12,7 @@ from service.catalogue.advice import advised
 
 _Detail = Mapping[str, Any]
 
-# What pydantic puts behind a field that may be of several forms: a finding for each of them.
+# Pydantic puts the form behind a field that may have several, with a finding for each form.
 _FORM: Final = re.compile(r"(?:literal|str-enum)\[.*\]|str|float|constrained-int")
 _CHOICES: Final = {"literal_error": "expected", "enum": "expected",
                    "union_tag_invalid": "expected_tags"}  # fmt: skip
@@ -20,7 +20,7 @@ _QUOTED: Final = re.compile(r"'([^']*)'")
 
 
 def refusals(error: ValidationError) -> list[tuple[str, str]]:
-    """The field and the reason of each fault; what has none of several forms is one fault."""
+    """The field and the reason of each fault; a value that fits none of several forms is one."""
     found: list[tuple[str, list[_Detail]]] = []
     for detail in error.errors(include_url=False):
         location = detail["loc"]
@@ -36,7 +36,7 @@ def refusals(error: ValidationError) -> list[tuple[str, str]]:
 
 
 def _reason(details: Sequence[_Detail]) -> str:
-    """Why a value is refused; ``details`` are about one value, which may have had other forms."""
+    """The reason why a value is refused; ``details`` has one finding for each form it may have."""
     known = [
         choice
         for detail in details
@@ -53,7 +53,7 @@ def _reason(details: Sequence[_Detail]) -> str:
 
 
 def _no_choice(value: object, known: Sequence[str]) -> str:
-    """Why ``value`` is none of those known, and which was probably meant."""
+    """The reason for a value that is not among the known ones, with the nearest of them."""
     lowered = {choice.lower(): choice for choice in known}
     near = difflib.get_close_matches(str(value).lower(), lowered, n=1)
     meant = f"; did you mean {lowered[near[0]]!r}? Write" if near else "; write"

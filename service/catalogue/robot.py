@@ -7,8 +7,8 @@ from functools import cached_property
 import numpy as np
 
 from service.catalogue.formulas import FormulaField
-from service.catalogue.variables import SymbolValues
 from service.expressions import Expression, Kind
+from service.expressions.evaluation.samples import SymbolValues
 from service.kinematics.chain import (
     COLUMNS,
     Row,
@@ -134,7 +134,7 @@ class Robot:
         return list(self._poses(values, samples))[steps]
 
     def has_frame(self, name: int | str) -> bool:
-        """Whether ``frame`` knows it."""
+        """Whether ``frame`` takes this name."""
         first = self.joints[0].index
         return isinstance(name, str) or first - 1 <= name < first + len(self.joints)
 

@@ -1,4 +1,4 @@
-"""The shape of an exercise file: what a tutor may write, checked by pydantic."""
+"""The shape of an exercise file, checked by pydantic."""
 
 from typing import Annotated, Literal
 
@@ -22,7 +22,7 @@ Structure = Annotated[
     StringConstraints(pattern=r"^[RP]{1,10}$"),
     Field(
         description="One letter for each joint: R turns, P slides; at most 10.",
-        examples=["RRP"],
+        examples=["RP"],
         json_schema_extra={
             "advice": "write one letter for each joint, R if it turns and P if it slides, at most "
             "10"
@@ -35,7 +35,7 @@ Joints = Annotated[
         min_length=1,
         description="The joint variables in order. A number in the first one is the number of the "
         "first joint.",
-        examples=[["theta1", "theta2", "d3"]],
+        examples=[["theta1", "d2"]],
     ),
 ]
 
@@ -46,11 +46,13 @@ class SymbolSpec(StrictModel):
     A joint variable needs no entry, but may have one that says more about it.
     """
 
-    kind: Kind = Field(description="What it is.")
-    description: Text = Field(description="Its meaning.", examples=["length of link 1"])
+    kind: Kind = Field(description="Whether it is an angle, a length or a plain number.")
+    description: Text = Field(
+        description="Its meaning, as students see it.", examples=["length of link 1"]
+    )
     unit: str = Field(
         "",
-        description='Its unit, as students are told; without one "rad" for an angle and "m" for a '
+        description='Its unit, as students see it; without one "rad" for an angle and "m" for a '
         "length.",
         examples=["m"],
     )
@@ -127,7 +129,7 @@ def _form_of(robot: object) -> str:
     return "screws" if by_screws else "table"
 
 
-# The key that is written decides, so that a fault is told of the one form that was intended.
+# The key that is written decides, so that a fault is reported for the intended form only.
 AnyRobotSpec = Annotated[
     Annotated[RobotSpec, Tag("table")] | Annotated[ScrewRobotSpec, Tag("screws")],
     Discriminator(_form_of),
@@ -135,7 +137,7 @@ AnyRobotSpec = Annotated[
 
 
 class ExpectSpec(StrictModel):
-    """What must become of one part; at least one key, and what is left out may be anything."""
+    """The result that one part must get: at least one key; a key left out allows any value."""
 
     points: Annotated[float, Field(ge=0, strict=True)] | None = Field(
         None, description="The points that it must get.", examples=[5.5]
@@ -145,7 +147,7 @@ class ExpectSpec(StrictModel):
     )
     codes: list[Text] | None = Field(
         None,
-        description="The codes of messages that must be told; others may be told, too.",
+        description="The codes that must be among those of the messages.",
         examples=[["sign"]],
     )
     follow_through: StrictBool | None = Field(
@@ -165,7 +167,9 @@ class ExpectSpec(StrictModel):
 class CheckSpec(StrictModel):
     """One answer to the exercise, graded whenever the file is checked."""
 
-    title: Text = Field(description="Its title.", examples=["x1 the other way round, in degrees"])
+    title: Text = Field(
+        description="A few words on what is tried.", examples=["x1 the other way round, in degrees"]
+    )
     kind: Literal["right", "equivalent", "wrong"] = Field(
         description='"right" and "equivalent" must get full marks unless ``expect`` says '
         'otherwise; "wrong" must lose some, as ``expect`` says.'
@@ -178,7 +182,7 @@ class CheckSpec(StrictModel):
         "radians", description="The unit of bare numbers where an angle is asked for."
     )
     expect: dict[str, ExpectSpec] = Field(
-        {}, description="What must become of a part, by the part's id."
+        {}, description="The result that a part must get, by the part's id."
     )
 
     @model_validator(mode="after")
@@ -203,13 +207,13 @@ class ExerciseSpec(StrictModel):
         description="All that a student has to know, without a figure.",
     )
     robot: AnyRobotSpec | None = Field(
-        None, description="The reference robot; without one every part gives its own answer."
+        None, description="The reference robot; without one every part holds its answer."
     )
     symbols: dict[Text, SymbolSpec] = Field(
         {}, description="The letters that may stand in an answer, by their names."
     )
     parts: Annotated[list[AnyPartSpec], Field(min_length=1)] = Field(
-        description="What is asked for, one ``[[parts]]`` for each."
+        description="The questions, one ``[[parts]]`` for each."
     )
     checks: list[CheckSpec] = Field(
         [], description="Answers to try whenever the file is checked, one ``[[checks]]`` for each."

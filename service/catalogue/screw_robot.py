@@ -14,7 +14,7 @@ from service.catalogue.formulas import (
     grid_values,
 )
 from service.catalogue.robot import Joint, Robot
-from service.catalogue.variables import SymbolValues
+from service.expressions.evaluation.samples import SymbolValues
 from service.kinematics.screws import product_in_space
 from service.kinematics.transforms import Matrices, Numbers
 
@@ -39,7 +39,7 @@ class ScrewRobot:
         return ("base", "tool")
 
     def has_frame(self, name: int | str) -> bool:
-        """Whether ``frame`` knows it."""
+        """Whether ``frame`` takes this name."""
         return name in self.frames
 
     def frame(self, name: int | str, values: SymbolValues, samples: int) -> Matrices:

@@ -1,4 +1,4 @@
-"""The shape of an answer, as a student is told it before answering."""
+"""The shape of an answer, as a student sees it before answering."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
@@ -20,7 +20,7 @@ class AnswerShape(BaseModel, ABC):
 
 
 class MatrixShape(AnswerShape):
-    """What a matrix must look like."""
+    """The shape of a matrix."""
 
     posted: ClassVar[str] = "a list of rows, each a list of entries"
 
@@ -33,14 +33,14 @@ class MatrixShape(AnswerShape):
 
 
 class ComponentView(BaseModel):
-    """One value of a list: what it is called and what it is."""
+    """One value of a list: its name and its quantity."""
 
     name: str
     quantity: Kind
 
 
 class ListShape(AnswerShape):
-    """What a list of values must look like; of Euler angles also the axes, in order."""
+    """The shape of a list of values; of Euler angles also the axes, in order."""
 
     posted: ClassVar[str] = "a list of entries"
 
@@ -64,7 +64,7 @@ def matrix_shape(rows: int, columns: int) -> MatrixShape:
 
 
 def list_shape(components: Iterable[tuple[str, Kind]]) -> ListShape:
-    """The shape of a list of values, each with its name and what it is."""
+    """The shape of a list of values, each with its name and quantity."""
     views = [ComponentView(name=name, quantity=quantity) for name, quantity in components]
     return ListShape(rows=numbered(len(views)), components=views)
 
@@ -75,7 +75,7 @@ def numbered(count: int) -> list[str]:
 
 
 def choices(**stated: str) -> Iterable[str]:
-    """Clauses on what is the student's choice and what is given, each by its key in the file."""
+    """A clause on the free choices and one on the given ones, by their keys in the file."""
     for choice in ("free", "given"):
         names = [_NAMES.get(name, name) for name, value in stated.items() if value == choice]
         if names:

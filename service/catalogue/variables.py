@@ -1,14 +1,11 @@
 """The letters of an exercise, and values to try an author's formulas at."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from service.expressions import Kind
-from service.kinematics.transforms import Numbers
-
-SymbolValues = Mapping[str, Numbers]
+from service.expressions.evaluation.samples import SymbolValues
 
 # The number of values of its symbols that an author's formula is tried at.
 TRIALS = 16

@@ -1,4 +1,4 @@
-"""`dh-grader exercises check`: what is wrong with exercise files, for their authors."""
+"""`dh-grader exercises check`: faults in exercise files, for their authors."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ STYLES = {Level.FAILED: "red", Level.WARNING: "yellow"}
 
 @dataclass(slots=True)
 class Tally:
-    """How many files there are of each sort."""
+    """The number of files of each sort."""
 
     usable: int = 0
     unusable: int = 0

@@ -1,42 +1,33 @@
 """`dh-grader grade`: submissions in files, graded here and now."""
 
 import io
-import json
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
-from enum import StrEnum
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Final
 
 import typer
 from rich.console import Console
-from rich.text import Text
 
 from service.catalogue import Exercise
 from service.cli.submission_files import UnusableFileError, read_submission
 from service.cli.terminal import UNUSABLE, catalogue_or_exit, complain, give_up, stdout
-from service.formats import json as json_format
-from service.formats import text as text_format
-from service.grading import FeedbackLevel, Report, UnknownPartError, grade
+from service.formats import FORMATS
+from service.formats.graded_file import GradedFile
+from service.formats.text import visible
+from service.grading import FeedbackLevel, UnknownPartError, grade
 from service.submissions import UnknownExerciseError, find_exercise, nearest
 
 BELOW_PASS_MARK = 1
 
 
-class Format(StrEnum):
-    """How a report is written."""
+def _known(name: str) -> str:
+    if name not in FORMATS:
+        raise typer.BadParameter(f"{name!r} is not one of {', '.join(_NAMES)}.")
+    return name
 
-    TEXT = "text"
-    JSON = "json"
 
-
-@dataclass(frozen=True, slots=True)
-class Graded:
-    """What became of one file: a report, or the reason why there is none."""
-
-    file: Path
-    report: Report | None
-    error: str = ""
+# Text is for people, so it comes first.
+_NAMES: Final = sorted(FORMATS, key=lambda name: name != "text")
 
 
 def command(
@@ -49,13 +40,15 @@ def command(
         typer.Option(metavar="P", help="Grade this part only; a file may hold its answer alone."),
     ] = None,
     output_format: Annotated[
-        Format,
+        str,
         typer.Option(
             "--format",
+            metavar=f"<{'|'.join(_NAMES)}>",
+            callback=_known,
             help="For people, or for programs: json prints exactly the report, and for several "
             'files a list with {"file", "report"} or {"file", "error"} for each.',
         ),
-    ] = Format.TEXT,
+    ] = "text",
     output: Annotated[
         Path | None, typer.Option(metavar="F", help="Write to this file instead.")
     ] = None,
@@ -81,14 +74,11 @@ def command(
     for result in graded:
         if result.error:
             complain(f"{result.file}: {result.error}")
-    if output_format is Format.JSON:
-        _deliver(_as_json(graded), output)
-    elif output is None:
-        _write_text(graded, stdout())
-    else:
-        page = io.StringIO()
-        _write_text(graded, Console(file=page, width=80, highlight=False, markup=False))
-        _deliver(page.getvalue().encode("utf-8", "replace"), output)
+    console = stdout()
+    if output is not None:
+        page = io.TextIOWrapper(io.BytesIO(), encoding="utf-8")
+        console = Console(file=page, width=80, highlight=False, markup=False)
+    _deliver(FORMATS[output_format].document(graded, console), output)
     raise SystemExit(max(_exit_code(result, pass_mark) for result in graded))
 
 
@@ -114,51 +104,25 @@ def _restricted(exercise: Exercise, part_id: str | None) -> Exercise:
 
 def _graded(
     file: Path, exercise: Exercise, part: str | None, feedback: FeedbackLevel | None
-) -> Graded:
+) -> GradedFile:
     try:
         submission = read_submission(file, part).submission()
         if feedback is not None:
             submission = replace(submission, feedback=feedback)
-        return Graded(file, grade(exercise, submission))
+        return GradedFile(file, grade(exercise, submission))
     except UnusableFileError as error:
-        return Graded(file, None, str(error))
+        return GradedFile(file, None, str(error))
     except UnknownPartError as error:
         known = ", ".join(error.known)
-        name = text_format.visible(error.unknown[:60])
-        return Graded(file, None, f"answers {name!r}, but {exercise.id} has only {known}")
+        name = visible(error.unknown[:60])
+        return GradedFile(file, None, f"answers {name!r}, but {exercise.id} has only {known}")
 
 
-def _exit_code(result: Graded, pass_mark: float) -> int:
+def _exit_code(result: GradedFile, pass_mark: float) -> int:
     if result.report is None:
         return UNUSABLE
     # Scores are rounded to six digits, so 1/3 passes a pass mark of 0.33333333.
     return 0 if result.report.score >= pass_mark - 5e-7 else BELOW_PASS_MARK
-
-
-def _as_json(graded: Sequence[Graded]) -> bytes:
-    """The report alone for one file; nothing if it could not be used."""
-    if len(graded) == 1:
-        report = graded[0].report
-        return b"" if report is None else json_format.rendered(report, indent=2) + b"\n"
-    return b"[\n" + b",\n".join(map(_entry, graded)) + b"\n]\n"
-
-
-def _entry(result: Graded) -> bytes:
-    file = json.dumps(str(result.file)).encode()
-    if result.report is None:
-        return b'{"file": %b, "error": %b}' % (file, json.dumps(result.error).encode())
-    return b'{"file": %b, "report": %b}' % (file, json_format.rendered(result.report))
-
-
-def _write_text(graded: Iterable[Graded], console: Console) -> None:
-    several = len(list(graded)) > 1
-    for result in graded:
-        if several and result.report is not None:
-            console.print(Text(f"== {text_format.visible(str(result.file))}", "bold"))
-        if result.report is not None:
-            text_format.write(result.report, console)
-        if several and result.report is not None:
-            console.print()
 
 
 def _deliver(content: bytes, output: Path | None) -> None:

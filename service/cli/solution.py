@@ -10,7 +10,7 @@ from service.solutions import ModelSolution, Shown, solve
 
 
 def write_solution(exercise: Exercise, console: Console, *, latex: bool) -> None:
-    """Print what is right in each part, each link transform and the pose."""
+    """Print the answer to each part, each link transform and the pose."""
     solution = solve(exercise)
     links = not any(part.holds_links for part in exercise.parts)
     for heading, shown in _sections(solution, links=links):

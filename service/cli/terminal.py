@@ -1,4 +1,4 @@
-"""What every command shares: where its output goes, and how it gives up."""
+"""The terminal that every command writes to, and the ways to give up."""
 
 import os
 import sys
@@ -20,12 +20,12 @@ def stdout() -> Console:
 
 
 def complain(message: str) -> None:
-    """Say on standard error what is wrong."""
+    """Write a fault to standard error."""
     print(message, file=sys.stderr)  # noqa: T201 - a program's own error output
 
 
 def give_up(message: str) -> NoReturn:
-    """Say what is wrong and end with the exit code for unusable input."""
+    """Write a fault and end with the exit code for unusable input."""
     complain(message)
     raise SystemExit(UNUSABLE)
 

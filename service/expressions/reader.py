@@ -26,7 +26,7 @@ from service.expressions.vocabulary.symbols import Kind, Vocabulary
 AngleUnit = Literal["radians", "degrees"]
 
 _REMEMBERED: Final = 8192
-# Whoever grades asks for the tree soon after reading, if at all.
+# The grading asks for a tree soon after reading, if at all.
 _TREES: Final = 128
 _SETS_OF_SYMBOLS: Final = 1024
 # The operators of a left operand that stands without brackets, in one run with its operator.
@@ -195,7 +195,7 @@ def _remembered(
 
 
 class _Reading:
-    """The reading of a text and, where it cannot be read, of a few repaired ones."""
+    """The reading of a text, with a number of attempts to read repaired ones."""
 
     def __init__(self, options: ReadingOptions, attempts: int) -> None:
         self.options = options
@@ -276,7 +276,7 @@ def _used_symbols(tree: Node) -> frozenset[str]:
 
 
 def _broken_limit(tree: Node) -> str:
-    """The limit that is broken first on the way from right to left: a student is told of one."""
+    """The limit that is broken first on the way from right to left, for a message names one."""
     count = 0
     pending: list[tuple[Any, int]] = [(tree, 1)]
     while pending:

@@ -3,7 +3,7 @@
 Marks, not colours, carry the meaning, so it reads the same in a file or without colour.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Final
 
 from rich.console import Console
@@ -11,7 +11,9 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from service.grading import CellReport, Feedback, PartReport, Report, Severity, Verdict
+from service.formats.graded_file import GradedFile
+from service.grading import Feedback, PartReport, Report, Severity, Verdict
+from service.grading.report import messages_of
 
 STYLES: Final[Mapping[Verdict, str]] = {
     Verdict.CORRECT: "green",
@@ -30,6 +32,20 @@ _SIGNS: Final[Mapping[Verdict, str]] = {
 _ASCII: Final = str.maketrans("✓✗–", "+x-")
 # Longer lines are hard to read however wide the terminal is.
 _WIDEST: Final = 100
+
+
+def document(graded: Sequence[GradedFile], console: Console) -> bytes:
+    """The report on each file, below its name where there are several."""
+    with console.capture() as captured:
+        for result in graded:
+            if result.report is None:
+                continue
+            if len(graded) > 1:
+                console.print(Text(f"== {visible(str(result.file))}", "bold"))
+            write(result.report, console)
+            if len(graded) > 1:
+                console.print()
+    return captured.get().encode(console.encoding, "replace")
 
 
 def write(report: Report, console: Console) -> None:
@@ -129,27 +145,15 @@ def _messages(part: PartReport) -> Iterator[tuple[str, Feedback, Verdict]]:
         nothing = Feedback("missing", Severity.ERROR, "Nothing was handed in.")
         yield "", nothing, Verdict.MISSING
     together: dict[tuple[str, str], tuple[list[Feedback], Verdict]] = {}
-    for message, verdict in _all_feedback(part):
+    for message, verdict in messages_of(part):
         key = (message.message, str(message.values))
         together.setdefault(key, ([], verdict))[0].append(message)
     for messages, verdict in together.values():
         yield _places(messages), messages[0], verdict
 
 
-def _all_feedback(part: PartReport) -> Iterator[tuple[Feedback, Verdict]]:
-    yield from ((message, part.verdict) for message in part.feedback)
-    for row in part.rows:
-        yield from ((message, row.verdict) for message in row.feedback)
-        yield from _cell_feedback(row.cells)
-
-
-def _cell_feedback(cells: Iterable[CellReport]) -> Iterator[tuple[Feedback, Verdict]]:
-    for cell in cells:
-        yield from ((message, cell.verdict) for message in cell.feedback)
-
-
 def _places(messages: Iterable[Feedback]) -> str:
-    """Where the messages belong: ``row 1 d, theta; row 2``."""
+    """The places of the messages: ``row 1 d, theta; row 2``."""
     cells: dict[str, list[str]] = {}
     for message in messages:
         if message.row is not None:

@@ -3,7 +3,7 @@
 Plain frozen dataclasses. A field that is None is left out where a report is sent.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -92,6 +92,15 @@ class Report:
     max_points: float
     score: float
     parts: tuple[PartReport, ...]
+
+
+def messages_of(part: PartReport) -> Iterator[tuple[Feedback, Verdict]]:
+    """The messages on a part, its rows and their cells, each with the verdict on its subject."""
+    yield from ((message, part.verdict) for message in part.feedback)
+    for row in part.rows:
+        yield from ((message, row.verdict) for message in row.feedback)
+        for cell in row.cells:
+            yield from ((message, cell.verdict) for message in cell.feedback)
 
 
 def combined(verdicts: Iterable[Verdict]) -> Verdict:

@@ -1,4 +1,7 @@
-"""Pasted text -> a grid of cell texts that know where they were typed. Knows nothing of robots."""
+"""Pasted text -> a grid of cells, each with its place in the text as pasted.
+
+Knows nothing of robots, and of expressions only spans, errors and the names of functions.
+"""
 
 from service.grids.grid import Grid, GridCell, GridError
 from service.grids.limits import GRID_LIMITS, GridLimits

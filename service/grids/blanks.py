@@ -1,4 +1,4 @@
-"""Elements with blanks between them, told apart as MATLAB does inside square brackets.
+"""Elements between blanks, by MATLAB's rule for square brackets.
 
 A blank separates two operands. A sign with a blank before it and none behind it begins a new
 element: ``[c1 -s1]`` has two, ``[c1 - s1]`` and ``[c1 -  s1]`` one.
@@ -18,40 +18,41 @@ _BINARY: Final = "*/^×·⋅∙∗•÷="
 _UNIT: Final = re.compile(r"(?:deg|degrees?|rad|radians?)(?![A-Za-z0-9])|[°º˚]", re.IGNORECASE)
 # A function's name alone is no element, so the blank behind it separates nothing.
 _FUNCTION: Final = re.compile(rf"(?<![A-Za-z])(?:{'|'.join(SPELLINGS)})(?:(?:\^|\*\*)\d+)?$")
-_LONGEST: Final = 16
-# Beyond what any row may have; the rest of the row is left in one piece.
-_MOST: Final = 2 * GRID_LIMITS.columns
+# The longest end of an element that a rule needs to see.
+_END: Final = 16
+# No row may have more; the rest of a longer row is left in one piece.
+_MAX_ELEMENTS: Final = 2 * GRID_LIMITS.columns
 
 
 @dataclass(frozen=True, slots=True)
-class Blanked:
-    """The elements of one row; ``signs`` are those that a sign with no blank behind it began."""
+class BlankSeparated:
+    """The elements of one row; ``signs`` are the signs that began one, having no blank behind."""
 
     elements: tuple[SourceText, ...]
     signs: tuple[SourceText, ...]
 
 
-def split_blanks(row: SourceText) -> Blanked:
-    """The elements of a row, by MATLAB's rule for blanks. What is in brackets stays together."""
+def split_blanks(row: SourceText) -> BlankSeparated:
+    """The elements of a row, by MATLAB's rule for blanks; brackets stay in one piece."""
     words = _words(row.text)
     elements: list[SourceText] = []
     signs: list[SourceText] = []
     if not words:
-        return Blanked((), ())
+        return BlankSeparated((), ())
     start, end = words[0]
     for next_start, next_end in words[1:]:
-        left, right = row.text[max(start, end - _LONGEST) : end], row.text[next_start:next_end]
-        if len(elements) < _MOST and not goes_on(left, right):
+        left, right = row.text[max(start, end - _END) : end], row.text[next_start:next_end]
+        if len(elements) < _MAX_ELEMENTS and not continues(left, right):
             elements.append(row.cut(start, end))
             if right[0] in _SIGNS:
                 signs.append(row.cut(next_start, next_end))
             start = next_start
         end = next_end
     elements.append(row.cut(start, end))
-    return Blanked(tuple(elements), tuple(signs))
+    return BlankSeparated(tuple(elements), tuple(signs))
 
 
-def goes_on(left: str, right: str) -> bool:
+def continues(left: str, right: str) -> bool:
     """Whether ``right``, behind a blank, belongs to the same element as ``left``."""
     if left[-1] == "*" and left[-2:-1].strip(" \t\r\n.*"):
         # d3* 0 is a marked joint variable and a zero, not a product.
@@ -68,7 +69,7 @@ def goes_on(left: str, right: str) -> bool:
 
 
 def _words(text: str) -> list[tuple[int, int]]:
-    """The [start, end) of what stands between blanks, blanks in brackets left aside."""
+    """The [start, end) of each word between blanks; blanks in brackets separate nothing."""
     ends = pairs(text)
     found: list[tuple[int, int]] = []
     start: int | None = None

@@ -8,28 +8,28 @@ from service.grids.grid import Grid, GridError, GridFormat, grid
 from service.grids.program_text import begins_as_matrix, text_around, unwrap
 from service.grids.source_text import SourceText
 
-# Functions of MATLAB, or of both, and no function at all.
+# No function, or one of MATLAB (or of MATLAB and Python).
 _OF_MATLAB: Final = frozenset({"", "sym", "simplify"})
 
 
 def _parse(source: SourceText) -> Grid:
-    written = unwrap(source)
+    matrix = unwrap(source)
     notes: tuple[Note, ...] = ()
-    if len(written.groups) == 1:
-        [content] = written.groups
+    if len(matrix.groups) == 1:
+        [content] = matrix.groups
         lines = lists.lines_of(content)
         if lines is not None:
             rows = lists.rows(lines)
-        elif written.maker not in _OF_MATLAB and ";" not in content.text:
-            rows = lists.flat(content, written)
+        elif matrix.maker not in _OF_MATLAB and ";" not in content.text:
+            rows = lists.flat(content, matrix)
         else:
             rows, notes = matlab.rows(content)
     else:
-        # print() of MATLAB's symbolic matrices: each row in brackets of its own.
-        for group in written.groups:
+        # MATLAB prints each row of a symbolic matrix in brackets.
+        for group in matrix.groups:
             if any(letter in ";\n" for letter in group.text):
-                raise text_around(written.groups[1])
-        rows = lists.rows(list(written.groups))
+                raise text_around(matrix.groups[1])
+        rows = lists.rows(list(matrix.groups))
     _refuse_objects(rows)
     unquoted = [[lists.unquoted(cell.strip()) for cell in row] for row in rows]
     return grid("brackets", unquoted, source.whole, notes)

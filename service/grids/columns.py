@@ -1,11 +1,11 @@
-"""Columns with blanks between them: read where each line falls into the same number of values."""
+"""Columns between blanks, where each line has the same number of values."""
 
 import itertools
 import re
 from typing import Final
 
 from service.expressions.errors import Note
-from service.grids.blanks import goes_on, split_blanks
+from service.grids.blanks import continues, split_blanks
 from service.grids.grid import Grid, GridError, GridFormat, grid
 from service.grids.source_text import SourceText
 
@@ -42,14 +42,14 @@ def _is_rule(line: str) -> bool:
 
 
 def _at_gaps(line: SourceText) -> list[SourceText]:
-    """The pieces between two or more blanks; nothing where one of them is half a value."""
+    """The pieces between two or more blanks; none where one of them is half a value."""
     pieces: list[SourceText] = []
     start = 0
     for gap in _GAP.finditer(line.text):
         pieces.append(line.cut(start, gap.start()))
         start = gap.end()
     pieces.append(line.cut(start, len(line.text)))
-    halves = any(goes_on(left.text, right.text) for left, right in itertools.pairwise(pieces))
+    halves = any(continues(left.text, right.text) for left, right in itertools.pairwise(pieces))
     return [] if halves else pieces
 
 

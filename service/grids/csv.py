@@ -1,4 +1,4 @@
-"""Commas between cells. The comma of atan2(y, x) stands in brackets and separates nothing."""
+"""Cells between commas. The comma of atan2(y, x), in brackets, separates nothing."""
 
 from typing import Final
 

@@ -1,4 +1,4 @@
-"""What CSV, TSV and semicolon files share: lines, separators, quoted cells."""
+"""Lines, separators and quoted cells of CSV, TSV and semicolon files."""
 
 from service.grids.grid import GridError
 from service.grids.pairs import pairs
@@ -10,8 +10,8 @@ _LINE_ENDS = "\r\n\x85\u2028\u2029"
 def split_cells(source: SourceText, separator: str, *, brackets: bool) -> list[list[SourceText]]:
     """The cells of each line. With ``brackets`` a separator inside brackets separates nothing.
 
-    A cell that begins with " ends with the next single ", as spreadsheets write it. Raises
-    GridError where that is missing, or more stands behind it.
+    A cell that begins with " ends with the next single ", as in spreadsheets. Raises GridError
+    where that is missing, or the cell goes on behind it.
     """
     text = source.text
     ends = pairs(text) if brackets else {}

@@ -1,4 +1,4 @@
-"""Matrices drawn with pieces of brackets over several lines: refused, and told what to do."""
+"""Matrices drawn with pieces of brackets over several lines: refused, with advice."""
 
 from typing import Final
 

@@ -1,4 +1,4 @@
-"""The one protocol of all formats: text in, a grid or one GridError out."""
+"""The protocol of all formats: a text in, a grid or one GridError out."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ class GridError(TextError):
 
 @dataclass(frozen=True, slots=True)
 class Grid:
-    """Rows of cells, not always equally long. ``format`` is what the text was taken for."""
+    """Rows of cells, not always equally long; ``format`` names the format of the text."""
 
     format: str
     rows: tuple[tuple[GridCell, ...], ...]
@@ -35,8 +35,8 @@ class Grid:
 class GridFormat:
     """One way to write a grid.
 
-    ``matches`` tells at a glance whether a text means to be written so, and raises nothing;
-    ``parse`` then reads it and may raise GridError. Both take time linear in the text.
+    ``matches`` tells whether a text seems to be in this format, and raises nothing; ``parse`` reads
+    it and may raise GridError. Both take time linear in the text.
     """
 
     name: str
@@ -45,7 +45,7 @@ class GridFormat:
 
 
 def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid:
-    """A grid of tidied cells, without rows and outer columns that are empty.
+    """A grid of tidied cells, without empty rows and empty outer columns.
 
     Raises GridError where nothing is left, or more than the limits allow.
     """
@@ -71,7 +71,7 @@ def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid
 
 
 def tidy(cell: GridCell) -> GridCell:
-    """The cell without blanks around it and without the marks that only style it: $…$, `…`."""
+    """The cell without blanks around it and without marks that only style it: $…$, `…`."""
     cell = cell.strip()
     for mark in ("`", "**"):
         if len(cell.text) > 2 * len(mark) and cell.text.startswith(mark):

@@ -1,7 +1,7 @@
-"""HTML: the table of a web page, as its source.
+"""HTML: the source of a table on a web page.
 
-Tags are found by a scan of our own and not by html.parser: each character's place in the pasted
-text is needed, and a time linear in any text.
+The scan is written by hand and not by html.parser, for each character's place in the pasted text
+is needed, and linear time for any text.
 """
 
 import re
@@ -33,7 +33,7 @@ _DEGREE_SIGNS: Final = frozenset({"o", "O", "0", "°", "º", "∘", "˚"})
 
 @dataclass
 class _Table:
-    """What has been read of the table so far."""
+    """The part of the table that was read so far."""
 
     rows: list[list[SourceText]] = field(default_factory=list)
     pieces: list[SourceText] = field(default_factory=list)
@@ -66,7 +66,7 @@ def _parse(source: SourceText) -> Grid:
 
 
 def _behind_tag(source: SourceText, start: int) -> int:
-    """The place behind a tag's >, those in quoted attributes left aside."""
+    """The place behind a tag's >; one in a quoted attribute does not count."""
     text = source.text
     i = start
     while i < len(text):

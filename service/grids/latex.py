@@ -1,4 +1,4 @@
-r"""LaTeX: tabular, array, bmatrix and their kin, or their rows alone (``a & b \\ c & d``)."""
+r"""LaTeX: tabular, array, bmatrix and the like, or their rows alone (``a & b \\ c & d``)."""
 
 import re
 from typing import Final
@@ -7,7 +7,7 @@ from service.grids.grid import Grid, GridError, GridFormat, grid
 from service.grids.program_text import text_around
 from service.grids.source_text import SourceText, joined
 
-# How many {…} stand behind \begin{…}.
+# The number of arguments in braces behind \begin{…}.
 _ARGUMENTS: Final = {
     "tabular": 1, "longtable": 1, "array": 1, "tabular*": 2, "tabularx": 2,
     "matrix": 0, "bmatrix": 0, "pmatrix": 0, "Bmatrix": 0, "smallmatrix": 0, "bsmallmatrix": 0,
@@ -74,7 +74,7 @@ def _without_comments(source: SourceText) -> SourceText:
 
 
 def _body(source: SourceText) -> SourceText:
-    """What stands inside the environment; the whole text where only its rows were pasted."""
+    """The content of the environment; the whole text where only its rows were pasted."""
     text = source.text
     marks = [mark for mark in _BEGIN.finditer(text) if mark[2] in _ARGUMENTS]
     if not marks:
@@ -106,14 +106,14 @@ def _not_a_matrix(source: SourceText, mark: re.Match[str]) -> GridError:
 
 
 def _check_in_front(front: SourceText) -> None:
-    """Raise GridError for a factor before the matrix. The left side of an equation is its name."""
+    """Raise GridError for a factor before the matrix; the left side of an equation is its name."""
     if _behind_wrappers(front.text) == len(front.text):
         return
     _check_wrapper(front.cut(front.text.rfind("=") + 1, len(front.text)))
 
 
 def _check_wrapper(around: SourceText) -> None:
-    """Raise GridError where there is more around the matrix than what sets it on the page."""
+    """Raise GridError where more than layout stands around the matrix."""
     end = _behind_wrappers(around.text)
     if end < len(around.text):
         raise text_around(around.cut(end, len(around.text)))
@@ -155,7 +155,7 @@ def _behind_brace(source: SourceText, start: int) -> int:
 
 
 def _rows(body: SourceText) -> list[list[SourceText]]:
-    r"""The cells between & of the rows between \\; those in braces are left alone."""
+    r"""The cells between & of the rows between \\; those in braces separate nothing."""
     text = body.text
     rows: list[list[SourceText]] = [[]]
     pieces: list[SourceText] = []

@@ -1,4 +1,4 @@
-"""What one pasted text may cost, checked before the work that it bounds."""
+"""Bounds on the cost of one pasted text, checked before the work that they bound."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ class GridLimits:
     ``separators`` counts commas, bars, tabs, line ends and the like wherever they stand: a
     spreadsheet's empty cells are pasted along with the others.
 
-    How long a cell may be is for whoever reads it: one long cell costs only itself.
+    The reader of expressions bounds the length of a cell, for a long cell costs only itself.
     """
 
     characters: int = 16 * 1024

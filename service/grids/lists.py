@@ -59,16 +59,16 @@ def rows(lines: list[SourceText]) -> list[list[SourceText]]:
     return found
 
 
-def flat(content: SourceText, written: WrittenMatrix) -> list[list[SourceText]]:
+def flat(content: SourceText, matrix: WrittenMatrix) -> list[list[SourceText]]:
     """One list given to a function: cut into rows where a shape is named.
 
     SymPy makes a column of a plain list, NumPy a row. Raises GridError where the shape does not
     fit.
     """
     values = _values(content)
-    if written.shape is None:
-        return [[value] for value in values] if written.maker in _COLUMN_MAKERS else [values]
-    height, width = written.shape
+    if matrix.shape is None:
+        return [[value] for value in values] if matrix.maker in _COLUMN_MAKERS else [values]
+    height, width = matrix.shape
     if height * width != len(values):
         raise GridError(
             "wrong_count",

@@ -1,4 +1,4 @@
-"""Tables with | between cells: Markdown, with or without its rule, and tables drawn with lines."""
+"""Cells between bars: Markdown, with or without its rule, and tables drawn with lines."""
 
 import re
 from typing import Final

@@ -1,4 +1,4 @@
-"""The rows of a MATLAB matrix: between semicolons and line ends; values between commas, blanks."""
+"""Rows of a MATLAB matrix, between semicolons or line ends, and values between commas or blanks."""
 
 from service.expressions.errors import Note
 from service.grids.blanks import split_blanks
@@ -8,9 +8,9 @@ from service.grids.source_text import SourceText
 
 
 def rows(content: SourceText) -> tuple[list[list[SourceText]], tuple[Note, ...]]:
-    """The values of each row, and what was understood where two readings are possible.
+    """The values of each row, and notes where two readings are possible.
 
-    Raises GridError where commas and blanks separate values and either reading makes a matrix.
+    Raises GridError where commas and blanks separate values and both readings make a matrix.
     """
     lines = [
         line.strip()
@@ -41,9 +41,9 @@ def _by_blanks(
     for row in by_commas:
         elements: list[SourceText] = []
         for piece in row:
-            blanked = split_blanks(piece)
-            elements += blanked.elements or (piece,)
-            signs += blanked.signs
+            separated = split_blanks(piece)
+            elements += separated.elements or (piece,)
+            signs += separated.signs
         found.append(elements)
     return found, signs
 
@@ -69,10 +69,10 @@ def _sign_notes(signs: list[SourceText]) -> tuple[Note, ...]:
 
 def _ambiguous(by_commas: list[list[SourceText]], by_blanks: list[list[SourceText]]) -> GridError:
     at = next(i for i, row in enumerate(by_commas) if len(row) != len(by_blanks[i]))
-    few, many = by_commas[at], by_blanks[at]
+    row, longer = by_commas[at], by_blanks[at]
     return GridError(
         "mixed_separators",
-        f"This row has {len(few)} values if only commas separate them, and {len(many)} if blanks "
+        f"This row has {len(row)} values if only commas separate them, and {len(longer)} if blanks "
         "do as well. Put a comma between all values.",
-        (few[0].whole[0], few[-1].whole[1]),
+        (row[0].whole[0], row[-1].whole[1]),
     )

@@ -1,4 +1,4 @@
-"""Brackets and strings that belong together, so that no separator inside them splits a cell."""
+"""Pairs of brackets and quotes, inside which no separator splits a cell."""
 
 import re
 from typing import Final
@@ -14,9 +14,9 @@ _STRINGS: Final = {
 
 
 def pairs(text: str) -> dict[int, int]:
-    """Where each bracket that has a partner on its own line ends: start -> end, exclusive.
+    """The place behind each bracket's partner on the same line: start -> end, exclusive.
 
-    A bracket without partner is left to whoever reads the cell.
+    A bracket without partner is left to the reader of expressions.
     """
     found: dict[int, int] = {}
     stack: list[int] = []
@@ -32,7 +32,7 @@ def pairs(text: str) -> dict[int, int]:
 
 
 def strict_pairs(source: SourceText) -> dict[int, int]:
-    """Where each bracket and each quoted string of program text ends: start -> end, exclusive.
+    """The place behind each bracket and quoted string of program text: start -> end, exclusive.
 
     Raises GridError for a bracket without its partner and a string that does not end.
     """
@@ -80,9 +80,9 @@ def _unbalanced(source: SourceText, at: int, stack: list[int]) -> GridError:
 def split(
     source: SourceText, separators: str, ends: dict[int, int], offset: int = 0
 ) -> list[SourceText]:
-    """The pieces between ``separators``, leaving alone what stands in brackets or quotes.
+    """The pieces between ``separators`` that stand in no brackets and no quotes.
 
-    ``ends`` may be that of a longer text in which ``source`` begins at ``offset``.
+    ``ends`` may be those of a longer text in which ``source`` begins at ``offset``.
     """
     text = source.text
     pieces: list[SourceText] = []

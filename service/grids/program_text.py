@@ -9,7 +9,7 @@ from service.grids.limits import GRID_LIMITS
 from service.grids.pairs import CLOSES, split, strict_pairs
 from service.grids.source_text import SourceText, joined
 
-# What makes a matrix of its argument and changes nothing in it.
+# Functions that make a matrix of their argument and change nothing in it.
 MAKERS: Final = frozenset(
     {"array", "asarray", "mat", "matrix", "Matrix", "ImmutableMatrix", "MutableDenseMatrix"}
     | {"ImmutableDenseMatrix", "sym", "list", "tuple", "simplify", "trigsimp", "expand"}
@@ -30,11 +30,11 @@ _TAIL: Final = " \t\r\n;,."
 
 @dataclass(frozen=True, slots=True)
 class WrittenMatrix:
-    """What stands in the brackets of a matrix, and how it came there.
+    """A matrix in program text.
 
-    ``groups`` are the contents of the outermost brackets, one in most texts and several where each
-    row has its own. ``maker`` is the name of the function they are given to, ``shape`` the rows and
-    columns that it names.
+    ``groups`` are the contents of the outermost brackets: one in most texts, several where each
+    row has brackets. ``maker`` is the name of the function that takes them, ``shape`` the rows and
+    columns that it is given.
     """
 
     groups: tuple[SourceText, ...]
@@ -44,7 +44,7 @@ class WrittenMatrix:
 
 @dataclass(frozen=True, slots=True)
 class _Head:
-    """Where the matrix begins: ``start`` of its first bracket, or of the call that makes it."""
+    """The begin of a matrix: the ``start`` of its first bracket, or of the call that makes it."""
 
     start: int
     call: str = ""
@@ -52,7 +52,7 @@ class _Head:
 
 
 def begins_as_matrix(text: str) -> bool:
-    """Whether the text begins as a matrix in brackets does, after what may stand in front."""
+    """Whether the text begins with a matrix in brackets, after harmless lines and a name."""
     plain = _without_remarks(SourceText.of(text)).text
     return _head(plain) is not None
 
@@ -74,7 +74,7 @@ def unwrap(source: SourceText, calls: int = 3) -> WrittenMatrix:
 
 
 def _without_remarks(source: SourceText) -> SourceText:
-    """The text with comments and line continuations taken out, those in strings left alone."""
+    """The text without comments and line continuations, except those in strings."""
     text = source.text
     pieces: list[SourceText] = []
     start = i = 0
@@ -130,7 +130,7 @@ def _ends_the_text(text: str, start: int) -> bool:
 
 
 def _groups(source: SourceText, ends: dict[int, int]) -> list[SourceText]:
-    """The contents of the brackets that follow each other. Raises GridError for anything else."""
+    """The contents of brackets in a row. Raises GridError for anything else."""
     groups: list[SourceText] = []
     i = 0
     while i < len(source.text):
@@ -184,13 +184,13 @@ def _is_small(text: str) -> bool:
 
 
 def text_around(piece: SourceText) -> GridError:
-    """Something in front of or behind the matrix that may change what it is."""
+    """The error for text around the matrix that may change its meaning."""
     piece = piece.strip()
     first = piece.text.split("\n", 1)[0][:30]
-    shown = first if first.isprintable() else "what stands here"
+    text = first if first.isprintable() else "what stands here"
     return GridError(
         "text_around",
-        f"Only one matrix or table is read; {shown!r} next to it was not understood. "
+        f"Only one matrix or table is read; {text!r} next to it was not understood. "
         "Paste the matrix alone, worked out.",
         piece.span(0, len(piece.text)),
     )

@@ -36,7 +36,7 @@ _SEPARATORS: Final = (*",;&|│┃║\t\n\r\x85\u2028\u2029", "<t", "<T", "\\\\"
 
 
 def read_grid(text: str) -> Grid:
-    """The grid that a pasted text is. Raises GridError, and nothing else, whatever the text.
+    """The grid in a pasted text. Raises GridError, and nothing else, whatever the text.
 
     Time is linear in the text, which is bounded by ``GRID_LIMITS``.
     """

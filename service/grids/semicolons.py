@@ -1,6 +1,6 @@
-"""Semicolons between cells: CSV as spreadsheets write it where the comma is the decimal sign.
+"""Cells between semicolons: CSV of a spreadsheet whose decimal sign is the comma.
 
-A decimal comma in a cell is left standing: whoever reads the cell names it.
+A decimal comma stays in its cell, for the reader of expressions to name.
 """
 
 from typing import Final

@@ -1,4 +1,4 @@
-"""A piece of text that remembers where each of its characters was typed."""
+"""A piece of text, and the place of each of its characters in the text as typed."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -12,9 +12,9 @@ _LINE_END: Final = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
 
 @dataclass(frozen=True, slots=True)
 class SourceText:
-    """``text``, and for each of its characters the [start, end) of what was typed for it.
+    """``text``, and for each of its characters the [start, end) in the text as typed.
 
-    ``at`` is where the piece stands if it is empty.
+    ``at`` is the place of the piece if it is empty.
     """
 
     text: str
@@ -24,7 +24,7 @@ class SourceText:
 
     @staticmethod
     def of(source: str) -> "SourceText":
-        """The whole of what was typed."""
+        """The whole text as typed."""
         return SourceText(source, range(len(source)), range(1, len(source) + 1))
 
     def cut(self, start: int, end: int) -> "SourceText":
@@ -56,7 +56,7 @@ class SourceText:
         return self.cut(left, max(left, len(self.text.rstrip(letters))))
 
     def lines(self) -> list["SourceText"]:
-        """The lines, without what ends them."""
+        """The lines without their ends."""
         found, start = [], 0
         for end in _LINE_END.finditer(self.text):
             found.append(self.cut(start, end.start()))
@@ -70,7 +70,7 @@ class SourceText:
 
 
 def joined(pieces: Iterable[SourceText], at: int) -> SourceText:
-    """The pieces one after the other; ``at`` is where the result stands if it is empty."""
+    """The pieces one after the other; ``at`` is the place of the result if it is empty."""
     kept = [piece for piece in pieces if piece.text]
     return SourceText(
         "".join(piece.text for piece in kept),

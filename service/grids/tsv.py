@@ -1,4 +1,4 @@
-"""Tabs between cells: what a spreadsheet or a table on a web page puts on the clipboard."""
+"""Cells between tabs, as a spreadsheet or a web page puts them on the clipboard."""
 
 import re
 from typing import Final
@@ -7,7 +7,7 @@ from service.grids.delimited import split_cells
 from service.grids.grid import Grid, GridFormat, grid
 from service.grids.source_text import SourceText
 
-# A tab behind a comma or at the beginning of every line only lays the text out.
+# A tab behind a comma or at the beginning of each line is only layout.
 _TAB: Final = re.compile(r"[^\s,;][^\S\n\t]*\t")
 
 

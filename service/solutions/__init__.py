@@ -1,4 +1,4 @@
-"""Model solutions: what is right in each part, as a textbook prints it.
+"""Model solutions: the right answer to each part, as a textbook prints it.
 
 Built on SymPy, which takes longer to import than a class takes to be graded: it is imported when
 the first exercise is solved.

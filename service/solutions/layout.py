@@ -58,12 +58,12 @@ def row(nodes: Sequence[Node], label: str, convention: Convention) -> PrintedAns
 
 
 def no_row() -> PrintedAnswer:
-    """That a transform has no row."""
+    """The answer that a transform has no row."""
     return PrintedAnswer("none", r"\text{none}", {"none": True})
 
 
 def too_long() -> PrintedAnswer:
-    """That there is an answer, but none that could be handed in."""
+    """The answer where the right one is too long to be handed in."""
     text = "longer than an answer may be"
     return PrintedAnswer(text, rf"\text{{{text}}}", None)
 

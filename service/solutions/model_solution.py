@@ -1,4 +1,4 @@
-"""A model solution: what is right in each part, as it is sent and shown."""
+"""A model solution, as it is sent and printed."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -43,7 +43,7 @@ class PartAnswer(Shown):
 
 @dataclass(frozen=True, slots=True)
 class ModelSolution:
-    """What is right in each part of an exercise, and how one comes to it."""
+    """The right answer to each part of an exercise, and the steps that lead to it."""
 
     exercise: str
     version: str

@@ -63,7 +63,7 @@ Motion = Turn | Shift | Fixed
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """Where a product of motions leads: a rotation and a position."""
+    """The pose that a product of motions leads to: a rotation and a position."""
 
     rotation: sympy.Matrix
     position: sympy.Matrix

@@ -46,7 +46,7 @@ class TooLongError(Exception):
 class Writer:
     """Writes one exercise's formulas.
 
-    ``used`` collects the shorthand that has occurred, with what it stands for.
+    ``used`` collects the shorthand that has occurred, with its meaning.
     """
 
     def __init__(self, exercise: Exercise) -> None:
@@ -175,7 +175,7 @@ def _negative(term: sympy.Expr) -> bool:
 
 
 def _size(expression: sympy.Expr, known: dict[sympy.Expr, int]) -> int:
-    """How many nodes the formula has, written out; parts that occur again are counted once."""
+    """The number of nodes of the formula; a subexpression that recurs is measured once."""
     if expression not in known:
         known[expression] = 1 + sum(_size(part, known) for part in expression.args)
     return known[expression]

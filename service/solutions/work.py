@@ -1,4 +1,4 @@
-"""One exercise being solved: what the kinds share."""
+"""One exercise being solved, with the steps that the kinds share."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

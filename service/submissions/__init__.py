@@ -1,4 +1,4 @@
-"""What is handed in, over HTTP or as a file: read strictly, checked, and found its exercise."""
+"""Submissions, over HTTP or as files: read strictly, checked, their exercise found."""
 
 from service.submissions.body import FeedbackName, GradeRequest
 from service.submissions.lookup import UnknownExerciseError, find_exercise, nearest

@@ -11,7 +11,7 @@ FeedbackName = Literal["full", "verdicts", "score"]
 
 
 class GradeRequest(BaseModel):
-    """Answers to the parts of one exercise. What lies inside an answer is the grading's matter."""
+    """Answers to the parts of one exercise. The grading reads the answers."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 

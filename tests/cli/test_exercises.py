@@ -51,7 +51,7 @@ def test_the_list_follows_the_terminal(
 ) -> None:
     monkeypatch.setenv("COLUMNS", columns)
     text = run("exercises", "list").stdout
-    one_line = "SCARA manipulator with its link transforms, distal convention" in text
+    one_line = "Planar RRR arm, proximal convention, every frame given as drawn" in text
     assert one_line == (columns == "200")
     assert "(8)" in text
 

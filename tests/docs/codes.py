@@ -9,6 +9,7 @@ is put together while the program runs could not be found by reading, and so is 
 import ast
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 CODE = "code"
@@ -46,7 +47,7 @@ def codes_in(files: Mapping[str, str]) -> list[CodeUse]:
     """Every code that is handed over in these files. Raises HiddenCodeError."""
     trees = {file: ast.parse(text) for file, text in files.items()}
     nodes = {file: list(ast.walk(tree)) for file, tree in trees.items()}
-    classes = dict(found for each in nodes.values() for found in _classes(each))
+    classes = _classes(chain.from_iterable(nodes.values()))
     passing_on = {file: dict(_functions(each)) for file, each in nodes.items()}
     functions = {name: at for found in passing_on.values() for name, at in found.items()}
     constants = [given for tree in trees.values() for given in _given(tree.body)]
@@ -65,8 +66,10 @@ def codes_in(files: Mapping[str, str]) -> list[CodeUse]:
     return uses
 
 
-def _classes(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, int]]:
+def _classes(nodes: Iterable[ast.AST]) -> dict[str, int]:
     """The classes that carry a code, each with its place among the arguments."""
+    carriers: dict[str, int] = {}
+    heirs: list[tuple[str, set[str]]] = []
     for node in nodes:
         if not isinstance(node, ast.ClassDef):
             continue
@@ -79,7 +82,16 @@ def _classes(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, int]]:
             if isinstance(statement, Function) and statement.name == "__init__":
                 arguments = _arguments(statement)
         if CODE in arguments:
-            yield node.name, arguments.index(CODE)
+            carriers[node.name] = arguments.index(CODE)
+        elif not arguments:
+            heirs.append(
+                (node.name, {base.id for base in node.bases if isinstance(base, ast.Name)})
+            )
+    for _ in heirs:  # at most so many generations
+        carriers |= {
+            name: carriers[base] for name, bases in heirs for base in bases & carriers.keys()
+        }
+    return carriers
 
 
 def _functions(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, int]]:

@@ -314,6 +314,7 @@ ERROR = "class E(Exception):\n    def __init__(self, code: str, span: int) -> No
         ('Finding(hint="x", code="one")', {"one"}),
         ('module.Finding("one", "x")', {"one"}),
         ('raise E("one", 0)', {"one"}),
+        ('class F(E): ...\nclass G(F): ...\nraise G("one", 0)', {"one"}),
         ('f = lambda: Finding("one", "x")', {"one"}),
         ('Finding("one" if a else "two", "x")', {"one", "two"}),
         ('ONE = "one"\nFinding(ONE, "x")', {"one"}),

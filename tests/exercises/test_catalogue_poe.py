@@ -130,13 +130,11 @@ STATEMENTS: dict[str, Callable[[Numbers], Chain]] = {
     "rrrp-drawn": rrrp,
     "rrrp-proximal": rrrp,
     "scara": scara,
-    "scara-links": scara,
     "spatial-rrr": spatial_rrr,
     "spherical-wrist": spherical_wrist,
     "stanford-arm": stanford,
     "stanford-arm-d1": stanford,
     "stanford-arm-drawn": stanford,
-    "stanford-arm-links": stanford,
     "three-link-cartesian": cartesian,
     "three-link-cylindrical": cylindrical,
 }

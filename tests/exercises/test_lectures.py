@@ -162,20 +162,20 @@ def test_what_a_lecture_prints_gets_full_marks(
 def test_each_other_link_transform_of_the_stanford_arm_is_right(
     link: int, catalogue: Mapping[str, Exercise]
 ) -> None:
-    report = graded(catalogue, "stanford-arm-links", "links", STANFORD_LINKS)
+    report = graded(catalogue, "stanford-arm", "links", STANFORD_LINKS)
     assert not {row for row, _ in not_correct(report) if row.startswith(f"A{link}.")}
 
 
 def test_a5_of_the_stanford_arm_is_misprinted_left_handed(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    report = graded(catalogue, "stanford-arm-links", "links", STANFORD_LINKS)
+    report = graded(catalogue, "stanford-arm", "links", STANFORD_LINKS)
     assert not_correct(report) == {("A5.3", "2"): Verdict.INCORRECT}
     assert {"left_handed_rotation", "sign"} <= codes(report)
     assert report.points == pytest.approx(12 * (1 - 1 / 96))
     mended = [*STANFORD_LINKS]
     mended[4] = mended[4].replace("0 & -1 & 0 & 0", "0 & 1 & 0 & 0")
-    assert full_marks(graded(catalogue, "stanford-arm-links", "links", mended))
+    assert full_marks(graded(catalogue, "stanford-arm", "links", mended))
 
 
 def test_the_pitch_of_the_spatial_arm_is_printed_with_the_wrong_sign(

@@ -1,4 +1,10 @@
-"""An arm to write about: joints 1, 2, 4 turn, joint 3 slides."""
+"""An arm to write about: joints 1, 2, 4 turn, joint 3 slides.
+
+The test of ``service/expressions/x/y.py`` is ``x/test_y.py``. At the top stand the suites that test
+the whole reader: the written cases (``corpus``, and ``repairs`` for its repairs), random texts
+(``fuzz``), properties of any tree, the formulas that SymPy prints, what is remembered, and that no
+text is run as a program.
+"""
 
 import numpy as np
 import pytest

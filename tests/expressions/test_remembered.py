@@ -9,9 +9,7 @@ import pytest
 from service.expressions import (
     Expression,
     ExpressionError,
-    Symbol,
     Vocabulary,
-    evaluate_all,
     read,
     reader,
 )
@@ -105,29 +103,6 @@ def test_what_others_left_in_the_memo_changes_no_value() -> None:
         shared = {id(each): np.asarray(each.evaluate(SAMPLES, memo)) for each in order}
         for each, value in zip(expressions, alone, strict=True):
             np.testing.assert_array_equal(shared[id(each)], value, each.source)
-
-
-def test_what_two_texts_share_is_computed_once() -> None:
-    memo: dict[str, object] = {}
-    product = read("l1*c1", ROBOT).evaluate(SAMPLES, memo)
-    assert read("l1 cos(θ1)", ROBOT).evaluate(SAMPLES, memo) is product
-    assert read("l1*c1", ROBOT).evaluate(SAMPLES, {}) is not product
-
-
-def test_a_symbol_called_inf_is_not_infinite() -> None:
-    vocabulary = Vocabulary([Symbol("inf", "number"), Symbol("nan", "number")])
-    values = {"inf": np.array([2.0]), "nan": np.array([3.0])}
-    assert read("inf - 10^400", vocabulary).evaluate(values) == [-np.inf]
-    assert read("inf*nan", vocabulary).evaluate(values) == [6.0]
-
-
-def test_all_at_once_is_the_same_as_one_by_one() -> None:
-    texts = ["2", "k", "k/0", "sqrt(k)", "1/0", "l1*c1"]
-    expressions = [read(text, ROBOT) for text in texts]
-    found = evaluate_all([*expressions, None], SAMPLES, {})
-    for expression, value in zip(expressions, found, strict=False):
-        np.testing.assert_array_equal(value, expression.evaluate(SAMPLES))
-    assert np.isnan(found[-1])
 
 
 def test_threads_that_read_the_same_texts_agree() -> None:

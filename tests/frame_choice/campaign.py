@@ -103,7 +103,7 @@ class Figure:
 
 
 # What was counted of what, and the least share. Ties are wrong cells that could be repaired in
-# another cell as well, so that no grader can know which was meant.
+# another cell as well, so that no grader can know which was intended.
 GIVEN_FIGURES = (
     ("valid tables: full marks and no error", "valid accepted", "valid", 1.0),
     ("one slip: no full marks", "slip caught", "slip", 1.0),

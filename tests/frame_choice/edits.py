@@ -70,12 +70,12 @@ def _letters(robot: Robot, cell: Cell) -> Iterator[tuple[str, Cell]]:
 
 
 def _variables(robot: Robot, row: int, cell: Cell) -> Iterator[tuple[str, Cell]]:
-    [sense] = cell.variables.values()
+    [sign] = cell.variables.values()
     yield "variable missing", replace(cell, variables={})
     yield "sign of the variable", _negated(cell, variables=True, constant=False)
     for i, name in enumerate(robot.joints):
         if i != row and robot.structure[i] == robot.structure[row]:
-            yield "another variable", replace(cell, variables={name: sense})
+            yield "another variable", replace(cell, variables={name: sign})
 
 
 def _negated(cell: Cell, *, variables: bool, constant: bool) -> Cell:

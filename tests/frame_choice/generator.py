@@ -1,7 +1,7 @@
 """Valid re-assignments: the same mechanism with other frames, as a student might choose them.
 
-The chain is walked from the base. At each joint the student's frame is put somewhere on the joint's
-axis (any z sense, either x along the common normal, any origin and x direction where the axes are
+From the base on, at each joint the student's frame is put somewhere on the joint's
+axis (z either way, either x along the common normal, any origin and x direction where the axes are
 parallel or one line; the axis of a sliding joint anywhere). The row is the common normal between
 one z axis and the next, at K values of the lengths at once; in the end the numbers are recognised
 as formulas.
@@ -56,13 +56,13 @@ def reassignment(
     """A random valid table, and how many draws could not be written down before it came out."""
     for failed in range(200):
         try:
-            return _Walk(robot, policy, convention, rng).table(), failed
+            return _Reassignment(robot, policy, convention, rng).table(), failed
         except (NotExpressibleError, _UnreachableError):
             continue
     raise RuntimeError(f"no table of {robot.name} can be drawn")
 
 
-class _Walk:
+class _Reassignment:
     def __init__(
         self, robot: Robot, policy: Policy, convention: str, rng: np.random.Generator
     ) -> None:
@@ -73,7 +73,7 @@ class _Walk:
         self.arcs: list[Term] = []
         self.x: list[Constants] = []
         self.z: list[Constants] = []
-        self.senses: list[int] = []
+        self.joint_signs: list[int] = []
         self._read_reference()
 
     def _read_reference(self) -> None:
@@ -139,10 +139,10 @@ class _Walk:
         return self.robot.structure[joint] == "P"
 
     def _note_sense(self, pose: Numbers) -> None:
-        sense = 1 if pose[0, 2, 2] > 0 else -1
+        sign = 1 if pose[0, 2, 2] > 0 else -1
         if self.policy.directions and self.rng.random() < 0.5:
-            sense = -sense
-        self.senses.append(sense)
+            sign = -sign
+        self.joint_signs.append(sign)
 
     # Frames
 
@@ -313,7 +313,9 @@ class _Walk:
         ]
         if i < len(self.robot.joints):
             column = self.robot.column(i)
-            row[column] = replace(row[column], variables={self.robot.joints[i]: self.senses[i]})
+            row[column] = replace(
+                row[column], variables={self.robot.joints[i]: self.joint_signs[i]}
+            )
         return row[0], row[1], row[2], row[3]
 
 

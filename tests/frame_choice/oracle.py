@@ -3,7 +3,7 @@
 Where base or end-effector frame is free, a constant transform B or E may stand between them:
 T_written(q) = B T_reference(σ q) E, with signs σ where the joints' directions are free. B and E may
 depend on the lengths. One free end is solved for at the first joint values and tested at the
-others. Two free ends leave E to be solved for once B is known, and B must carry the reference's
+others. Two free ends leave E to be solved for once B is known, and B must move the reference's
 joint screws onto the written ones: T(q) = exp(S_1 q_1) … exp(S_n q_n) M, in which S_i sees nothing
 of E (Lynch and Park, Modern Robotics, section 4.1). All of it is checked on the full pose.
 """
@@ -57,9 +57,9 @@ def is_equivalent(robot: Robot, policy: Policy, texts: Texts, convention: str) -
 
 
 def mismatch(robot: Robot, policy: Policy, texts: Texts, convention: str) -> float:
-    """By how much the pose is off, at best."""
-    off = difference(robot, policy, lambda values: cell_values(texts, values), convention)
-    return float(np.abs(off).max())
+    """The error of the pose against the nearest valid one."""
+    error = difference(robot, policy, lambda values: cell_values(texts, values), convention)
+    return float(np.abs(error).max())
 
 
 def difference(robot: Robot, policy: Policy, table: TableOf, convention: str) -> Numbers:
@@ -129,33 +129,33 @@ def _screws_of_reference(robot: Robot) -> Numbers:
 
 
 def _base_from_screws(robot: Robot, signs: tuple[int, ...], written: Numbers) -> Numbers:
-    """The rigid motions ``(LENGTHS, 4, 4)`` that carry one set of screws onto the other."""
+    """The rigid motions ``(LENGTHS, 4, 4)`` that move one set of screws onto the other."""
     reference = _screws_of_reference(robot) * np.array(signs)[:, None]
-    return np.array([_carry(*pair) for pair in zip(reference, written, strict=True)])
+    return np.array([_align(*pair) for pair in zip(reference, written, strict=True)])
 
 
-def _carry(source: Numbers, target: Numbers) -> Numbers:
-    """The motion that carries screws ``(n, 6)`` onto others, as nearly as one does."""
+def _align(source: Numbers, target: Numbers) -> Numbers:
+    """The motion that moves screws ``(n, 6)`` onto others, as nearly as one does."""
     turning = np.linalg.norm(source[:, :3], axis=1) > 0.5
     directions = [np.where(turning[:, None], s[:, :3], s[:, 3:]) for s in (source, target)]
     u, sizes, vt = np.linalg.svd(directions[1].T @ directions[0])
     rotation = u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt
     if sizes[1] < 1e-6 and turning.any():
         rotation = _turn_in_plane(source[turning], target[turning], rotation) @ rotation
-    carried = source.copy()
-    carried[:, :3] = source[:, :3] @ rotation.T
-    carried[:, 3:] = source[:, 3:] @ rotation.T
-    shift = _translation(carried[turning], target[turning])
+    moved = source.copy()
+    moved[:, :3] = source[:, :3] @ rotation.T
+    moved[:, 3:] = source[:, 3:] @ rotation.T
+    shift = _translation(moved[turning], target[turning])
     base = np.eye(4)
     base[:3, :3], base[:3, 3] = rotation, shift
     return base
 
 
 def _turn_in_plane(source: Numbers, target: Numbers, rotation: Numbers) -> Numbers:
-    """All axes are parallel: the turn about them that carries one pattern of lines to the other."""
+    """All axes are parallel: the turn about them that moves one pattern of lines to the other."""
     axis = target[0, :3] / max(float(np.linalg.norm(target[0, :3])), 1e-12)
-    carried = np.concatenate([source[:, :3] @ rotation.T, source[:, 3:] @ rotation.T], axis=1)
-    points = [np.cross(s[:, :3], s[:, 3:]) for s in (carried, target)]
+    moved = np.concatenate([source[:, :3] @ rotation.T, source[:, 3:] @ rotation.T], axis=1)
+    points = [np.cross(s[:, :3], s[:, 3:]) for s in (moved, target)]
     one, other = (p - p.mean(axis=0) for p in points)
     angle = np.arctan2((np.cross(one, other) @ axis).sum(), (one * other).sum())
     cross = np.cross(np.eye(3), axis)

@@ -1,7 +1,7 @@
 """Which other readings of a wrong table are as good as the slip that was made.
 
 On parallel axes, and around sliding joints, one slip can often be repaired in another cell than the
-one that it was made in. No grader can know which was meant.
+one that it was made in. No grader can know which was intended.
 """
 
 from collections.abc import Sequence
@@ -31,31 +31,31 @@ STARTS = 8
 def can_repair(
     robot: Robot, policy: Policy, texts: Texts, convention: str, cells: Sequence[Place]
 ) -> bool:
-    """Whether other values of these few cells make the table valid.
+    """Whether other values of these cells make the table valid.
 
     Each cell becomes a constant for each set of lengths, with the joint variable, either way, in
-    its own column; found by least squares from a few starts.
+    its own column; found by least squares from several starts.
     """
     values = samples(robot)
-    own = [robot.column(r) == c if r < len(robot.joints) else False for r, c in cells]
+    holds_variable = [robot.column(r) == c if r < len(robot.joints) else False for r, c in cells]
     written = cell_values(texts, {name: value * 1.0 for name, value in values.items()})
     starts = [
         written[r, c].mean(axis=-1) if not mine else np.zeros(LENGTHS)
-        for (r, c), mine in zip(cells, own, strict=True)
+        for (r, c), mine in zip(cells, holds_variable, strict=True)
     ]
     rng = np.random.default_rng(0)
-    for senses in product(*[(1.0, -1.0) if mine else (0.0,) for mine in own]):
+    for signs in product(*[(1.0, -1.0) if mine else (0.0,) for mine in holds_variable]):
 
-        def off(x: Numbers, senses: tuple[float, ...] = senses) -> Numbers:
+        def error(x: Numbers, signs: tuple[float, ...] = signs) -> Numbers:
             constants = x.reshape(len(cells), LENGTHS)
 
             def table(at: Values) -> Numbers:
                 numbers = cell_values(texts, at)
-                for (r, c), constant, sense in zip(cells, constants, senses, strict=True):
+                for (r, c), constant, sign in zip(cells, constants, signs, strict=True):
                     shape = np.shape(numbers[r, c])
                     value = constant.reshape(LENGTHS, *[1] * (len(shape) - 1))
-                    if sense:
-                        value = value + sense * at[robot.joints[r]]
+                    if sign:
+                        value = value + sign * at[robot.joints[r]]
                     numbers[r, c] = value
                 return numbers
 
@@ -66,7 +66,7 @@ def can_repair(
             if attempt < len(TURNS):  # where all axes are parallel no gradient leads
                 angles = np.repeat([c in (ALPHA, THETA) for _, c in cells], LENGTHS)
                 start = np.where(angles, TURNS[attempt], start)
-            found = least_squares(off, start, method="trf", max_nfev=60)
+            found = least_squares(error, start, method="trf", max_nfev=60)
             if np.abs(found.fun).max() < TOLERANCE:
                 return True
     return False
@@ -108,19 +108,19 @@ def _fills(
     angle = np.arctan2(wanted[..., second, first], wanted[..., first, first])
     shift = wanted[..., axis, 3]
     free, fixed = (shift, angle) if column in (A, D) else (angle, shift)
-    off = np.abs(wanted[..., axis, axis] - 1) + np.abs(wanted[..., first, 3])
-    off = off + np.abs(wanted[..., second, 3])
+    error = np.abs(wanted[..., axis, axis] - 1) + np.abs(wanted[..., first, 3])
+    error = error + np.abs(wanted[..., second, 3])
     rest = fixed - other
     if column in (A, D):
         rest = _principal(rest)
-    if max(off.max(), np.abs(rest).max()) > TOLERANCE:
+    if max(error.max(), np.abs(rest).max()) > TOLERANCE:
         return False
-    senses = [0.0]
+    signs = [0.0]
     variable = np.zeros((LENGTHS, JOINTS))
     if row < len(robot.joints) and column == robot.column(row):
-        senses, variable = [1.0, -1.0], values[robot.joints[row]]
-    for sense in senses:
-        constant = free - sense * variable
+        signs, variable = [1.0, -1.0], values[robot.joints[row]]
+    for sign in signs:
+        constant = free - sign * variable
         drift = constant - constant[:, :1]
         drift = drift if column in (A, D) else _principal(drift)
         if np.abs(drift).max() < TOLERANCE:

@@ -49,14 +49,14 @@ def either(request: pytest.FixtureRequest) -> Tally:
     return tally
 
 
-def shown(tally: Tally, chosen: Callable[[str], bool]) -> str:
-    """The first few tables that were judged otherwise."""
+def first_misses(tally: Tally, chosen: Callable[[str], bool]) -> str:
+    """The first tables that were judged otherwise."""
     return "\n\n".join(str(miss) for miss in tally.misses if chosen(miss.what))[:4000]
 
 
 def test_every_valid_table_gets_full_marks_and_no_word_of_an_error(either: Tally) -> None:
     assert either.counts["valid"] >= 450
-    assert either.counts["valid accepted"] == either.counts["valid"], shown(
+    assert either.counts["valid accepted"] == either.counts["valid"], first_misses(
         either, lambda what: what.startswith("valid")
     )
 
@@ -65,31 +65,31 @@ def test_no_table_with_a_slip_gets_full_marks(either: Tally) -> None:
     wrong = either.counts["slip"] + either.counts["two slips"]
     caught = either.counts["slip caught"] + either.counts["two caught"]
     assert wrong >= 300
-    assert caught == wrong, shown(either, lambda what: what.startswith("wrong"))
+    assert caught == wrong, first_misses(either, lambda what: what.startswith("wrong"))
 
 
 def test_nothing_raises(either: Tally) -> None:
-    assert either.counts["crashed"] == 0, shown(either, lambda what: what == "crash")
+    assert either.counts["crashed"] == 0, first_misses(either, lambda what: what == "crash")
 
 
 def test_a_slip_between_axes_that_are_not_parallel_is_blamed_on_its_cell(given: Tally) -> None:
     """Where no other single cell would repair the table, so that the blame is nobody else's."""
     assert given.counts["skew unshared"] >= 80
-    assert given.share("skew unshared exact", "skew unshared") >= 0.99, shown(
+    assert given.share("skew unshared exact", "skew unshared") >= 0.99, first_misses(
         given, lambda what: what.startswith("one slip, skew")
     )
 
 
 def test_a_slip_between_parallel_axes_is_blamed_on_one_row(given: Tally) -> None:
     assert given.counts["parallel"] >= 150
-    assert given.share("parallel one row", "parallel") >= 0.90, shown(
+    assert given.share("parallel one row", "parallel") >= 0.90, first_misses(
         given, lambda what: what.startswith("one slip, parallel")
     )
 
 
 def test_two_slips_that_have_nothing_to_do_with_each_other_are_both_found(given: Tally) -> None:
     assert given.counts["two unshared"] >= 150
-    assert given.share("two unshared found", "two unshared") >= 0.95, shown(
+    assert given.share("two unshared found", "two unshared") >= 0.95, first_misses(
         given, lambda what: what.startswith("two slips")
     )
 

@@ -84,8 +84,8 @@ def graded(table: Table) -> Grading:
     except Exception as error:
         raise CrashError(table) from error
     took = 1e3 * (time.perf_counter() - start)
-    shown = [row.label for row in report.rows]
-    if table.robot.labels(len(shown)) != shown:
+    labels = [row.label for row in report.rows]
+    if table.robot.labels(len(labels)) != labels:
         # Rows were taken for others: none of them is where it was written.
         return Grading(report, frozenset({(-1, -1)}), took)
     blamed = frozenset(

@@ -7,15 +7,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from service.grids import GRID_LIMITS, Grid, GridError, read_grid
-from tests.grids.writers import FORMATS
+from tests.grids.writers import FORMATS, POSE
 from tests.guards import STALL
 
-POSE = [
-    ["c12", "-s12", "0", "a1*c1+a2*c12"],
-    ["s12", "c12", "0", "a1*s1+a2*s12"],
-    ["0", "0", "1", "-d3"],
-    ["0", "0", "0", "1"],
-]
 SEEDS = [write(POSE) for write in FORMATS.values()]
 FRAGMENTS = [
     "[", "]", "(", ")", "{", "}", "<", ">", "&", "\\", "|", "'", '"', "%", "#", "...", ";", ",",

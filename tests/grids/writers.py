@@ -1,4 +1,7 @@
-"""One table, written down as people and programs write it. Nothing here knows the reader."""
+"""One table, written down as people and programs write it. Nothing here knows the reader.
+
+``test_registry`` tries each format through the registry, and ``test_hostile`` any text at all.
+"""
 
 import csv
 import html
@@ -7,6 +10,13 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 
 Rows = Sequence[Sequence[str]]
+
+POSE = [
+    ["c12", "-s12", "0", "a1*c1+a2*c12"],
+    ["s12", "c12", "0", "a1*s1+a2*s12"],
+    ["0", "0", "1", "-d3"],
+    ["0", "0", "0", "1"],
+]
 
 
 def delimited(separator: str) -> Callable[[Rows], str]:

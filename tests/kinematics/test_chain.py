@@ -85,7 +85,7 @@ def test_a_batch_is_each_of_its_lanes() -> None:
     for convention in Convention:
         together = pose(table, convention)
         assert together.shape == (6, 4, 4)
-        alone = np.stack([pose(table[..., lane], convention) for lane in range(6)])
+        alone = np.stack([pose(table[..., sample], convention) for sample in range(6)])
         np.testing.assert_allclose(together, alone, atol=1e-14)
 
 

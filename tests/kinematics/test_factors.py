@@ -46,8 +46,8 @@ def test_the_frames_on_the_axes_are_those_of_each_convention(written: Convention
     factors = factors_of(TABLE, written)
     reached = frames(TABLE, written)
     rows = list(range(len(TABLE)))
-    own = reached[:-1] if written is Convention.STANDARD else reached[1:]
-    np.testing.assert_allclose(factors.joint_frames(rows, written), own, atol=1e-12)
+    expected = reached[:-1] if written is Convention.STANDARD else reached[1:]
+    np.testing.assert_allclose(factors.joint_frames(rows, written), expected, atol=1e-12)
     # From where Z starts to where it leads is Z itself.
     starts = factors.joint_frames(rows, Convention.STANDARD)
     z = rot_z(TABLE[:, 3]) @ trans(0, 0, TABLE[:, 2])

@@ -55,7 +55,7 @@ ARMS = [
 
 
 def table_of(rows: Rows, convention: Convention) -> NDArray[np.float64]:
-    """The table in one lane; the modified one has a row more for the tool."""
+    """The table at one sample; the modified one has a row more for the tool."""
     standard = [(float(a), float(alpha), float(d), float(theta)) for a, alpha, d, theta in rows]
     if convention is Convention.MODIFIED:
         standard = modified_rows(standard, 0.0)
@@ -116,9 +116,9 @@ def test_lanes_are_apart() -> None:
     both = space_jacobian(
         np.concatenate([one, other], axis=-1), Convention.STANDARD, range(6), prismatic
     )
-    for lane, table in enumerate((one, other)):
+    for sample, table in enumerate((one, other)):
         alone = space_jacobian(table, Convention.STANDARD, range(6), prismatic)
-        np.testing.assert_allclose(both[lane], alone[0])
+        np.testing.assert_allclose(both[sample], alone[0])
     assert rank(both) == 6
 
 

@@ -1,4 +1,4 @@
-"""The answer kinds: what a tutor writes of each, one module for one kind.
+"""The answer kinds as a tutor writes them, one module for each.
 
 A module ``<kind>.py`` holds one subclass of ``PartSpec``, whose ``kind`` is the module's name. It
 is found here by that name; nothing else lists the kinds.
@@ -56,13 +56,13 @@ if TYPE_CHECKING:
     AnyPartSpec = PartSpec
     AnyShape = AnswerShape
 else:
-    # By the names of the kinds, so that a fault is told of the one form that was intended.
+    # By the names of the kinds, so that a fault is reported for the intended form only.
     AnyPartSpec = Annotated[reduce(or_, SPECS.values()), Field(discriminator="kind")]
     AnyShape = reduce(or_, dict.fromkeys(_SHAPES.values()))
 
 
 def posted_forms() -> str:
-    """How an answer of each kind is posted, in words: "`transform`: a list of rows, …"."""
+    """The form in which an answer of each kind is posted: "`transform`: a list of rows, …"."""
     kinds: dict[str, list[str]] = {}
     for kind, shape in _SHAPES.items():
         kinds.setdefault(shape.posted, []).append(f"`{kind}`")

@@ -24,7 +24,7 @@ from service.kinematics.transforms import Numbers
 
 
 class DhRowShape(AnswerShape):
-    """What a DH row must look like; `{"none": true}` says that there is none."""
+    """The shape of a DH row; `{"none": true}` says that there is none."""
 
     posted: ClassVar[str] = (
         '`{"a", "alpha", "d", "theta"}`, or `{"none": true}` where the transform has none'

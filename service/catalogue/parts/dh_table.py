@@ -4,7 +4,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from service.catalogue.fields import Choice
+from service.catalogue.fields import GivenOrFree
 from service.catalogue.part import TablePartSpec
 from service.catalogue.robot import Robot
 from service.catalogue.screw_robot import Reference
@@ -14,7 +14,7 @@ from service.kinematics.dh import Convention
 
 
 class DhTableShape(AnswerShape):
-    """What a table must look like, and whose choice its frames are."""
+    """The shape of a table, and whose choice its frames are."""
 
     posted: ClassVar[str] = '`{"rows": [{"a", "alpha", "d", "theta"}, …]}`'
 
@@ -24,10 +24,10 @@ class DhTableShape(AnswerShape):
         "convention will do, those of the longer table."
     )
     convention: Convention | Literal["either"]
-    frames: Choice
-    base: Choice
-    tool: Choice
-    directions: Choice
+    frames: GivenOrFree
+    base: GivenOrFree
+    tool: GivenOrFree
+    directions: GivenOrFree
 
     def in_words(self) -> str:
         """The shape in one sentence."""
@@ -52,14 +52,14 @@ class DhTableSpec(TablePartSpec):
         description='"standard" (distal) or "modified" (proximal); with "either" the answer says '
         "which it uses.",
     )
-    frames: Choice = Field(
+    frames: GivenOrFree = Field(
         "given",
         description='Whose choice the frames on the joints are: "given" accepts those of the '
         'reference only, "free" every valid choice.',
     )
-    base: Choice = Field("given", description="Whose choice the base frame is.")
-    tool: Choice = Field("given", description="Whose choice the tool frame is.")
-    directions: Choice = Field(
+    base: GivenOrFree = Field("given", description="Whose choice the base frame is.")
+    tool: GivenOrFree = Field("given", description="Whose choice the tool frame is.")
+    directions: GivenOrFree = Field(
         "given", description="Whose choice the positive direction of each joint is."
     )
 

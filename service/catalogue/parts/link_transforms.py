@@ -4,7 +4,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from service.catalogue.fields import Choice
+from service.catalogue.fields import GivenOrFree
 from service.catalogue.part import TablePartSpec
 from service.catalogue.robot import Robot
 from service.catalogue.screw_robot import Reference
@@ -40,7 +40,7 @@ class LinkTransformsSpec(TablePartSpec):
 
     kind: Literal["link_transforms"]
     convention: Convention = Field(description='"standard" (distal) or "modified" (proximal).')
-    frames: Choice = Field(
+    frames: GivenOrFree = Field(
         "given",
         description='Whose choice the frames on the joints are: with "free" the transforms may be '
         "those of any valid table, or of the student's own where the part follows one.",

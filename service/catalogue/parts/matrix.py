@@ -25,13 +25,14 @@ class MatrixSpec(PartSpec):
     )
     quantity: Kind | list[Kind] = Field(
         "number",
-        description="What the entries are, or a list with what each column is.",
+        description="Whether the entries are angles, lengths or plain numbers: one word for all, "
+        "or one for each column.",
         examples=[["number", "length"]],
     )
 
     @property
     def quantities(self) -> tuple[tuple[Kind, ...], ...]:
-        """What each entry is."""
+        """The quantity of each entry."""
         columns = len(self.expected[0])
         row = (self.quantity,) * columns if isinstance(self.quantity, str) else self.quantity
         return (tuple(row),) * len(self.expected)

@@ -28,12 +28,14 @@ class RotationSpec(PosePartSpec):
 
     kind: Literal["rotation"]
     expected: tuple[Triple, Triple, Triple] | None = Field(
-        None, description="The rotation by its entries, row by row, in place of the robot's."
+        None,
+        description="The rotation by its entries, row by row, in place of the robot's and of "
+        "``steps``.",
     )
     steps: Annotated[list[StepSpec], Field(min_length=1, max_length=6)] | None = Field(
         None,
         description="The rotation by its turns, in the order in which they are made, in place of "
-        "the robot's.",
+        "the robot's and of ``expected``.",
         examples=[[{"axis": "x", "angle": "phi"}, {"axis": "z", "angle": "psi", "about": "fixed"}]],
     )
 

@@ -4,7 +4,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from service.catalogue.fields import Choice, Screw
+from service.catalogue.fields import GivenOrFree, Screw
 from service.catalogue.formulas import WrittenFormulas, screws_of
 from service.catalogue.part import PartSpec
 from service.catalogue.screw_robot import Reference
@@ -12,14 +12,14 @@ from service.catalogue.shapes import AnswerShape, choices, clauses, listed, numb
 
 
 class ScrewAxesShape(AnswerShape):
-    """What a list of screw axes (ω; v) must look like: one six-vector for each row."""
+    """The shape of a list of screw axes (ω; v): one six-vector for each row."""
 
     posted: ClassVar[str] = "a list of six-vectors (ω; v)"
 
     columns: list[str]
     rows: list[str]
     frame: Literal["space", "body"]
-    directions: Choice
+    directions: GivenOrFree
 
     def in_words(self) -> str:
         """The shape in one sentence."""
@@ -39,7 +39,7 @@ class ScrewAxesSpec(PartSpec):
         description='Where the axes are seen from: the base frame ("space") or the tool frame '
         '("body").'
     )
-    directions: Choice = Field(
+    directions: GivenOrFree = Field(
         "given", description='Whose choice the directions are: with "free" an axis may be reversed.'
     )
     expected: Annotated[list[Screw], Field(min_length=1, max_length=12)] | None = Field(

@@ -16,8 +16,8 @@ class ComponentSpec(StrictModel):
     """One component of a vector."""
 
     name: Text = Field(description="Its name.", examples=["p_x"])
-    quantity: Kind = Field(description="What it is.")
-    expected: Formula = Field(description="What is right.", examples=["l1*c1 + l2*c12"])
+    quantity: Kind = Field(description="Whether it is an angle, a length or a plain number.")
+    expected: Formula = Field(description="The right value.", examples=["l1*c1 + l2*c12"])
 
 
 class VectorSpec(PartSpec):
@@ -32,7 +32,7 @@ class VectorSpec(PartSpec):
     )
 
     def formulas(self) -> WrittenFormulas:
-        """What is right for each component."""
+        """The right value of each component."""
         return list_of(
             "components[{j}].expected",
             [component.expected for component in self.components],

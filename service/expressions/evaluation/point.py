@@ -23,25 +23,13 @@ from service.expressions.tree import (
 Known = dict[int, float]
 
 _FUNCTIONS: Final[dict[str, Callable[..., float]]] = {
-    "sin": math.sin,
-    "cos": math.cos,
-    "tan": math.tan,
-    "asin": math.asin,
-    "acos": math.acos,
-    "atan": math.atan,
-    "atan2": math.atan2,
-    "sqrt": math.sqrt,
-    "abs": abs,
-    "exp": math.exp,
-}
+    "sin": math.sin, "cos": math.cos, "tan": math.tan, "asin": math.asin, "acos": math.acos,
+    "atan": math.atan, "atan2": math.atan2, "sqrt": math.sqrt, "abs": abs, "exp": math.exp,
+}  # fmt: skip
 # math.pow refuses a root of a negative number; ** would answer with a complex one.
 _JOINED: Final[dict[str, Callable[[float, float], float]]] = {
-    "+": add,
-    "-": sub,
-    "*": mul,
-    "/": truediv,
-    "^": math.pow,
-}
+    "+": add, "-": sub, "*": mul, "/": truediv, "^": math.pow,
+}  # fmt: skip
 
 
 def known_values(tree: Node, at: Mapping[str, float]) -> Known:

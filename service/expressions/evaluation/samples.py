@@ -1,18 +1,17 @@
 """A tree -> a program that computes its values at all samples at once.
 
-A program is the tree once more, its parts written one behind the other in a single tuple. Each
-begins with its key, which is the part itself in reverse Polish notation, and says at which places
-its operands stand. This is 2*cos(theta1):
+A program is one tuple of the tree's parts, one behind the other. Each part begins with its key,
+which is the part in reverse Polish notation, and gives the places of its operands. This is
+2*cos(theta1):
 
      0  "#2.0", None, 2.0
      3  "theta1", None
      5  "theta1 cos", "cos", 3, None
      9  "#2.0 theta1 cos *", "*", 0, 5
 
-Equal parts have equal keys, so that a ``memo`` handed to several programs computes cos(theta1) once
-for all. Parts without symbols are computed once, here. Thousands of texts are remembered by their
-programs: the garbage collector takes a tuple of texts and numbers off its rounds, but no tree and
-no closure.
+Equal parts have equal keys, so that programs with a common ``memo`` compute cos(theta1) only once.
+Parts without symbols are computed here. Thousands of texts are remembered by their programs: the
+garbage collector does not visit a tuple of texts and numbers, but visits every tree and closure.
 """
 
 from collections.abc import Callable, Mapping
@@ -56,24 +55,11 @@ def _strict(function: Function) -> Function:
 
 
 _FUNCTIONS: Final[dict[str | None, Function]] = {
-    "+": np.add,
-    "-": np.subtract,
-    "*": np.multiply,
-    "/": np.divide,
-    "^": np.power,
-    "²": np.square,
-    "negative": np.negative,
-    "sin": np.sin,
-    "cos": np.cos,
-    "tan": np.tan,
-    "asin": np.arcsin,
-    "acos": np.arccos,
-    "atan": np.arctan,
-    "atan2": np.arctan2,
-    "sqrt": np.sqrt,
-    "abs": np.absolute,
+    "+": np.add, "-": np.subtract, "*": np.multiply, "/": np.divide, "^": np.power, "²": np.square,
+    "negative": np.negative, "sin": np.sin, "cos": np.cos, "tan": np.tan, "asin": np.arcsin,
+    "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "sqrt": np.sqrt, "abs": np.absolute,
     "exp": np.exp,
-}
+}  # fmt: skip
 _STRICT: Final = {name: f"strict {name}" for name in _MAY_HIDE_NON_FINITE}
 _FUNCTIONS.update({strict: _strict(_FUNCTIONS[name]) for name, strict in _STRICT.items()})
 

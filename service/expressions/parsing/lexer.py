@@ -51,9 +51,10 @@ def tokenise(
 class _Lexer:
     """One pass over the characters."""
 
-    __slots__ = ("brackets", "degrees", "ends", "fraction_end", "has_separators", "indices", "last",
-    "notes",
-                 "source", "starts", "text", "tokens", "vocabulary")  # fmt: skip
+    __slots__ = (
+        "brackets", "degrees", "ends", "fraction_end", "has_separators", "indices", "last", "notes",
+        "source", "starts", "text", "tokens", "vocabulary",
+    )  # fmt: skip
 
     def __init__(
         self,

@@ -33,7 +33,7 @@ from service.expressions.parsing.lexer import END, Token
 from service.expressions.parsing.tree_builder import Builder
 from service.expressions.tree import Node
 
-# What is built of an operand that is still to be parsed: its sign, its power, its function.
+# Signs, powers and functions that wait for their operand.
 _Pending = list[Callable[[Node], Node]]
 
 
@@ -49,7 +49,11 @@ def parse(tokens: Sequence[Token], builder: Builder) -> Node:
 
 
 class _Parser:
-    """One method for each rule of the grammar; ``at`` is the index of the next token."""
+    """The grammar's rules; ``at`` is the index of the next token.
+
+    The method ``power`` holds the rules from ``power`` to ``postfix``, ``bare_call`` and
+    ``argument``, so that they need no recursion.
+    """
 
     __slots__ = ("at", "builder", "tokens")
 
@@ -117,7 +121,7 @@ class _Parser:
             self.at += 1
 
     def power(self, pending: _Pending) -> Node:
-        """The power behind the signs that are ``pending``, with what these make of it."""
+        """The next power, after the ``pending`` signs before it have been applied to it."""
         tokens, builder = self.tokens, self.builder
         is_argument = is_exponent = False
         while True:

@@ -6,7 +6,6 @@ a fraction groups what a ``/`` does not. But a power needs more: ``90°`` and ``
 than one sign there.
 """
 
-import re
 from typing import Final
 
 from service.expressions.tree import Binary, Negation, Node, Number, Unit
@@ -14,33 +13,24 @@ from service.expressions.tree import Binary, Negation, Node, Number, Unit
 # How tightly a form binds, and how tightly an operand has to bind in a place.
 SUM, PRODUCT, SIGNED, POWER, ATOM = range(5)
 _OPERATORS: Final = {"+": SUM, "-": SUM, "*": PRODUCT, "/": PRODUCT, "^": POWER}
-_SIGN: Final = re.compile("-|(?:<mrow>)*<mo>−</mo>")
 
 
-def needs_brackets(
-    node: Node, printed: str, place: int, *, first: bool = False, drawn: bool = True
-) -> bool:
-    """Whether ``node``, ``printed`` as an operand in ``place``, needs brackets there.
+def needs_brackets(node: Node, place: int, *, signed: bool, drawn: bool = True) -> bool:
+    """Whether ``node`` needs brackets as an operand in ``place``, in a drawn formula or in text.
 
-    The ``first`` operand has no operator before it, so that it may begin with a sign.
+    ``signed`` tells whether it would put a sign behind an operator.
     """
-    if _precedence(node, drawn=drawn) < place:
-        return True
-    return not first and _SIGN.match(printed) is not None
-
-
-def _precedence(node: Node, *, drawn: bool) -> int:
-    match node:
-        case Binary("/") | Unit() if drawn:
-            return POWER
-        case Binary(operator):
-            return _OPERATORS[operator]
-        case Negation():
-            return SIGNED
-        case Number() if drawn and is_power_of_ten(node):
-            return POWER
-        case _:
-            return ATOM
+    precedence = ATOM
+    # A chain of types takes a third of the time of ``match``.
+    kind = type(node)
+    if kind is Binary:
+        operator = node.operator  # type: ignore[union-attr]
+        precedence = POWER if drawn and operator == "/" else _OPERATORS[operator]
+    elif kind is Negation:
+        precedence = SIGNED
+    elif drawn and (kind is Unit or is_power_of_ten(node)):
+        precedence = POWER
+    return signed or precedence < place
 
 
 def is_power_of_ten(node: Node) -> bool:

@@ -23,15 +23,9 @@ from service.expressions.tree import (
 )
 
 _FUNCTIONS: Final = {
-    "sin": r"\sin",
-    "cos": r"\cos",
-    "tan": r"\tan",
-    "asin": r"\arcsin",
-    "acos": r"\arccos",
-    "atan": r"\arctan",
-    "atan2": r"\operatorname{atan2}",
-    "exp": r"\exp",
-}
+    "sin": r"\sin", "cos": r"\cos", "tan": r"\tan", "asin": r"\arcsin", "acos": r"\arccos",
+    "atan": r"\arctan", "atan2": r"\operatorname{atan2}", "exp": r"\exp",
+}  # fmt: skip
 
 
 def to_latex(node: Node) -> str:
@@ -95,4 +89,5 @@ def _power(base: Node, exponent: Node) -> str:
 
 def _at(node: Node, place: int, *, first: bool = False) -> str:
     latex = to_latex(node)
-    return rf"\left({latex}\right)" if needs_brackets(node, latex, place, first=first) else latex
+    signed = not first and latex[0] == "-"
+    return rf"\left({latex}\right)" if needs_brackets(node, place, signed=signed) else latex

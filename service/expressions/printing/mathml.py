@@ -137,6 +137,13 @@ def _call(function: str, arguments: list[str]) -> str:
 
 def _at(node: Node, place: int, *, first: bool = False) -> str:
     element = _row(node)
-    if not needs_brackets(node, element, place, first=first):
+    if not needs_brackets(node, place, signed=not first and _begins_with_sign(node)):
         return element
     return _mrow(f"<mo>(</mo>{element}<mo>)</mo>")
+
+
+def _begins_with_sign(node: Node) -> bool:
+    """Whether a sign comes first, be it in brackets or above a bar."""
+    while type(node) is Binary and node.operator != "^":
+        node = node.left
+    return type(node) is Negation

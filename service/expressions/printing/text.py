@@ -1,11 +1,6 @@
 """A tree -> normal text, which reads back to the same tree."""
 
-from service.expressions.printing.brackets import (
-    ATOM,
-    POWER,
-    PRODUCT,
-    needs_brackets,
-)
+from service.expressions.printing.brackets import ATOM, POWER, PRODUCT, needs_brackets
 from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
 
 
@@ -38,5 +33,5 @@ def to_text(node: Node) -> str:
 
 def _at(node: Node, place: int, *, first: bool = False) -> str:
     text = to_text(node)
-    brackets = needs_brackets(node, text, place, first=first, drawn=False)
-    return f"({text})" if brackets else text
+    signed = not first and text[0] == "-"
+    return f"({text})" if needs_brackets(node, place, signed=signed, drawn=False) else text

@@ -63,7 +63,7 @@ from service.expressions.repairs import (
 )
 from service.expressions.repairs.failure import Failure, RepairRule
 
-# First what concerns the whole text, then characters and words, then how they are put together.
+# First the rules for the whole text, then those for characters and words, then for the grammar.
 # The last rule answers everything.
 RULES: Final[tuple[RepairRule, ...]] = (
     beyond_limits.repair,

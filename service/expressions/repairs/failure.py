@@ -1,46 +1,42 @@
-"""The argument of a repair rule, its type, and what several rules share."""
+"""The argument of a repair rule, its type, and helpers of several rules."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Final, Protocol
 
 from service.expressions.errors import Cause, ExpressionError, Span, UnreadableError
 from service.expressions.parsing.lexer import Token
 from service.expressions.vocabulary.symbols import Vocabulary
 
 
-@dataclass(frozen=True, slots=True)
 class Failure:
-    """A text that could not be read, and the error that stopped the reader.
+    """A text that could not be read, and the ``error`` that stopped the reader.
 
     ``repaired`` reads another text: it returns that text where it can be read, else its own
     repaired text, else None.
     """
 
-    source: str
-    vocabulary: Vocabulary
-    error: UnreadableError
-    repaired: Callable[[str], str | None]
+    __slots__ = ("cause", "details", "repaired", "source", "span", "vocabulary")
 
-    @property
-    def cause(self) -> Cause:
-        """The reason why reading stopped."""
-        return self.error.cause
-
-    @property
-    def span(self) -> Span:
-        """The place where reading stopped."""
-        return self.error.span
+    def __init__(
+        self,
+        source: str,
+        vocabulary: Vocabulary,
+        error: UnreadableError,
+        repaired: Callable[[str], str | None],
+    ) -> None:
+        self.source: Final = source
+        self.vocabulary: Final = vocabulary
+        # Each rule asks for the cause.
+        self.cause: Final[Cause] = error.cause
+        self.span: Final = error.span
+        self.details: Final = error.details
+        self.repaired: Final = repaired
 
     @property
     def written(self) -> str:
-        """The text at that place."""
+        """The text at the place where reading stopped."""
         return self.source[self.span[0] : self.span[1]]
-
-    @property
-    def details(self) -> dict[str, Any]:
-        """Further facts, by the cause."""
-        return self.error.details
 
     def replaced(self, text: str, span: Span | None = None) -> str:
         """The source with ``text`` in place of ``span``, by default the span of the error."""

@@ -8,22 +8,10 @@ from service.expressions.repairs.failure import Failure
 
 _WORD = re.compile(r"[A-Za-zÀ-ÿ]+")
 _PHRASES = {
-    *(
-        "n/a",
-        "n.a.",
-        "na",
-        "none",
-        "null",
-        "nil",
-        "variable",
-        "var",
-        "unknown",
-        "tbd",
-        "idk",
-        "any",
-    ),
-    *("free", "same", "constant", "const", "undefined", "joint variable", "varies", "nothing"),
-    *("not applicable", "empty", "yes", "no", "see above", "?", "??", "???", "todo", "...", "…"),
+    *("n/a", "n.a.", "na", "none", "null", "nil", "variable", "var", "unknown", "tbd", "idk"),
+    *("any", "free", "same", "constant", "const", "undefined", "joint variable", "varies"),
+    *("nothing", "not applicable", "empty", "yes", "no", "see above", "todo"),
+    *("?", "??", "???", "...", "…"),
 }
 _NUMBERS = {"zero": "0", "one": "1", "two": "2", "ninety": "90", "half": "1/2", "nil": "0"}
 

@@ -14,10 +14,8 @@ from service.expressions import Vocabulary, read
         ("k*(-2)", "k*(-2)", "k(-2)"),
         ("(-k)*2", "-k*2", "-k2"),
         ("k-(-l1*2)", "k - (-l1*2)", "k-(-l12)"),
-        ("k-((-l1+l2)*2)", "k - (-l1 + l2)*2", "k-(-l1+l2)2"),
         ("k*(l1/l2)", "k*(l1/l2)", "kl1l2"),
         ("k*(-l1/l2)", "k*(-l1/l2)", "k(-l1l2)"),
-        ("k*(-l1*2/l2)", "k*(-l1*2/l2)", "k-l12l2"),
         ("(l1/l2)^2", "(l1/l2)^2", "(l1l2)2"),
         ("(90deg)^2", "90deg^2", "(90°)2"),
         ("1e3^2", "1e3^2", "(1103)2"),
@@ -35,3 +33,18 @@ def test_brackets(source: str, text: str, drawn: str, arm: Vocabulary) -> None:
     assert expression.text() == text
     assert latex == drawn
     assert re.sub("[\u2062⋅]", "", mathml).replace("−", "-") == drawn
+
+
+@pytest.mark.parametrize(
+    ("source", "latex", "mathml"),
+    [
+        ("k-((-l1+l2)*2)", r"k - \left(-l_{1} + l_{2}\right) \cdot 2", "k−((−l1+l2)⋅2)"),
+        ("k*(-l1*2/l2)", r"k \cdot \frac{-l_{1} \cdot 2}{l_{2}}", "k⋅(−l1⋅2l2)"),
+    ],
+)
+def test_mathml_brackets_a_sign_inside_brackets_or_above_a_bar(
+    source: str, latex: str, mathml: str, arm: Vocabulary
+) -> None:
+    expression = read(source, arm)
+    assert expression.latex() == latex
+    assert "".join(ET.fromstring(expression.mathml()).itertext()) == mathml

@@ -1,0 +1,171 @@
+"""The page on the keys of an exercise file, from the schema: docs/exercise-fields.md.
+
+``python -m service.authoring.field_reference > docs/exercise-fields.md`` writes it anew.
+"""
+
+import inspect
+import json
+import re
+import sys
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, Final
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from service.catalogue.advice import table_in
+from service.catalogue.part import PartSpec, PosePartSpec
+from service.catalogue.parts import SPECS
+from service.catalogue.schema import (
+    CheckSpec,
+    ExerciseSpec,
+    ExpectSpec,
+    RobotSpec,
+    ScrewRobotSpec,
+    SymbolSpec,
+)
+
+Schema = Mapping[str, Any]
+
+_KINDS: Final = ", ".join(f"`{kind}`" for kind in SPECS)
+_INTRODUCTION: Final = """\
+# The keys of an exercise file
+
+Every key of an exercise file, in the order in which one writes it. The page
+[Write an exercise](write-an-exercise.md) goes through a whole file, and [Answers by
+kind](answer-kinds.md) shows what students hand in.
+
+A *formula* is text in the students' notation, such as `"l1 + 0.1"` or `"-90deg"`, or a number. An
+angle without a unit is in radians. A key that is not listed here is a fault, and so is a value of
+another type.
+
+This page is generated: `python -m service.authoring.field_reference`."""
+_PARTS: Final = f"""\
+Every part has these keys and the key `kind`; the further keys of each kind follow below. The kinds
+are {_KINDS}."""
+_POSES: Final = """\
+Parts of these kinds ask for a pose of the robot, or for something that it has. Leave these keys out
+where the part gives the answer itself."""
+
+
+def page() -> str:
+    """The whole page, in Markdown."""
+    poses = [kind for kind, spec in SPECS.items() if issubclass(spec, PosePartSpec)]
+    sections = [
+        _INTRODUCTION,
+        _section("## The file", ExerciseSpec),
+        _section("## `[robot]` with a table", RobotSpec),
+        _section("## `[robot]` with screw axes", ScrewRobotSpec),
+        _section("## `[symbols]`", SymbolSpec),
+        _section("## `[[parts]]`", PartSpec, _PARTS),
+        _section(f"### {', '.join(f'`{kind}`' for kind in poses)}", PosePartSpec, _POSES),
+    ]
+    for kind, spec in SPECS.items():
+        sections.append(_section(f"### `{kind}`", spec, first=f'kind = "{kind}"'))
+        for name, field in spec.model_fields.items():
+            table = table_in(field.annotation)
+            if table is not None:
+                sections.append(_section(f"#### `{name}` of `{kind}`", table))
+    sections += [
+        _section("## `[[checks]]`", CheckSpec),
+        _section("## `expect.PART` of `[[checks]]`", ExpectSpec),
+    ]
+    return "\n\n".join(sections) + "\n"
+
+
+def _section(heading: str, model: type[BaseModel], text: str = "", first: str = "") -> str:
+    """The keys of a table that its base class does not have; ``first`` gives the key ``kind``."""
+    schema = model.model_json_schema()
+    base = model.__base__
+    known = set(base.model_fields) if base and issubclass(base, BaseModel) else set[str]()
+    if first:
+        known.add("kind")
+    fields = {
+        field.alias or name: field
+        for name, field in model.model_fields.items()
+        if name not in known
+    }
+    blocks = [heading, text or _markdown(inspect.getdoc(model) or "")]
+    if fields:
+        blocks.append("\n".join(_rows(fields, schema)))
+    examples = [
+        f"{key} = {_toml(field.examples[0])}" for key, field in fields.items() if field.examples
+    ]
+    if first or examples:
+        blocks.append("\n".join(["```toml", *filter(None, [first]), *examples, "```"]))
+    return "\n\n".join(blocks)
+
+
+def _rows(fields: Mapping[str, FieldInfo], schema: Schema) -> Iterator[str]:
+    yield "| Key | Type | Default | Meaning |"
+    yield "|---|---|---|---|"
+    for key, field in fields.items():
+        type_ = _type(schema["properties"][key], schema.get("$defs", {}))
+        default = "required" if field.is_required() else _default(field.default)
+        yield f"| `{key}` | {type_} | {default} | {_markdown(field.description or '')} |"
+
+
+def _markdown(text: str) -> str:
+    """The first paragraph of a text, with quoted words and double backticks as code."""
+    paragraph = " ".join(text.partition("\n\n")[0].split())
+    return re.sub(r'"[\w-]+"', r"`\g<0>`", paragraph.replace("``", "`"))
+
+
+def _default(value: object) -> str:
+    return "none" if value is None or value in ([], {}) else f"`{_toml(value)}`"
+
+
+_SIMPLE: Final = {
+    "string": "text",
+    "number": "number",
+    "integer": "whole number",
+    "boolean": "`true` or `false`",
+    "object": "table",
+}
+_NULL: Final = {"type": "null"}
+
+
+def _type(schema: Schema, defs: Mapping[str, Schema], ending: str = "") -> str:
+    """The type of a value in words; ``ending`` is "s" for several."""
+    match schema:
+        case {"$ref": str(reference)}:
+            return _type(defs[reference.rpartition("/")[2]], defs, ending)
+        case {"enum": choices} | {"const": choices}:
+            return _either(f"`{json.dumps(each)}`" for each in _as_list(choices))
+        case {"anyOf": forms}:
+            names = [_type(form, defs, ending) for form in forms if form != _NULL]
+            # A formula may be given as a number.
+            return _either(names).replace(f"text{ending} or number{ending}", f"formula{ending}")
+        case {"type": "array", "prefixItems": [first, *more]}:
+            return f"list{ending} of {len(more) + 1} {_type(first, defs, 's')}"
+        case {"type": "array", "items": entry}:
+            return f"list{ending} of {_type(entry, defs, 's')}"
+        case _:
+            name = _SIMPLE.get(schema.get("type", "object"), "table")
+            return f"{name}{'' if name.startswith('`') else ending}{_bounds(schema)}"
+
+
+def _as_list(value: object) -> list[object]:
+    return value if isinstance(value, list) else [value]
+
+
+def _either(names: Iterable[str]) -> str:
+    *others, last = names
+    return f"{', '.join(others)} or {last}" if others else last
+
+
+def _bounds(schema: Schema) -> str:
+    words = {"exclusiveMinimum": "over", "minimum": "from", "maximum": "up to"}
+    return "".join(f" {word} {schema[key]:g}" for key, word in words.items() if key in schema)
+
+
+def _toml(value: object) -> str:
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{key} = {_toml(each)}' for key, each in value.items())} }}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_toml, value))}]"
+    return f"{value:g}" if isinstance(value, float) else json.dumps(value, ensure_ascii=False)
+
+
+if __name__ == "__main__":
+    sys.stdout.write(page())

@@ -1,0 +1,52 @@
+"""The page on the keys of an exercise file says what the schema says."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from service.authoring.field_reference import page
+from service.catalogue.part import PartSpec
+from service.catalogue.parts import SPECS
+from service.catalogue.schema import (
+    CheckSpec,
+    ExerciseSpec,
+    ExpectSpec,
+    RobotSpec,
+    ScrewRobotSpec,
+    SymbolSpec,
+)
+
+FILE = Path(__file__).parents[2] / "docs" / "exercise-fields.md"
+MODELS = (
+    ExerciseSpec,
+    RobotSpec,
+    ScrewRobotSpec,
+    SymbolSpec,
+    PartSpec,
+    *SPECS.values(),
+    CheckSpec,
+    ExpectSpec,
+)
+
+
+def test_the_page_is_what_the_schema_gives() -> None:
+    assert FILE.read_text(encoding="utf-8") == page(), (
+        "The keys have changed; run python -m service.authoring.field_reference "
+        "> docs/exercise-fields.md"
+    )
+
+
+def test_the_examples_are_toml() -> None:
+    blocks = re.findall(r"```toml\n(.*?)```", page(), re.DOTALL)
+    assert len(blocks) > len(SPECS)
+    assert all(tomllib.loads(block) for block in blocks)
+
+
+@pytest.mark.parametrize("model", MODELS, ids=lambda model: str(model.__name__))
+def test_every_key_has_its_meaning(model: type[PartSpec]) -> None:
+    for name, field in model.model_fields.items():
+        key = field.alias or name
+        assert f"| `{key}` |" in page() or key == "kind"
+        assert field.description or key == "kind", f"{model.__name__}.{name}"

@@ -1,0 +1,23 @@
+"""Which row is for which joint, where there are several ways to take them."""
+
+from collections.abc import Mapping
+
+from service.catalogue import Exercise
+from tests.grading.support.submitting import graded_table, not_correct
+
+
+def test_a_row_of_zeros_may_be_one_in_which_something_is_missing(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    """z3 and z4 point up, so that a fixed row must turn the last frame over; its α is left at 0."""
+    report = graded_table(
+        catalogue["rrrp-proximal"],
+        [
+            ("0", "0", "l1", "q1"),
+            ("l2", "0", "0", "q2"),
+            ("l3", "0", "-l4", "-q3"),
+            ("0", "0", "-q4", "0"),
+            ("0", "0", "0", "0"),
+        ],
+    )
+    assert list(not_correct(report)) == [("e", "alpha")]

@@ -1,0 +1,8 @@
+"""Sizes of grids."""
+
+from service.grids import read_grid
+
+
+def test_sizes_are_told_in_words() -> None:
+    assert read_grid("[1 2; 3 4]").size == "2 × 2"
+    assert read_grid("1,2,3\n4,5").size == "2 × 2 to 3"
