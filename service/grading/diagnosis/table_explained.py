@@ -30,8 +30,8 @@ from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers
 
-# Enough samples to tell tables apart that are tried by the dozen.
-FEW = 3
+# How many samples of each half tell tables apart that are tried by the dozen.
+TABLE_SAMPLES = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,12 +94,12 @@ def _wrong_table(
     table = exercise.robot.tables.get(convention)
     reference = None if table is None else reference_values(table, samples)
     written = written_table(values, convention, reference, exercise.robot.joints, samples)
-    freedom, subset = freedom_of(part), samples.subset(FEW)
+    freedom, subset = freedom_of(part), samples.subset(TABLE_SAMPLES)
 
     def valid(tables: Numbers, convention: Convention) -> NDArray[np.bool_]:
         return valid_tables(tables, roles, convention, freedom, exercise, subset, INTENDED_POSE)
 
-    return WrongTable(written, written.subset(FEW), valid)
+    return WrongTable(written, written.subset(TABLE_SAMPLES), valid)
 
 
 def _intended(

@@ -23,7 +23,7 @@ from service.kinematics.jacobian import Screws, coincident, dependent, rank, spa
 from service.kinematics.tolerances import SAME_SCREW
 
 # How many samples of each half stand for a generic configuration.
-FEW = 2
+POSTURES = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +51,7 @@ def lost_freedom(
     where a cell was not read, has no finding. ``joint_rows`` names the row of each of the robot's
     joints; a joint without a row is left out.
     """
-    table = samples.subset_of(values, FEW)
+    table = samples.subset_of(values, POSTURES)
     if not np.isfinite(table).all():
         return ()
     present = [(j, row) for j, row in enumerate(joint_rows) if row is not None]
@@ -63,7 +63,7 @@ def lost_freedom(
     written = _arm(table, convention, moving, exercise)
     if rank(written.screws) == len(moving):
         return idle_finding
-    subset = samples.subset(FEW)
+    subset = samples.subset(POSTURES)
     reference = exercise.robot.tables[exercise.robot.convention]
     right = reference.values(subset.values, subset.count)
     intended = _arm(right, reference.convention, [(j, j) for j, _ in moving], exercise)

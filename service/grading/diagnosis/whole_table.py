@@ -4,10 +4,10 @@ A misconception undone gives another table; where that table describes the robot
 explains the answer.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from itertools import combinations, islice
+from itertools import chain, combinations, islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,7 @@ from service.grading.tolerances import INTENDED_POSE
 from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D, Table
 from service.kinematics.dh import Convention
 
+Misconception = Callable[[WrittenTable], Iterator[RepairedTable]]
 Validity = Callable[[NDArray[np.float64], Convention], NDArray[np.bool_]]
 
 
@@ -163,38 +164,43 @@ BASIC = written_table.MISCONCEPTIONS
 MISCONCEPTIONS = (*BASIC, link_columns_shifted, column_sign, columns_swapped, row_order)
 
 
+def _with_another(
+    basic: Misconception, others: Sequence[Misconception], table: WrittenTable
+) -> Iterator[RepairedTable]:
+    """A basic misconception and another one were held at once."""
+    for first in basic(table):
+        for second in hypotheses_of(first.answer, others):
+            yield Repaired(second.answer, partial(_both, first, second))
+
+
+def _both(first: RepairedTable, second: RepairedTable) -> tuple[Finding, ...]:
+    return (*first.findings, *second.findings)
+
+
+PAIRS = tuple(
+    partial(_with_another, basic, MISCONCEPTIONS[i + 1 :]) for i, basic in enumerate(BASIC)
+)
+
+
 def explaining(case: WrongTable, *, combine: bool) -> list[RepairedTable]:
     """All hypotheses that explain the whole table.
 
     If none does and ``combine`` allows, the first pair of misconceptions that does.
     """
-    found = list(_explaining(case, _single))
-    return found or (list(islice(_explaining(case, _pairs), 1)) if combine else [])
+    found = list(_explaining(case, MISCONCEPTIONS))
+    return found or (list(islice(_explaining(case, PAIRS), 1)) if combine else [])
 
 
 def _explaining(
-    case: WrongTable, hypotheses: Callable[[WrittenTable], Iterator[RepairedTable]]
+    case: WrongTable, misconceptions: Sequence[Misconception]
 ) -> Iterator[RepairedTable]:
-    """The hypotheses, at all samples, that explain the table at the subset."""
-    tried = list(hypotheses(case.subset))
-    explains = set(map(id, case.explained_by(tried)))
-    pairs = zip(tried, hypotheses(case.written), strict=False)
-    found = (complete for at_subset, complete in pairs if id(at_subset) in explains)
-    return islice(found, len(explains))
-
-
-def _single(table: WrittenTable) -> Iterator[RepairedTable]:
-    """The hypotheses of one misconception."""
-    return hypotheses_of(table, MISCONCEPTIONS)
-
-
-def _pairs(table: WrittenTable) -> Iterator[RepairedTable]:
-    """The hypotheses of two misconceptions at once, one of them basic."""
-    for i, basic in enumerate(BASIC):
-        for first in basic(table):
-            for second in hypotheses_of(first.answer, MISCONCEPTIONS[i + 1 :]):
-                yield Repaired(second.answer, partial(_both, first, second))
-
-
-def _both(first: RepairedTable, second: RepairedTable) -> tuple[Finding, ...]:
-    return (*first.findings, *second.findings)
+    """The hypotheses that explain the table at the subset, built again at all samples."""
+    tried = [(misconception, list(misconception(case.subset))) for misconception in misconceptions]
+    every = chain.from_iterable(hypotheses for _, hypotheses in tried)
+    explains = set(map(id, case.explained_by(every)))
+    for misconception, hypotheses in tried:
+        if not explains.isdisjoint(map(id, hypotheses)):
+            # At all samples a misconception may yield nothing where a value jumps in between.
+            for at_subset, complete in zip(hypotheses, misconception(case.written), strict=False):
+                if id(at_subset) in explains:
+                    yield complete
