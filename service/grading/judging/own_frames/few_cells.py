@@ -14,11 +14,7 @@ import numpy as np
 from service.grading.comparison import difference
 from service.grading.joint_motion import changes, moves_with
 from service.grading.judging.own_frames.reference import reference_frames
-from service.grading.judging.own_frames.row_roles import (
-    Role,
-    handed_in_values,
-    variables_of,
-)
+from service.grading.judging.own_frames.row_roles import Role, handed_in_values, variables_of
 from service.grading.judging.own_frames.slip_likelihood import slip_penalty
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE
@@ -90,9 +86,8 @@ class _Case:
 
         ``reached`` ``(rows + 1, T, subset, 4, 4)`` are all the frames of T tables.
         """
-        on_axes = joint_frames(reached, self.convention)[
-            [row for row, _ in joint_cells(self.roles)]
-        ]
+        of_joints = [role.joint is not None for role in self.roles]
+        on_axes = joint_frames(reached, self.convention)[of_joints]
         return np.asarray(inverse(self.reference[:-1, SUBSET_SAMPLES])[:, None] @ on_axes)
 
 
