@@ -13,12 +13,7 @@ from typing import Self
 
 import numpy as np
 
-from service.kinematics.candidate_rows import (
-    AxisRelation,
-    TargetKind,
-    axis_relations,
-    written_or,
-)
+from service.kinematics.candidate_rows import AxisRelation, TargetKind, axis_relations, written_or
 from service.kinematics.chain import THETA, A, D
 from service.kinematics.tolerances import PARALLEL
 from service.kinematics.transforms import Matrices, Numbers

@@ -16,6 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.kinematics.chain import ALPHA, THETA, A, D
+from service.kinematics.dh import Convention
+from service.kinematics.dh_row import row
 from service.kinematics.tolerances import ALONG_NORMAL, PARALLEL
 from service.kinematics.transforms import Matrices, Numbers
 
@@ -49,9 +51,9 @@ def candidate_rows(
     The z axes of all H targets must have one relation (skew, parallel, coincident) to z here.
     """
     if kind is TargetKind.TOOL:
-        return row_to_frame(target)[:, None]
+        return row(target, Convention.STANDARD)[:, None]
     if kind is TargetKind.OPEN:
-        return written_or(written, row_to_frame(target)[:, None])
+        return written_or(written, row(target, Convention.STANDARD)[:, None])
     relation = AxisRelation(axis_relations(target[:1], length_scale)[0])
     if kind is TargetKind.PRISMATIC:
         if relation is AxisRelation.SKEW:
@@ -72,28 +74,6 @@ def axis_relations(target: Matrices, length_scale: float) -> NDArray[np.int_]:
     coincident = parallel & np.all(offset < PARALLEL * length_scale, axis=-1)
     found: NDArray[np.int_] = np.add(parallel, coincident, dtype=np.int_)
     return found
-
-
-def row_to_frame(target: Matrices) -> Numbers:
-    """The one row that can lead to a whole frame, ``(H, 4, L)``.
-
-    It does so only if x of the frame is at right angles to z here and meets it (the two DH
-    conditions; Spong, Hutchinson, Vidyasagar, §3.2.1): see ``is_unreachable``.
-    """
-    theta = np.arctan2(target[..., 1, 0], target[..., 0, 0])
-    alpha = np.arctan2(target[..., 2, 1], target[..., 2, 2])
-    a = target[..., 0, 3] * np.cos(theta) + target[..., 1, 3] * np.sin(theta)
-    return np.stack([a, alpha, target[..., 2, 3], theta], axis=1)
-
-
-def is_unreachable(target: Matrices, length_scale: float) -> NDArray[np.bool_]:
-    """Where no DH row leads to the whole frame: ``(H,)``."""
-    x_along_z = np.abs(target[..., 2, 0]).max(axis=-1)
-    norm = np.hypot(target[..., 0, 0], target[..., 1, 0])
-    cross = target[..., 0, 0] * target[..., 1, 3] - target[..., 1, 0] * target[..., 0, 3]
-    distance = np.abs(cross / np.maximum(norm, PARALLEL)).max(axis=-1)
-    unreachable: NDArray[np.bool_] = (x_along_z > PARALLEL) | (distance > PARALLEL * length_scale)
-    return unreachable
 
 
 def written_or(written: Numbers, other: Numbers) -> Numbers:

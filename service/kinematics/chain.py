@@ -8,15 +8,15 @@ A numeric table is an array ``(rows, 4, ...)``: the columns are a, α, d, θ in 
 after them are the batch; angles in radians. The regrouping is the same for numbers and formulas.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import reduce
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.kinematics.dh import Convention, link_transforms
-from service.kinematics.transforms import Matrices
+from service.kinematics.dh import Convention, link_transforms, standard_link
+from service.kinematics.transforms import Matrices, inverse
 
 Table = NDArray[np.float64]
 _Cell = TypeVar("_Cell")
@@ -31,9 +31,9 @@ def modified_rows(standard: Sequence[Row[_Cell]], zero: _Cell) -> list[Row[_Cell
 
     The last of the ``m + 1`` rows is the fixed end-effector row "e" of the proximal convention.
     """
-    x = [(zero, zero), *((a, alpha) for a, alpha, _, _ in standard)]
-    z = [*((d, theta) for _, _, d, theta in standard), (zero, zero)]
-    return _zip_rows(x, z)
+    none = (zero, zero, zero, zero)
+    pairs = zip([none, *standard], [*standard, none], strict=True)
+    return [(*before[:2], *row[2:]) for before, row in pairs]
 
 
 def standard_rows(modified: Sequence[Row[_Cell]], zero: _Cell) -> list[Row[_Cell]]:
@@ -42,15 +42,8 @@ def standard_rows(modified: Sequence[Row[_Cell]], zero: _Cell) -> list[Row[_Cell
     X_0 is left out, since a standard table begins on the axis of joint 1. The caller must see to it
     that the chain has none.
     """
-    x = [*((a, alpha) for a, alpha, _, _ in modified[1:]), (zero, zero)]
-    z = [(d, theta) for _, _, d, theta in modified]
-    return _zip_rows(x, z)
-
-
-def _zip_rows(
-    x: Iterable[tuple[_Cell, _Cell]], z: Iterable[tuple[_Cell, _Cell]]
-) -> list[Row[_Cell]]:
-    return [(a, alpha, d, theta) for (a, alpha), (d, theta) in zip(x, z, strict=True)]
+    pairs = zip(modified, [*modified[1:], (zero, zero, zero, zero)], strict=True)
+    return [(*after[:2], *row[2:]) for row, after in pairs]
 
 
 def links(table: Table, convention: Convention) -> Matrices:
@@ -83,6 +76,25 @@ def joint_frames(frames: Matrices, convention: Convention) -> Matrices:
     Row i of a standard table acts along z_{i-1}, of a modified one along z_i.
     """
     return frames[:-1] if convention is Convention.STANDARD else frames[1:]
+
+
+def z_links(rows: Table) -> Matrices:
+    """The Z of each row: ``(rows, ..., 4, 4)`` from ``(rows, 4, ...)``."""
+    return standard_link(0.0, 0.0, rows[:, D], rows[:, THETA])
+
+
+def axis_frames(table: Table, convention: Convention, wanted: Convention) -> Matrices:
+    """The frames on the rows' axes as ``wanted`` has them, and the last: ``(rows + 1, ..., 4, 4)``.
+
+    In the standard convention they are where a row's Z starts from, in the modified one where it
+    leads to; the table may be of either.
+    """
+    reached = frames(table, convention)
+    on_axes = joint_frames(reached, convention)
+    if wanted is not convention:
+        z = z_links(table)
+        on_axes = on_axes @ (z if wanted is Convention.MODIFIED else inverse(z))
+    return np.concatenate([on_axes, reached[-1:]])
 
 
 def pose(table: Table, convention: Convention) -> Matrices:

@@ -7,10 +7,10 @@ modified link transform is a standard one with all four numbers negated, so one 
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
-from service.kinematics.candidate_rows import row_to_frame
 from service.kinematics.dh import Convention
-from service.kinematics.tolerances import X_ALONG_Z
+from service.kinematics.tolerances import PARALLEL, X_ALONG_Z
 from service.kinematics.transforms import Matrices, Numbers, inverse
 
 
@@ -35,11 +35,22 @@ def dh2_residual(transform: Matrices, convention: Convention) -> Numbers:
 
 
 def row(transform: Matrices, convention: Convention) -> Numbers:
-    """The row (a, α, d, θ) ``(4, samples)`` of a transform ``(samples, 4, 4)`` for which both hold.
+    """The row (a, α, d, θ) ``(..., 4, L)`` of transforms ``(..., L, 4, 4)`` for which both hold.
 
     >>> from service.kinematics.dh import modified_link
     >>> row(modified_link(0.5, 0.2, 0.3, 0.7)[None], Convention.MODIFIED)[:, 0]
     array([0.5, 0.2, 0.3, 0.7])
     """
-    found = row_to_frame(_as_standard(transform, convention)[None])[0]
-    return np.asarray(found if convention is Convention.STANDARD else -found)
+    standard = _as_standard(transform, convention)
+    theta = np.arctan2(standard[..., 1, 0], standard[..., 0, 0])
+    alpha = np.arctan2(standard[..., 2, 1], standard[..., 2, 2])
+    a = standard[..., 0, 3] * np.cos(theta) + standard[..., 1, 3] * np.sin(theta)
+    found = np.stack([a, alpha, standard[..., 2, 3], theta], axis=-2)
+    return found if convention is Convention.STANDARD else -found
+
+
+def is_unreachable(transform: Matrices, length_scale: float) -> NDArray[np.bool_]:
+    """Where no row of the standard convention leads to a whole frame ``(H, L, 4, 4)``: ``(H,)``."""
+    tilt = np.abs(dh1_residual(transform, Convention.STANDARD)).max(axis=-1)
+    distance = np.abs(dh2_residual(transform, Convention.STANDARD)).max(axis=-1)
+    return np.asarray((tilt > PARALLEL) | (distance > PARALLEL * length_scale))

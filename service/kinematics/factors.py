@@ -62,22 +62,6 @@ class Factors:
         before = reduce(np.matmul, self.screws[:factor], np.eye(4))
         return before, reduce(np.matmul, self.screws[factor + 1 :], np.eye(4))
 
-    @property
-    def pose(self) -> Matrices:
-        """The whole product, ``(L, 4, 4)``."""
-        whole: Matrices = self.before[-1]
-        return whole
-
-    def joint_frames(self, rows: list[int], convention: Convention) -> Matrices:
-        """Frames on the joint axes of these rows as a convention has them: ``(rows, L, 4, 4)``.
-
-        In the standard convention they are where the joint's Z starts from, in the modified one
-        where it leads to; this table may be of either.
-        """
-        z_first = self.convention is Convention.STANDARD
-        at_end = convention is Convention.MODIFIED
-        return self.before[[2 * row + (not z_first) + at_end for row in rows]]
-
     def cell(self, factor: int, kind: int) -> CellIndex:
         """The cell that holds the SHIFT or TURN of a factor."""
         return factor // 2, (A if self.axes[factor] == X else D) + kind

@@ -18,15 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.kinematics.base_freedom import BaseFreedom
-from service.kinematics.candidate_rows import (
-    TargetKind,
-    axis_relations,
-    candidate_rows,
-    is_unreachable,
-)
+from service.kinematics.candidate_rows import TargetKind, axis_relations, candidate_rows
 from service.kinematics.chain import ALPHA, THETA, A, D
 from service.kinematics.chain_match import ChainMatch, RowConstants, Target, joint_signs_of
 from service.kinematics.dh import standard_link
+from service.kinematics.dh_row import is_unreachable
 from service.kinematics.tolerances import (
     EXACT_CELL,
     LARGEST_ANGLE,
@@ -124,13 +120,13 @@ def _next_beam(
     parents, rows, expected, cost = on.parents[kept], on.rows[kept], expected[kept], cost[kept]
     start = _slid(beam.pose[parents], freedom, on.distance[kept])
     pose = start @ standard_link(*rows.swapaxes(0, 1))
-    if target.reference is not None and target.rebases:
-        pose = inverse(target.reference) @ pose
-        if freedom.anywhere:
-            pose[..., :3, 3] = 0.0
-        cost = cost + departure(pose, length_scale)
-    elif target.reference is not None:
-        cost = cost + departure(inverse(target.reference) @ pose, length_scale)
+    if target.reference is not None:
+        relative = inverse(target.reference) @ pose
+        if target.rebases:
+            pose = relative
+            if freedom.anywhere:
+                pose[..., :3, 3] = 0.0
+        cost = cost + departure(relative, length_scale)
     kept = _distinct(pose, cost, length_scale)
     signs = joint_signs_of(pose)
     return _Beam(

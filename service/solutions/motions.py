@@ -137,9 +137,7 @@ def _upright(turn: Turn) -> Turn:
     return Turn(-turn.axis, -turn.angle) if first.could_extract_minus_sign() else turn
 
 
-def _runs(
-    turns: Sequence[tuple[Turn, sympy.Matrix]],
-) -> list[list[tuple[Turn, sympy.Matrix]]]:
+def _runs(turns: Sequence[tuple[Turn, sympy.Matrix]]) -> list[list[tuple[Turn, sympy.Matrix]]]:
     """Turns about one axis that follow each other, each by the angle turned since the run began."""
     runs: list[list[tuple[Turn, sympy.Matrix]]] = []
     for turn, shift in turns:

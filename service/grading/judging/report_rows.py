@@ -50,11 +50,7 @@ def entry_rows(
 
 
 def value_rows(
-    student: StudentValues,
-    found: NDArray[np.int_],
-    slips: Slips,
-    points: float,
-    grading: Grading,
+    student: StudentValues, found: NDArray[np.int_], slips: Slips, points: float, grading: Grading
 ) -> tuple[RowReport, ...]:
     """Rows of one value each; ``found`` is the Match of each, ``(n,)``."""
     column = [[entry] for entry in student.entries]

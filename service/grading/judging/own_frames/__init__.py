@@ -10,7 +10,7 @@ In the order in which they are used:
     ``slip_likelihood`` finds the likeliest
   - ``wrong_convention_or_unit``: the intended table, if the convention or the unit was mistaken
   - ``kinematics.frame_choice``: a search row by row; ``constants`` takes the table apart for it,
-    ``validity`` names the targets of its rows, ``base_frame`` finds a free frame 0
+    ``validity`` names the targets of its rows
 
 - ``best_roles``: of several ways to pair rows and joints, the one with the nearest valid table
 

@@ -6,12 +6,7 @@ from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.judging.own_frames.few_cells import NearestTable
 from service.grading.judging.own_frames.nearest_table import nearest_for_roles
 from service.grading.judging.own_frames.rounded_angles import with_exact_angles
-from service.grading.judging.own_frames.row_roles import (
-    FrameFreedom,
-    Role,
-    freedom_of,
-    roles_of,
-)
+from service.grading.judging.own_frames.row_roles import FrameFreedom, Role, freedom_of, roles_of
 from service.grading.part import Grading
 from service.grading.reading.table import HandedInRow
 from service.kinematics.dh import Convention

@@ -1,7 +1,5 @@
 """A handed-in table taken apart into constants and joint variables."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,7 +7,12 @@ from service.catalogue import Joint
 from service.grading.comparison import difference
 from service.grading.joint_motion import halves, joint_counts
 from service.grading.judging.own_frames.reference import regrouped
-from service.grading.judging.own_frames.row_roles import Role, variable_column
+from service.grading.judging.own_frames.row_roles import (
+    Role,
+    handed_in_values,
+    joint_cells,
+    variable_column,
+)
 from service.grading.reading.table import IS_ANGLE
 from service.grading.samples import HALF, SAMPLES, Samples
 from service.grading.tolerances import ROUNDED_VALUE, SAME_MOTION
@@ -19,27 +22,14 @@ from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers
 
 
-@dataclass(frozen=True, slots=True)
-class TableConstants:
-    """The constants of all rows ``(rows, 4, HALF)``; the flags of each cell are ``(rows, 4)``.
+def row_constants(
+    roles: tuple[Role, ...], joints: tuple[Joint, ...], convention: Convention, samples: Samples
+) -> list[RowConstants]:
+    """The constants of a table, regrouped as the rows that lead from target to target.
 
-    ``joint_signs`` ``(rows,)`` is the sign that each row's joint variable was written with, 0 for
-    none.
+    A cell that does not move as its joint does is wrong regardless.
     """
-
-    written: Numbers
-    is_gradable: NDArray[np.bool_]
-    wrong_regardless: NDArray[np.bool_]
-    rounded: NDArray[np.bool_]
-    joint_signs: NDArray[np.int_]
-
-
-def table_constants(
-    roles: tuple[Role, ...], joints: tuple[Joint, ...], samples: Samples
-) -> TableConstants:
-    """The table taken apart; a cell that does not move as its joint does is wrong regardless."""
-    nothing = np.full((len(COLUMNS), SAMPLES), np.nan)
-    cells = np.array([role.row.values if role.row else nothing for role in roles])
+    cells = handed_in_values(roles)
     is_gradable = np.array(
         [[bool(role.row and role.row.entries[c].readable) for c in range(4)] for role in roles]
     )
@@ -49,35 +39,23 @@ def table_constants(
     linear = linear.reshape(is_gradable.shape)
     expected = np.zeros_like(counts)
     joint_signs = np.zeros(len(roles), dtype=np.int_)
-    for i, role in enumerate(roles):
-        if role.joint is not None:
-            place = i, variable_column(role.joint), joints.index(role.joint)
-            joint_signs[i] = counts[place] if abs(counts[place]) == 1 else 0
-            expected[place] = joint_signs[i] or 1
+    for (i, column), joint in joint_cells(roles).items():
+        place = i, column, joints.index(joint)
+        joint_signs[i] = counts[place] if abs(counts[place]) == 1 else 0
+        expected[place] = joint_signs[i] or 1
     variables = np.array([samples.values[joint.variable] for joint in joints])
     constants = (cells - counts @ variables)[..., :HALF]
-    return TableConstants(
-        written=np.where((is_gradable & linear)[..., None], constants, np.nan),
-        is_gradable=is_gradable,
-        wrong_regardless=is_gradable & ~(linear & (counts == expected).all(axis=-1)),
-        rounded=np.array([role.row.rounded if role.row else [False] * 4 for role in roles]),
-        joint_signs=joint_signs,
-    )
-
-
-def row_constants(
-    roles: tuple[Role, ...], table: TableConstants, convention: Convention
-) -> list[RowConstants]:
-    """The constants regrouped as the rows that lead from target to target."""
-    rounded = regrouped(table.rounded, convention, fill=False)
+    written = np.where((is_gradable & linear)[..., None], constants, np.nan)
+    wrong_regardless = is_gradable & ~(linear & (counts == expected).all(axis=-1))
+    rounded = np.array([role.row.rounded if role.row else [False] * 4 for role in roles])
     rows = zip(
-        regrouped(table.written, convention, 0.0),
-        regrouped(table.is_gradable, convention, fill=False),
-        regrouped(table.wrong_regardless, convention, fill=False),
-        regrouped(np.zeros_like(table.is_gradable), convention, fill=True),
-        np.where(rounded, ROUNDED_VALUE, 0.0),
+        regrouped(written, convention, 0.0),
+        regrouped(is_gradable, convention, fill=False),
+        regrouped(wrong_regardless, convention, fill=False),
+        regrouped(np.zeros_like(is_gradable), convention, fill=True),
+        regrouped(np.where(rounded, ROUNDED_VALUE, 0.0), convention, fill=0.0),
         [None, *(role.joint and variable_column(role.joint) for role in roles)],
-        [0, *table.joint_signs.tolist()],
+        [0, *joint_signs.tolist()],
         strict=True,
     )
     return [RowConstants(*row) for row in rows]
@@ -93,11 +71,8 @@ def without_variables(
     """
     tables = tables.copy()
     signs = np.zeros(tables.shape[:2], dtype=np.int_)
-    for i, role in enumerate(roles):
-        if role.joint is None:
-            continue
-        column = variable_column(role.joint)
-        variable = samples.values[role.joint.variable]
+    for (i, column), joint in joint_cells(roles).items():
+        variable = samples.values[joint.variable]
         for sign in (1, -1):
             rest = tables[:, i, column] - sign * variable
             change = np.abs(difference(*halves(rest), IS_ANGLE[column])).max(axis=-1)

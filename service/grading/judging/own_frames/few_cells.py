@@ -5,7 +5,7 @@ reference's at all joint values, and every cell moves as its own joint does and 
 search is needed: the right value of a cell follows from all the others.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
@@ -14,7 +14,7 @@ import numpy as np
 from service.grading.comparison import difference
 from service.grading.joint_motion import changes, moves_with
 from service.grading.judging.own_frames.reference import reference_frames
-from service.grading.judging.own_frames.row_roles import Role, joint_cells, motion_of
+from service.grading.judging.own_frames.row_roles import Role, handed_in_values, variables_of
 from service.grading.judging.own_frames.slip_likelihood import slip_penalty
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE
@@ -58,15 +58,16 @@ class NearestTable:
 class _Case:
     """A table to be repaired.
 
-    ``table`` is ``(rows, 4, samples)``; ``motion`` ``(rows, 4, samples / 2)`` is how each cell must
-    change with the joints; ``wrong`` are the cells that do not. ``variables`` are the joint
-    variables by their cells, in the order of the joints.
+    ``table`` is ``(rows, 4, samples)``. Each cell must change with the joints as its joint variable
+    in ``variables`` does (0 for none): by ``motion`` ``(rows, 4, samples / 2)``; ``wrong`` are the
+    cells that do not.
     """
 
+    roles: tuple[Role, ...]
     table: Table
+    variables: Table
     motion: Numbers
     wrong: frozenset[CellIndex]
-    variables: Mapping[CellIndex, Numbers]
     convention: Convention
     grading: Grading
 
@@ -85,7 +86,8 @@ class _Case:
 
         ``reached`` ``(rows + 1, T, subset, 4, 4)`` are all the frames of T tables.
         """
-        on_axes = joint_frames(reached, self.convention)[[row for row, _ in self.variables]]
+        of_joints = [role.joint is not None for role in self.roles]
+        on_axes = joint_frames(reached, self.convention)[of_joints]
         return np.asarray(inverse(self.reference[:-1, SUBSET_SAMPLES])[:, None] @ on_axes)
 
 
@@ -106,7 +108,7 @@ def nearest_by_few_cells(
             on_axes = case.from_reference(reached[:, None, SUBSET_SAMPLES])
             return NearestTable(roles, case.table, on_axes[:, 0], 0.0)
     repairs = _repairs(case)
-    return _likeliest(repairs, roles, case) if repairs else None
+    return _likeliest(repairs, case) if repairs else None
 
 
 def frames_from_reference(
@@ -121,16 +123,14 @@ def frames_from_reference(
 
 
 def _case(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> _Case:
-    table = np.array([role.row.values for role in roles if role.row])
+    table = handed_in_values(roles)
     finite = np.isfinite(table).all(axis=-1)
     table[~finite] = 0.0
-    motion = motion_of(roles, grading.samples)
+    variables = variables_of(roles, grading.samples)
+    motion = changes(variables)
     right = finite & moves_with(table, motion, IS_ANGLE[:, None])
     wrong = frozenset((i, column) for i, column in np.argwhere(~right).tolist())
-    variables = {
-        cell: grading.samples.values[joint.variable] for cell, joint in joint_cells(roles).items()
-    }
-    return _Case(table, motion, wrong, variables, convention, grading)
+    return _Case(roles, table, variables, motion, wrong, convention, grading)
 
 
 def _coincide(one: Matrices, other: Matrices, unit: float) -> bool:
@@ -163,9 +163,7 @@ def _admissible(repairs: Iterable[CellRepair], count: int, case: _Case) -> list[
     ]
 
 
-def _likeliest(
-    repairs: Sequence[CellRepair], roles: tuple[Role, ...], case: _Case
-) -> NearestTable | None:
+def _likeliest(repairs: Sequence[CellRepair], case: _Case) -> NearestTable | None:
     """The table repaired, by the repair that takes the likeliest slip.
 
     Frames near the reference's come first, and the search ends where the frames alone cost more
@@ -189,7 +187,7 @@ def _likeliest(
         if len(repairs) > 1:
             cost += sum(_penalty(cell, table, case) for cell in cells)
         if best is None or cost < best.cost:
-            best = NearestTable(roles, table, on_axes[:, k], cost)
+            best = NearestTable(case.roles, table, on_axes[:, k], cost)
     return best
 
 
@@ -202,9 +200,7 @@ def _penalty(cell: CellIndex, repaired: Table, case: _Case) -> float:
 
 def _constant(values: Numbers, cell: CellIndex, case: _Case) -> Numbers:
     """A cell that moves as it should, less its joint's variable, whose sign may be either."""
-    variable = case.variables.get(cell)
-    if variable is None:
-        return values
+    variable: Numbers = case.variables[cell]
     error = np.abs(difference(changes(values), changes(variable), IS_ANGLE[cell[1]]))
     return values - variable if error.max() < SAME_MOTION else values + variable
 

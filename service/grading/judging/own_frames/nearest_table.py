@@ -1,31 +1,35 @@
 """The valid table nearest to a handed-in one, where it is known which row is for which joint."""
 
 from dataclasses import replace
+from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.grading.judging.own_frames.base_frame import possible_bases
-from service.grading.judging.own_frames.constants import (
-    TableConstants,
-    row_constants,
-    table_constants,
-)
+from service.grading.joint_motion import halves
+from service.grading.judging.own_frames.constants import row_constants, without_variables
 from service.grading.judging.own_frames.few_cells import NearestTable, nearest_by_few_cells
 from service.grading.judging.own_frames.reference import (
     Mechanism,
     as_table,
     mechanism_at,
     reference_frames,
+    tool_pose,
 )
-from service.grading.judging.own_frames.row_roles import FrameFreedom, Role, variable_column
+from service.grading.judging.own_frames.row_roles import (
+    FrameFreedom,
+    Role,
+    handed_in_values,
+    joint_cells,
+)
 from service.grading.judging.own_frames.validity import targets_of
 from service.grading.judging.own_frames.wrong_convention_or_unit import nearest_as_intended
 from service.grading.part import Grading
-from service.grading.samples import Samples
-from service.kinematics.chain import THETA, D, Table
+from service.grading.samples import HALF
+from service.kinematics.axis_alignment import align_axes
+from service.kinematics.chain import axis_frames, pose, z_links
 from service.kinematics.chain_match import ChainMatch, match_as_written
-from service.kinematics.dh import Convention, standard_link
+from service.kinematics.dh import Convention
 from service.kinematics.frame_choice import NO_SUCH_CELL, WRONG_CELL
 from service.kinematics.frame_choice import nearest_table as search_nearest_table
 from service.kinematics.tolerances import PARALLEL
@@ -48,14 +52,12 @@ def _search(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable:
     """The nearest valid table, found row by row: with any freedom and any number of wrong cells."""
-    joints = grading.exercise.robot.joints
-    mechanism = mechanism_at(grading.exercise, grading.samples)
-    constants = table_constants(roles, joints, mechanism.samples)
+    exercise, samples = grading.exercise, grading.samples
+    scale, directions_given = exercise.length_scale, not freedom.directions
+    mechanism = mechanism_at(exercise, samples)
     targets = targets_of(roles, convention, mechanism, freedom)
-    rows = row_constants(roles, constants, convention)
-    directions_given, base_given = not freedom.directions, not freedom.base
-    scale = mechanism.length_scale
-    bases = [None] if base_given else possible_bases(roles, joints, convention, mechanism, freedom)
+    rows = row_constants(roles, exercise.robot.joints, convention, samples)
+    bases = _possible_bases(roles, convention, freedom, grading) if freedom.base else [None]
     match = None
     for base in bases:
         match = match or match_as_written(
@@ -63,56 +65,73 @@ def _search(
         )
     if match is None:
         match = search_nearest_table(
-            rows, targets, scale, base_given=base_given, directions_given=directions_given
+            rows, targets, scale, base_given=not freedom.base, directions_given=directions_given
         )
-        if not base_given and match.cost < WRONG_CELL and not constants.rounded.any():
+        rounded = any(row.tolerance.any() for row in rows)
+        if freedom.base and match.cost < WRONG_CELL and not rounded:
             # It is not valid from any possible base: then it cannot be right.
             match = replace(match, cost=match.cost + NO_SUCH_CELL)
-    return NearestTable(
-        roles=roles,
-        expected=_expected(roles, match, constants, convention, mechanism.samples, freedom),
-        frames=_joint_frames(roles, match, convention, mechanism),
-        cost=match.cost,
-    )
+    # What each cell should be: the constants and the joint variables.
+    expected = np.tile(as_table(np.array(match.rows), convention), 2)
+    for (i, column), joint in joint_cells(roles).items():
+        sign = (freedom.directions and rows[i + 1].joint_sign) or match.joint_signs[i]
+        expected[i, column] += sign * samples.values[joint.variable]
+    frames = _joint_frames(roles, match, convention, mechanism)
+    return NearestTable(roles, expected, frames, match.cost)
 
 
-def _expected(
-    roles: tuple[Role, ...],
-    match: ChainMatch,
-    constants: TableConstants,
-    convention: Convention,
-    samples: Samples,
-    freedom: FrameFreedom,
-) -> Table:
-    """What each cell should be, joint variables included: ``(rows, 4, SAMPLES)``."""
-    table = np.tile(as_table(match.rows, convention), 2)
-    for i, role in enumerate(roles):
-        if role.joint is not None:
-            sign = match.joint_signs[i]
-            if freedom.directions and constants.joint_signs[i]:
-                sign = int(constants.joint_signs[i])
-            table[i, variable_column(role.joint)] += sign * samples.values[role.joint.variable]
-    return table
+def _possible_bases(
+    roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
+) -> list[Matrices]:
+    """Where a free frame 0 may lie in the reference's frame 0, ``(HALF, 4, 4)`` each.
+
+    A given tool leaves one possibility. Otherwise the student's joint axes must lie on the
+    reference's, each in the direction that the sign of its variable says, or in either direction
+    where the directions are free.
+    """
+    table = handed_in_values(roles)
+    if np.isnan(table).any():
+        return []
+    exercise, samples = grading.exercise, grading.samples
+    if not freedom.tool:
+        return [(tool_pose(exercise, samples) @ inverse(pose(table, convention)))[:HALF]]
+    sliding = np.array([joint.prismatic for joint in exercise.robot.joints])
+    rows = [i for i, _ in joint_cells(roles)]
+    constants, signs = (x[0] for x in without_variables(table[None], roles, samples))
+    if not freedom.directions:
+        student_axes = axis_frames(halves(table)[0], convention, Convention.STANDARD)[rows]
+        target = reference_frames(exercise, Convention.STANDARD, samples)[:-1, :HALF]
+        return [align_axes(_directed(student_axes, signs[rows]), target, sliding)]
+    # A variable may have either sign, so the axes are compared where all variables are 0. Only the
+    # first axis and the next that is not parallel to it decide how the base is turned.
+    student_axes = axis_frames(constants, convention, Convention.STANDARD)[rows]
+    target = np.array(list(accumulate(mechanism_at(exercise, samples).joints, np.matmul)))
+    directions = [
+        np.array([first, *[others] * (len(rows) - 1)]) for first in (1, -1) for others in (1, -1)
+    ]
+    return [align_axes(_directed(student_axes, signs), target, sliding) for signs in directions]
+
+
+def _directed(frames: Matrices, signs: NDArray[np.int_]) -> Matrices:
+    """The frames with z reversed where the sign is −1."""
+    directed = frames.copy()
+    directed[signs < 0, :, :3, :3] *= np.array([1.0, -1.0, -1.0])
+    return directed
 
 
 def _joint_frames(
-    roles: tuple[Role, ...],
-    match: ChainMatch,
-    convention: Convention,
-    mechanism: Mechanism,
+    roles: tuple[Role, ...], match: ChainMatch, convention: Convention, mechanism: Mechanism
 ) -> Matrices:
     """The student's frames on the joint axes as seen from the reference's.
 
     The relative pose of a joint is that of the frame which its Z starts from. That is the frame on
     its axis in the standard convention; in the modified one, that is the frame which Z leads to.
     """
-    places = [i for i, role in enumerate(roles) if role.joint is not None]
-    relative_poses = np.array([match.relative_poses[i] for i in places])
+    places = [i for i, _ in joint_cells(roles)]
+    relative_poses = np.array(match.relative_poses)[places]
     if convention is Convention.STANDARD:
         return relative_poses
-    rows = np.array([match.rows[i + 1] for i in places])
-    zero = np.zeros_like(rows[:, D])
-    offsets = standard_link(zero, zero, rows[:, D], rows[:, THETA])
+    offsets = z_links(np.array(match.rows[1:])[places])
     return np.asarray(inverse(mechanism.offsets) @ relative_poses @ offsets)
 
 

@@ -14,7 +14,8 @@ import numpy as np
 from service.catalogue import Exercise
 from service.catalogue.robot import at_home
 from service.grading.joint_motion import changes
-from service.grading.judging.own_frames.row_roles import Role, joint_cells
+from service.grading.judging.own_frames.row_roles import Role, handed_in_values, variables_of
+from service.grading.reading.entry import Entry
 from service.grading.reading.table import IS_ANGLE
 from service.grading.samples import Samples
 from service.grading.tolerances import MULTIPLE_OF_STEP, ROUNDED_VALUE
@@ -32,12 +33,13 @@ def with_exact_angles(
 
     Where no angle was rounded, the result is ``roles`` itself.
     """
-    digits = np.array([_last_digits(role) for role in roles])
+    digits = IS_ANGLE * [
+        list(map(_last_digit, role.row.entries)) if role.row else [0.0] * 4 for role in roles
+    ]
     if not digits.any() or not _turns_in_steps(exercise, samples):
         return roles
-    nothing = np.full((len(IS_ANGLE), samples.count), np.nan)
-    values = np.array([role.row.values if role.row else nothing for role in roles])
-    error = _rounding_errors(values, _variables(roles, samples), digits)
+    values = handed_in_values(roles)
+    error = _rounding_errors(values, variables_of(roles, samples), digits)
     exact = values - error[..., None]
     return tuple(
         replace(role, row=replace(role.row, values=exact[i], as_written=role.row.values))
@@ -47,19 +49,11 @@ def with_exact_angles(
     )
 
 
-def _last_digits(role: Role) -> list[float]:
-    """The value of 1 in the last digit written, for each angle with a decimal; else 0."""
-    entries = role.row.entries if role.row else ()
-    return [
-        _last_digit(entry.expression.source)
-        if IS_ANGLE[column] and entry.may_be_rounded and entry.expression
-        else 0.0
-        for column, entry in enumerate(entries)
-    ] or [0.0] * len(IS_ANGLE)
-
-
-def _last_digit(text: str) -> float:
-    return 10.0 ** -min(len(digits) for digits in _DECIMALS.findall(text))
+def _last_digit(entry: Entry) -> float:
+    """The value of 1 in the last digit written, if the entry has a decimal; else 0."""
+    if not (entry.may_be_rounded and entry.expression):
+        return 0.0
+    return 10.0 ** -min(map(len, _DECIMALS.findall(entry.expression.source)))
 
 
 def _rounding_errors(values: Numbers, variables: Numbers, digits: Numbers) -> Numbers:
@@ -77,22 +71,14 @@ def _rounding_errors(values: Numbers, variables: Numbers, digits: Numbers) -> Nu
     return np.where(is_rounded, error, 0.0)
 
 
-def _variables(roles: tuple[Role, ...], samples: Samples) -> Numbers:
-    """The joint variable that belongs in each cell, ``(rows, 4, samples)``; 0 in the others."""
-    variables = np.zeros((len(roles), len(IS_ANGLE), samples.count))
-    for cell, joint in joint_cells(roles).items():
-        variables[cell] = samples.values[joint.variable]
-    return variables
-
-
 def _turns_in_steps(exercise: Exercise, samples: Samples) -> bool:
     """Whether the reference's constant angles are multiples of the step."""
-    return samples.cached("turns in steps", lambda: _in_steps(exercise, samples))
 
+    def compute() -> bool:
+        robot = exercise.robot
+        values = at_home(robot.joints, samples.values, samples.count)
+        table = robot.tables[robot.convention].values(values, samples.count)
+        steps = table[:, IS_ANGLE] / STEP
+        return bool(np.abs(steps - np.round(steps)).max() < MULTIPLE_OF_STEP)
 
-def _in_steps(exercise: Exercise, samples: Samples) -> bool:
-    robot = exercise.robot
-    values = at_home(robot.joints, samples.values, samples.count)
-    table = robot.tables[robot.convention].values(values, samples.count)
-    steps = table[:, IS_ANGLE] / STEP
-    return bool(np.abs(steps - np.round(steps)).max() < MULTIPLE_OF_STEP)
+    return samples.cached("turns in steps", compute)

@@ -8,10 +8,10 @@ import numpy as np
 
 from service.catalogue import Joint
 from service.catalogue.parts.dh_table import DhTableSpec
-from service.grading.joint_motion import changes, joint_counts
+from service.grading.joint_motion import joint_counts
 from service.grading.reading.table import IS_ANGLE, HandedInRow, values_of
 from service.grading.samples import SAMPLES, Samples
-from service.kinematics.chain import COLUMNS, THETA, D
+from service.kinematics.chain import COLUMNS, THETA, D, Table
 from service.kinematics.factors import CellIndex
 from service.kinematics.transforms import Numbers
 
@@ -50,12 +50,18 @@ def joint_cells(roles: Sequence[Role]) -> dict[CellIndex, Joint]:
     }
 
 
-def motion_of(roles: Sequence[Role], samples: Samples) -> Numbers:
-    """How each cell of a right table changes with the joints: ``(rows, 4, samples / 2)``."""
-    motion = np.zeros((len(roles), len(COLUMNS), samples.count // 2))
+def handed_in_values(roles: Sequence[Role]) -> Table:
+    """The values of the rows, ``(rows, 4, SAMPLES)``, NaN where a row is missing."""
+    nothing = np.full((len(COLUMNS), SAMPLES), np.nan)
+    return np.array([role.row.values if role.row else nothing for role in roles])
+
+
+def variables_of(roles: Sequence[Role], samples: Samples) -> Table:
+    """The joint variable that belongs in each cell, ``(rows, 4, samples)``; 0 in the others."""
+    variables = np.zeros((len(roles), len(COLUMNS), samples.count))
     for cell, joint in joint_cells(roles).items():
-        motion[cell] = changes(samples.values[joint.variable])
-    return motion
+        variables[cell] = samples.values[joint.variable]
+    return variables
 
 
 def roles_of(

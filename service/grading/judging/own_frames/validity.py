@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import Exercise
-from service.grading.joint_motion import moves_with
+from service.grading.joint_motion import changes, moves_with
 from service.grading.judging.own_frames.constants import without_variables
 from service.grading.judging.own_frames.reference import (
     Mechanism,
@@ -14,7 +14,7 @@ from service.grading.judging.own_frames.reference import (
     reference_frames,
     regrouped,
 )
-from service.grading.judging.own_frames.row_roles import FrameFreedom, Role, motion_of
+from service.grading.judging.own_frames.row_roles import FrameFreedom, Role, variables_of
 from service.grading.reading.table import IS_ANGLE
 from service.grading.samples import Samples
 from service.kinematics.candidate_rows import TargetKind
@@ -43,11 +43,10 @@ def valid_tables(
     constants, signs = without_variables(tables, roles, samples)
     if freedom.directions:
         signs = np.zeros_like(signs)
-    mechanism = mechanism_at(exercise, samples)
-    targets = targets_of(roles, convention, mechanism, freedom)
+    targets = targets_of(roles, convention, mechanism_at(exercise, samples), freedom)
     rows = np.moveaxis(regrouped(np.moveaxis(constants, 0, -1), convention, 0.0), -1, 0)
     signs = np.pad(signs, ((0, 0), (1, 0)))
-    return match_tables(rows, signs, targets, mechanism.length_scale, tolerance)[0]
+    return match_tables(rows, signs, targets, exercise.length_scale, tolerance)[0]
 
 
 def _valid_by_pose(
@@ -62,7 +61,7 @@ def _valid_by_pose(
 
     The tolerance is relative to the reach of the arm.
     """
-    moves = moves_with(tables, motion_of(roles, samples), IS_ANGLE[:, None])
+    moves = moves_with(tables, changes(variables_of(roles, samples)), IS_ANGLE[:, None])
     valid = np.asarray(moves.all(axis=(1, 2)))
     expected = reference_frames(exercise, convention, samples)[-1]
     reach = max(exercise.length_scale, float(np.abs(expected[:, :3, 3]).max()))

@@ -7,7 +7,8 @@ right value of each cell: nothing has to be guessed from the cells that agree wi
 import numpy as np
 
 from service.grading.judging.own_frames.few_cells import NearestTable, frames_from_reference
-from service.grading.judging.own_frames.row_roles import FrameFreedom, Role
+from service.grading.judging.own_frames.reference import as_table, regrouped
+from service.grading.judging.own_frames.row_roles import FrameFreedom, Role, handed_in_values
 from service.grading.judging.own_frames.validity import valid_tables
 from service.grading.judging.own_frames.written_table import (
     MISCONCEPTIONS,
@@ -17,7 +18,7 @@ from service.grading.judging.own_frames.written_table import (
 from service.grading.misconception import hypotheses_of
 from service.grading.part import Grading
 from service.grading.tolerances import INTENDED_POSE, UNCHANGED_CELL
-from service.kinematics.chain import Table, modified_rows, standard_rows
+from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
 from service.kinematics.frame_choice import WRONG_CELL
 
@@ -26,8 +27,8 @@ def nearest_as_intended(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable | None:
     """The table without one basic misconception, if that makes it valid; else None."""
-    values = np.array([role.row.values for role in roles if role.row])
-    if len(values) < len(roles) or not np.isfinite(values).all():
+    values = handed_in_values(roles)
+    if not np.isfinite(values).all():
         return None
     exercise, samples = grading.exercise, grading.samples
     handed_in = written_table(values, convention, None, exercise.robot.joints, samples)
@@ -47,14 +48,6 @@ def nearest_as_intended(
 
 def in_convention(table: WrittenTable, convention: Convention) -> Table | None:
     """The same chain in a convention, ``(rows, 4, samples)``; None where that takes other rows."""
-    values = table.values
-    if table.convention is convention:
-        return values
-    rows = [(row[0], row[1], row[2], row[3]) for row in values]
-    zero = np.zeros(values.shape[-1])
-    if convention is Convention.STANDARD:
-        left_out, moved = values[0, :2], standard_rows(rows, zero)
-    else:
-        *moved, last = modified_rows(rows, zero)
-        left_out = np.array(last)
-    return None if left_out.any() else np.array(moved)
+    links = regrouped(table.values, table.convention, 0.0)
+    left_out = links[0] if convention is Convention.STANDARD else links[-1, :2]
+    return None if left_out.any() else as_table(links, convention)
