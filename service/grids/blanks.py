@@ -61,9 +61,7 @@ def continues(left: str, right: str) -> bool:
         return True
     if right[0] in _SIGNS:
         return len(right) == 1
-    if right[0] in _BINARY or (right[0] == "." and right[1:2] in {"*", "/", "^"}):
-        return True
-    if _UNIT.match(right):
+    if right[0] in _BINARY or right[:2] in {".*", "./", ".^"} or _UNIT.match(right):
         return True
     return _FUNCTION.search(left) is not None
 

@@ -48,4 +48,4 @@ def _refuse_objects(rows: list[list[SourceText]]) -> None:
                 )
 
 
-FORMAT: Final = GridFormat("brackets", begins_as_matrix, _parse)
+FORMAT: Final = GridFormat(begins_as_matrix, _parse)

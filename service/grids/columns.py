@@ -43,12 +43,7 @@ def _is_rule(line: str) -> bool:
 
 def _at_gaps(line: SourceText) -> list[SourceText]:
     """The pieces between two or more blanks; none where one of them is half a value."""
-    pieces: list[SourceText] = []
-    start = 0
-    for gap in _GAP.finditer(line.text):
-        pieces.append(line.cut(start, gap.start()))
-        start = gap.end()
-    pieces.append(line.cut(start, len(line.text)))
+    pieces = line.split(_GAP)
     halves = any(continues(left.text, right.text) for left, right in itertools.pairwise(pieces))
     return [] if halves else pieces
 
@@ -72,4 +67,4 @@ def _uneven(lines: list[SourceText], rows: list[list[SourceText]]) -> GridError:
     )
 
 
-FORMAT: Final = GridFormat("columns", _matches, _parse)
+FORMAT: Final = GridFormat(_matches, _parse)

@@ -22,4 +22,4 @@ def _parse(source: SourceText) -> Grid:
     )
 
 
-FORMAT: Final = GridFormat("drawing", _matches, _parse)
+FORMAT: Final = GridFormat(_matches, _parse)

@@ -39,7 +39,6 @@ class GridFormat:
     it and may raise GridError. Both take time linear in the text.
     """
 
-    name: str
     matches: Callable[[str], bool]
     parse: Callable[[SourceText], Grid]
 
@@ -55,18 +54,12 @@ def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid
         raise GridError("empty", "No cell of this table or matrix holds anything.", whole)
     filled = _without_empty_columns(filled)
     if len(filled) > GRID_LIMITS.rows:
-        raise GridError(
-            "too_many_rows",
-            f"This has {len(filled)} rows; at most {GRID_LIMITS.rows - 1} and a header are read.",
-            whole,
-        )
+        most = f"at most {GRID_LIMITS.rows - 1} and a header are read"
+        raise GridError("too_many_rows", f"This has {len(filled)} rows; {most}.", whole)
     widest = max(map(len, filled))
     if widest > GRID_LIMITS.columns:
-        raise GridError(
-            "too_many_columns",
-            f"This has {widest} columns; at most {GRID_LIMITS.columns} are read.",
-            whole,
-        )
+        message = f"This has {widest} columns; at most {GRID_LIMITS.columns} are read."
+        raise GridError("too_many_columns", message, whole)
     return Grid(name, tuple(map(tuple, filled)), tuple(notes))
 
 

@@ -77,9 +77,8 @@ def _behind_tag(source: SourceText, start: int) -> int:
             if i < 0:
                 break
         i += 1
-    raise GridError(
-        "unclosed_tag", "This tag does not end; > is missing.", source.span(start, start + 1)
-    )
+    message = "This tag does not end; > is missing."
+    raise GridError("unclosed_tag", message, source.span(start, start + 1))
 
 
 def _tag(source: SourceText, table: _Table, tag: re.Match[str], end: int) -> int:
@@ -105,11 +104,8 @@ def _tag(source: SourceText, table: _Table, tag: re.Match[str], end: int) -> int
     elif name == "br":
         table.pieces.append(source.cut(start, start + 1).spelled(" "))
     elif name not in _STYLING and name not in _LAYOUT and table.cell_at is not None:
-        raise GridError(
-            "unread_tag",
-            f"What <{name}> shows in a cell cannot be read; type it as plain text.",
-            place,
-        )
+        message = f"What <{name}> shows in a cell cannot be read; type it as plain text."
+        raise GridError("unread_tag", message, place)
     return end
 
 
@@ -185,4 +181,4 @@ def _end_cell(source: SourceText, table: _Table) -> None:
     table.pieces, table.cell_at, table.raised = [], None, ""
 
 
-FORMAT: Final = GridFormat("HTML", _matches, _parse)
+FORMAT: Final = GridFormat(_matches, _parse)

@@ -49,9 +49,7 @@ def _matches(text: str) -> bool:
 
 
 def _parse(source: SourceText) -> Grid:
-    source = _without_comments(source)
-    body = _body(source)
-    rows = _rows(body)
+    rows = _rows(_body(_without_comments(source)))
     if not any(cell.text.strip() for cell in rows[-1]):
         rows.pop()
     return grid("LaTeX", rows, source.whole)
@@ -79,7 +77,8 @@ def _body(source: SourceText) -> SourceText:
     marks = [mark for mark in _BEGIN.finditer(text) if mark[2] in _ARGUMENTS]
     if not marks:
         if other := next((mark for mark in _BEGIN.finditer(text) if "matrix" in mark[2]), None):
-            raise _not_a_matrix(source, other)
+            message = "This is a determinant or another form that is no plain matrix; use bmatrix."
+            raise GridError("not_a_matrix", message, source.span(*other.span()))
         return source
     first = marks[0]
     if first[1] == "end":
@@ -98,11 +97,6 @@ def _body(source: SourceText) -> SourceText:
     _check_in_front(source.cut(0, first.start()))
     _check_wrapper(source.cut(last.end(), len(text)))
     return source.cut(_behind_arguments(source, first), last.start())
-
-
-def _not_a_matrix(source: SourceText, mark: re.Match[str]) -> GridError:
-    message = "This is a determinant or another form that is no plain matrix; use bmatrix."
-    return GridError("not_a_matrix", message, source.span(*mark.span()))
 
 
 def _check_in_front(front: SourceText) -> None:
@@ -193,14 +187,7 @@ def _rows(body: SourceText) -> list[list[SourceText]]:
 
 
 def _without_sizes(cell: SourceText) -> SourceText:
-    if "\\" not in cell.text:
-        return cell
-    pieces: list[SourceText] = []
-    start = 0
-    for size in _SIZES.finditer(cell.text):
-        pieces.append(cell.cut(start, size.start()))
-        start = size.end()
-    return joined([*pieces, cell.cut(start, len(cell.text))], cell.at) if pieces else cell
+    return joined(cell.split(_SIZES), cell.at) if _SIZES.search(cell.text) else cell
 
 
-FORMAT: Final = GridFormat("LaTeX", _matches, _parse)
+FORMAT: Final = GridFormat(_matches, _parse)

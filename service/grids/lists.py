@@ -50,11 +50,8 @@ def rows(lines: list[SourceText]) -> list[list[SourceText]]:
     found = []
     for line in lines:
         if line.text.lstrip()[:1] in {"[", "{"} and lines_of(line):
-            raise GridError(
-                "nested_too_deep",
-                "This is a list of matrices or tables; paste one of them.",
-                line.whole,
-            )
+            message = "This is a list of matrices or tables; paste one of them."
+            raise GridError("nested_too_deep", message, line.whole)
         found.append(_values(line))
     return found
 
@@ -70,11 +67,9 @@ def flat(content: SourceText, matrix: WrittenMatrix) -> list[list[SourceText]]:
         return [[value] for value in values] if matrix.maker in _COLUMN_MAKERS else [values]
     height, width = matrix.shape
     if height * width != len(values):
-        raise GridError(
-            "wrong_count",
-            f"A {height} × {width} matrix has {height * width} values; here are {len(values)}.",
-            content.whole,
-        )
+        count = height * width
+        message = f"A {height} × {width} matrix has {count} values; here are {len(values)}."
+        raise GridError("wrong_count", message, content.whole)
     return [values[i * width : (i + 1) * width] for i in range(height)]
 
 

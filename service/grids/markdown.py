@@ -8,6 +8,7 @@ from service.grids.source_text import SourceText
 
 _BARS: Final = "|│┃║"
 _BAR: Final = re.compile(rf"[{_BARS}]")
+_SEPARATOR: Final = re.compile(rf"(?<!\\)[{_BARS}]")
 _RULE: Final = re.compile(r"[\s|:+\-=_│┃║─━═┼╪╬┬┴├┤┌┐└┘╭╮╰╯┏┓┗┛┣┫┳┻╋╔╗╚╝╠╣╦╩╒╕╘╛╞╡╤╧╟╢┠┨┯┷]+")
 
 
@@ -24,11 +25,8 @@ def _parse(source: SourceText) -> Grid:
             continue
         cells = _cells(line)
         if len(cells) == 1:
-            raise GridError(
-                "text_around",
-                "This line of the table has no |; paste the table alone.",
-                line.whole,
-            )
+            message = "This line of the table has no |; paste the table alone."
+            raise GridError("text_around", message, line.whole)
         rows.append(cells)
     return grid("Markdown", rows, source.whole)
 
@@ -39,15 +37,7 @@ def _is_rule(line: str) -> bool:
 
 def _cells(line: SourceText) -> list[SourceText]:
     r"""The cells of a line; \| is a bar inside one."""
-    text = line.text
-    pieces: list[SourceText] = []
-    start = 0
-    for bar in _BAR.finditer(text):
-        if text[bar.start() - 1 : bar.start()] == "\\":
-            continue
-        pieces.append(line.cut(start, bar.start()))
-        start = bar.end()
-    pieces.append(line.cut(start, len(text)))
+    pieces = line.split(_SEPARATOR)
     if len(pieces) > 1 and not pieces[0].text:
         pieces = pieces[1:]
     if len(pieces) > 1 and not pieces[-1].text:
@@ -55,4 +45,4 @@ def _cells(line: SourceText) -> list[SourceText]:
     return pieces
 
 
-FORMAT: Final = GridFormat("Markdown", _matches, _parse)
+FORMAT: Final = GridFormat(_matches, _parse)

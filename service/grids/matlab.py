@@ -12,18 +12,13 @@ def rows(content: SourceText) -> tuple[list[list[SourceText]], tuple[Note, ...]]
 
     Raises GridError where commas and blanks separate values and both readings make a matrix.
     """
-    lines = [
-        line.strip()
-        for line in split(content, ";\r\n", strict_pairs(content))
-        if line.text.strip(" \t,")
-    ]
+    lines = split(content, ";\r\n", strict_pairs(content))
+    lines = [line.strip() for line in lines if line.text.strip(" \t,")]
     by_commas = [_without_last_empty(split(line, ",", strict_pairs(line))) for line in lines]
     by_blanks, signs = _by_blanks(by_commas)
-    if [len(row) for row in by_commas] == [len(row) for row in by_blanks]:
+    if list(map(len, by_commas)) == list(map(len, by_blanks)):
         return by_commas, ()
-    if all(len(row) == 1 for row in by_commas):
-        return by_blanks, _sign_notes(signs)
-    if not _is_rectangle(by_commas):
+    if all(len(row) == 1 for row in by_commas) or not _is_rectangle(by_commas):
         return by_blanks, _sign_notes(signs)
     if _is_rectangle(by_blanks):
         raise _ambiguous(by_commas, by_blanks)

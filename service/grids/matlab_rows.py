@@ -18,4 +18,4 @@ def _parse(source: SourceText) -> Grid:
     return grid("rows with semicolons", rows, source.whole, notes)
 
 
-FORMAT: Final = GridFormat("rows with semicolons", _matches, _parse)
+FORMAT: Final = GridFormat(_matches, _parse)

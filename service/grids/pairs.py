@@ -1,6 +1,7 @@
 """Pairs of brackets and quotes, inside which no separator splits a cell."""
 
 import re
+from collections.abc import Iterator
 from typing import Final
 
 from service.grids.grid import GridError
@@ -75,6 +76,17 @@ def _unbalanced(source: SourceText, at: int, stack: list[int]) -> GridError:
     else:
         message = f"This {bracket} was never opened; {_OPENS[bracket]} is missing."
     return GridError("unbalanced_bracket", message, source.span(at, at + 1))
+
+
+def outside(text: str, ends: dict[int, int]) -> Iterator[int]:
+    """The places of the characters outside all pairs; ``ends`` gives the place behind each."""
+    i = 0
+    while i < len(text):
+        if i in ends:
+            i = ends[i]
+        else:
+            yield i
+            i += 1
 
 
 def split(

@@ -20,17 +20,9 @@ from service.grids.source_text import SourceText
 
 # The surest sign comes first: a tag, a command, a bracket; then separators, blanks last of all.
 FORMATS: Final[tuple[GridFormat, ...]] = (
-    html.FORMAT,
-    latex.FORMAT,
-    drawn_matrix.FORMAT,
-    bracketed.FORMAT,
-    markdown.FORMAT,
-    matlab_rows.FORMAT,
-    tsv.FORMAT,
-    semicolons.FORMAT,
-    csv.FORMAT,
-    columns.FORMAT,
-)
+    html.FORMAT, latex.FORMAT, drawn_matrix.FORMAT, bracketed.FORMAT, markdown.FORMAT,
+    matlab_rows.FORMAT, tsv.FORMAT, semicolons.FORMAT, csv.FORMAT, columns.FORMAT,
+)  # fmt: skip
 
 _SEPARATORS: Final = (*",;&|│┃║\t\n\r\x85\u2028\u2029", "<t", "<T", "\\\\")
 
@@ -41,11 +33,9 @@ def read_grid(text: str) -> Grid:
     Time is linear in the text, which is bounded by ``GRID_LIMITS``.
     """
     if len(text) > GRID_LIMITS.characters:
-        raise GridError(
-            "too_long",
-            f"This has {len(text)} characters; a pasted text may have {GRID_LIMITS.characters}.",
-            (GRID_LIMITS.characters, len(text)),
-        )
+        most = GRID_LIMITS.characters
+        message = f"This has {len(text)} characters; a pasted text may have {most}."
+        raise GridError("too_long", message, (most, len(text)))
     source = SourceText.of(text).strip("\ufeff")
     if not source.text.strip():
         raise GridError("empty", "Nothing is written here.", (0, len(text)))

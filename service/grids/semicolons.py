@@ -7,7 +7,7 @@ from typing import Final
 
 from service.grids.delimited import split_cells
 from service.grids.grid import Grid, GridError, GridFormat, grid
-from service.grids.pairs import pairs
+from service.grids.pairs import outside, pairs
 from service.grids.source_text import SourceText
 
 
@@ -30,13 +30,7 @@ def _parse(source: SourceText) -> Grid:
 
 def _holds_several(cell: str) -> bool:
     """Whether commas or blanks separate values inside the cell."""
-    ends = pairs(cell)
-    i = 0
-    while i < len(cell):
-        if cell[i] == "," or cell[i].isspace():
-            return True
-        i = ends.get(i, i + 1)
-    return False
+    return any(cell[i] == "," or cell[i].isspace() for i in outside(cell, pairs(cell)))
 
 
-FORMAT: Final = GridFormat("CSV with semicolons", _matches, _parse)
+FORMAT: Final = GridFormat(_matches, _parse)

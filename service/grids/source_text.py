@@ -57,11 +57,15 @@ class SourceText:
 
     def lines(self) -> list["SourceText"]:
         """The lines without their ends."""
-        found, start = [], 0
-        for end in _LINE_END.finditer(self.text):
-            found.append(self.cut(start, end.start()))
-            start = end.end()
-        return [*found, self.cut(start, len(self.text))]
+        return self.split(_LINE_END)
+
+    def split(self, separator: re.Pattern[str]) -> list["SourceText"]:
+        """The pieces before, between and behind all matches of ``separator``."""
+        pieces, start = [], 0
+        for match in separator.finditer(self.text):
+            pieces.append(self.cut(start, match.start()))
+            start = match.end()
+        return [*pieces, self.cut(start, len(self.text))]
 
     def spelled(self, text: str) -> "SourceText":
         """``text`` in place of the whole piece."""

@@ -19,4 +19,4 @@ def _parse(source: SourceText) -> Grid:
     return grid("TSV", split_cells(source, "\t", brackets=False), source.whole)
 
 
-FORMAT: Final = GridFormat("TSV", _matches, _parse)
+FORMAT: Final = GridFormat(_matches, _parse)

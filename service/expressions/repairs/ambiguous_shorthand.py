@@ -2,25 +2,22 @@
 
 import re
 
-from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, quoted
+from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
 
 _GOES_ON = re.compile(r"\.?\w+")
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("ambiguous_shorthand")
+def repair(failure: Failure) -> Repair:
     """Name both readings, and offer the joint angles."""
-    if failure.cause != "ambiguous_shorthand":
-        return None
     function, names = failure.details["function"], failure.details["names"]
     digits = "".join(letter for letter in failure.written if letter.isdigit())
-    return ExpressionError(
-        "ambiguous_shorthand",
+    message = (
         f"{quoted(failure.written)} has two readings. Write {function}({names}) for joint angles "
-        f"or {function}({digits}) for the number.",
-        failure.span,
-        _suggestion(failure, f"{function}({names})", f"{function}({digits}"),
+        f"or {function}({digits}) for the number."
     )
+    suggestion = _suggestion(failure, f"{function}({names})", f"{function}({digits}")
+    return error(failure, "ambiguous_shorthand", message, suggestion)
 
 
 def _suggestion(failure: Failure, of_joints: str, of_number: str) -> str | None:

@@ -1,30 +1,23 @@
 """A text too long, too large or nested too deep to be read."""
 
-from service.expressions.errors import ExpressionError
 from service.expressions.limits import LIMITS
-from service.expressions.repairs.failure import Failure
+from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("beyond")
+def repair(failure: Failure) -> Repair:
     """Name the limit."""
-    if failure.cause != "beyond":
-        return None
     limit = failure.details["limit"]
     if limit == "characters":
-        return ExpressionError(
-            "too_long",
+        message = (
             f"This has {failure.details['length']} characters; "
-            f"an expression may have {LIMITS.characters}.",
-            failure.span,
+            f"an expression may have {LIMITS.characters}."
         )
+        return error(failure, "too_long", message)
     if limit == "nodes":
-        return ExpressionError(
-            "too_many_nodes",
-            f"This has more than {LIMITS.nodes} operations and operands; please write it shorter.",
-            failure.span,
+        message = (
+            f"This has more than {LIMITS.nodes} operations and operands; please write it shorter."
         )
-    return ExpressionError(
-        "too_deep",
-        f"This is nested more than {LIMITS.depth} levels deep; please flatten it.",
-        failure.span,
-    )
+        return error(failure, "too_many_nodes", message)
+    message = f"This is nested more than {LIMITS.depth} levels deep; please flatten it."
+    return error(failure, "too_deep", message)

@@ -4,8 +4,7 @@ import re
 
 from service.expressions.characters import greek, latex_commands
 from service.expressions.characters.unicode import SUBSCRIPTS
-from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, quoted
+from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
 
 _LETTER = rf"\\?[A-Za-z]+|[{greek.CLASS}{''.join(greek.VARIANTS)}]"
 _STEM = rf"{_LETTER}|\\(?:{'|'.join(sorted(latex_commands.STYLES))})\s*\{{\s*(?:{_LETTER})\s*\}}"
@@ -16,10 +15,9 @@ _WITHOUT_ARGUMENT = {*latex_commands.FUNCTIONS, *latex_commands.PLAIN, *latex_co
 _TAKEN = re.compile(r"(?:[_^]|\\([A-Za-z]+))\s*$")
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("name")
+def repair(failure: Failure) -> Repair:
     """Offer the name without braces, where that can be read."""
-    if failure.cause != "name":
-        return None
     source, (start, end) = failure.source, failure.span
     for match in _BRACED.finditer(source):
         if not (match.start(1) <= start and end <= match.end(1)) or _is_taken(source, match):
@@ -32,7 +30,7 @@ def repair(failure: Failure) -> ExpressionError | None:
         if repaired is None:
             return None
         message = f"A name and its index stand together: write {quoted(name)}, without the braces."
-        return ExpressionError("braced_stem", message, match.span(), repaired)
+        return error(failure, "braced_stem", message, repaired, match.span())
     return None
 
 

@@ -2,32 +2,25 @@
 
 import re
 
-from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure
+from service.expressions.repairs.failure import Failure, Repair, error
 
 _COMMENT = re.compile(r"(?<!\\)%|#|//|/\*|\(\*")
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+def repair(failure: Failure) -> Repair:
     """Offer the text before the comment, or one slash where // was a division."""
     match = _COMMENT.search(failure.source)
-    if match is None or failure.cause == "beyond":
+    if match is None:
         return None
     before, behind = failure.source[: match.start()].rstrip(), failure.source[match.end() :].strip()
     if not before or (match.group() == "%" and not behind):
         return None
-    span = (match.start(), len(failure.source))
-    if match.group() == "//" and failure.repaired(f"{before}/{behind}") == f"{before}/{behind}":
-        return ExpressionError(
-            "comment",
+    division = f"{before}/{behind}"
+    if match.group() == "//" and failure.repaired(division) == division:
+        message = (
             "// begins a comment in some languages and drops the remainder in Python. "
-            "If this is a division, write one slash.",
-            match.span(),
-            f"{before}/{behind}",
+            "If this is a division, write one slash."
         )
-    return ExpressionError(
-        "comment",
-        f"From {match.group()} on this looks like a comment; write only the expression.",
-        span,
-        before,
-    )
+        return error(failure, "comment", message, division, match.span())
+    message = f"From {match.group()} on this looks like a comment; write only the expression."
+    return error(failure, "comment", message, before, (match.start(), len(failure.source)))

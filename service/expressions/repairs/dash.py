@@ -2,15 +2,14 @@
 
 import re
 
-from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure
+from service.expressions.repairs.failure import Failure, Repair, error
 
 _DASH = re.compile(r"[-–—−‐‑‒―]+")
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+def repair(failure: Failure) -> Repair:
     """Ask for 0: a dash may mean zero, and it may mean nothing."""
     if _DASH.fullmatch(failure.source.strip()) is None:
         return None
     message = "A dash alone may mean zero or nothing at all. If the value is zero, write 0."
-    return ExpressionError("dash", message, (0, len(failure.source)), "0")
+    return error(failure, "dash", message, "0", (0, len(failure.source)))

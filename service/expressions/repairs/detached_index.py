@@ -3,17 +3,15 @@
 import re
 
 from service.expressions.characters import greek
-from service.expressions.errors import ExpressionError
 from service.expressions.parsing.words import split
-from service.expressions.repairs.failure import Failure
+from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 _DETACHED = re.compile(rf"([A-Za-z{greek.CLASS}]+)[ _]+([0-9]+)(?![0-9.])")
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("name")
+def repair(failure: Failure) -> Repair:
     """Offer the two joined, where that is a name."""
-    if failure.cause != "name":
-        return None
     match = _DETACHED.match(failure.source, failure.span[0])
     if match is None or match.end(1) != failure.span[1]:
         return None
@@ -22,6 +20,5 @@ def repair(failure: Failure) -> ExpressionError | None:
     if pieces is None or pieces[-1].kind not in {"symbol", "shorthand"}:
         return None
     message = f"In {match[0]} a name and its index must stand together, without a space."
-    return ExpressionError(
-        "detached_index", message, match.span(), failure.replaced(joined, match.span())
-    )
+    suggestion = failure.replaced(joined, match.span())
+    return error(failure, "detached_index", message, suggestion, match.span())

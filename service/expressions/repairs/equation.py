@@ -2,21 +2,19 @@
 
 import re
 
-from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure
+from service.expressions.repairs.failure import Failure, Repair, error
 
 _EQUALS = re.compile(r":=|&?=+|≈|≡|≔|\\(?:approx|equiv|coloneqq)(?![A-Za-z])")
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+def repair(failure: Failure) -> Repair:
     """Offer the right-hand side."""
     signs = list(_EQUALS.finditer(failure.source))
-    if not signs or failure.cause == "beyond":
+    if not signs:
         return None
-    first, last = signs[0], signs[-1]
-    right = failure.source[last.end() :].strip()
-    left = failure.source[: first.start()].strip()
+    right = failure.source[signs[-1].end() :].strip()
+    left = failure.source[: signs[0].start()].strip()
     message = "This is an equation; write only the value, without the = sign."
     if not left:
         message = "Write the value without the = sign before it."
-    return ExpressionError("equation", message, first.span(), right or left or None)
+    return error(failure, "equation", message, right or left or None, signs[0].span())

@@ -1,7 +1,6 @@
 """e, i and j, which are no constants here."""
 
-from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, quoted
+from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
 
 _REASONS = {
     "e": "Euler's number is written exp(1), and a power of it exp(x).",
@@ -10,10 +9,11 @@ _REASONS = {
 }
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("name")
+def repair(failure: Failure) -> Repair:
     """Say how to write Euler's number, and that there are no complex numbers."""
-    if failure.cause != "name" or failure.details["run"] not in _REASONS:
+    reason = _REASONS.get(failure.details["run"])
+    if reason is None:
         return None
-    reason = _REASONS[failure.details["run"]]
     message = f"The name {quoted(failure.written)} is not known in this exercise. {reason}"
-    return ExpressionError("unknown_symbol", message, failure.span)
+    return error(failure, "unknown_symbol", message)

@@ -1,12 +1,14 @@
 """The argument of a repair rule, its type, and helpers of several rules."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
+from functools import wraps
 from typing import Final, Protocol
 
 from service.expressions.errors import Cause, ExpressionError, Span, UnreadableError
-from service.expressions.parsing.lexer import Token
 from service.expressions.vocabulary.symbols import Vocabulary
+
+# The error for a failure, or None for another slip; its suggestion may be unreadable.
+Repair = ExpressionError | None
 
 
 class Failure:
@@ -43,41 +45,56 @@ class Failure:
         start, end = span or self.span
         return self.source[:start] + text + self.source[end:]
 
+    def terminal(self, back: int = 0) -> str:
+        """The token that the grammar could not take, or the one ``back`` before it.
+
+        Empty where there is none, or where something else stopped the reader.
+        """
+        at = self.details["index"] - back if self.cause == "grammar" else -1
+        return "" if at < 0 else self.details["tokens"][at][0]
+
+    def place(self, back: int = 0) -> Span:
+        """The place of the token that ``terminal`` names."""
+        token = self.details["tokens"][self.details["index"] - back]
+        return token[2], token[3]
+
 
 class RepairRule(Protocol):
-    """The rule for one kind of slip."""
+    """A module with the rule for one kind of slip."""
 
-    def __call__(self, failure: Failure) -> ExpressionError | None:
+    __name__: str
+
+    def repair(self, failure: Failure, /) -> Repair:
         """The error for ``failure``, or None for another slip; its suggestion may be unreadable."""
 
 
-@dataclass(frozen=True, slots=True)
-class UnexpectedToken:
-    """The token that the grammar could not take, at ``index`` of the ``tokens``."""
+def answers(*causes: Cause) -> Callable[[Callable[[Failure], Repair]], Callable[[Failure], Repair]]:
+    """Ask the rule only where the reader stopped for one of these causes."""
 
-    tokens: Sequence[Token]
-    index: int
+    def decorate(rule: Callable[[Failure], Repair]) -> Callable[[Failure], Repair]:
+        @wraps(rule)
+        def repair(failure: Failure) -> Repair:
+            return rule(failure) if failure.cause in causes else None
 
-    @property
-    def terminal(self) -> str:
-        """The token's terminal."""
-        return self.tokens[self.index][0]
+        return repair
 
-    @property
-    def before(self) -> str:
-        """The terminal before it; empty where it is the first."""
-        return self.tokens[self.index - 1][0] if self.index else ""
-
-    def span(self, back: int = 0) -> Span:
-        """The place of the token, or of the one that stands ``back`` tokens before it."""
-        return self.tokens[self.index - back][2:]
+    return decorate
 
 
-def unexpected_token(failure: Failure) -> UnexpectedToken | None:
-    """The token at which the grammar stopped, or None where something else stopped the reader."""
-    if failure.cause != "grammar":
-        return None
-    return UnexpectedToken(failure.details["tokens"], failure.details["index"])
+def advice(cause: Cause, code: str, message: str) -> Callable[[Failure], Repair]:
+    """The rule that answers each failure of this cause with this message."""
+    return answers(cause)(lambda failure: error(failure, code, message))
+
+
+def error(
+    failure: Failure,
+    code: str,
+    message: str,
+    suggestion: str | None = None,
+    span: Span | None = None,
+) -> ExpressionError:
+    """The error for ``failure``, by default at its span."""
+    return ExpressionError(code, message, span or failure.span, suggestion)
 
 
 def quoted(text: str) -> str:

@@ -2,19 +2,16 @@
 
 import re
 
-from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure
+from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 _OF_TIME = re.compile(r"\s*(?:\\left)?\(\s*t\s*(?:\\right)?\)")
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("name")
+def repair(failure: Failure) -> Repair:
     """Offer the names without (t)."""
-    if failure.cause != "name" or failure.details["run"] != "t":
-        return None
-    if _OF_TIME.search(failure.source) is None:
+    without_time, count = _OF_TIME.subn("", failure.source)
+    if failure.details["run"] != "t" or not count:
         return None
     message = "The joint variables are written without their time here: q1, not q1(t)."
-    return ExpressionError(
-        "function_of_time", message, failure.span, _OF_TIME.sub("", failure.source)
-    )
+    return error(failure, "function_of_time", message, without_time)

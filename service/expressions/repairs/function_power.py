@@ -2,45 +2,32 @@
 
 import re
 
-from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure
+from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 _INVERSE = re.compile(r"(-\s*1|[({]\s*-\s*1\s*[)}])(?![0-9.])")
+# The same in the source, however it was raised.
+_END = re.compile(r"[\s^*]*(?:⁻\s*¹|[({]*\s*[-−–]\s*1(?:\s*[)}])*)")
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("function_power")
+def repair(failure: Failure) -> Repair:
     """Offer the inverse function, or ask for brackets with a power."""
-    if failure.cause != "function_power":
-        return None
     name, exponent = failure.details["name"], failure.details["exponent"]
     place = failure.details["function"]
     if not exponent.strip():
-        return ExpressionError(
-            "function_without_argument",
-            f"The function {name} has nothing to work on; "
-            "write its argument in brackets behind it.",
-            place,
+        message = (
+            f"The function {name} has nothing to work on; write its argument in brackets behind it."
         )
+        return error(failure, "function_without_argument", message, span=place)
     if _INVERSE.match(exponent) is None:
-        return ExpressionError(
-            "function_power",
-            "Only a whole number may stand as a function's power; write (sin(x))^p instead.",
-            (place[1], failure.span[1]),
-        )
-    whole = (place[0], _end(failure))
+        message = "Only a whole number may stand as a function's power; write (sin(x))^p instead."
+        return error(failure, "function_power", message, span=(place[1], failure.span[1]))
+    end = _END.match(failure.source, place[1])
+    whole = (place[0], end.end() if end else failure.span[1])
     inverse = f"a{name}" if name in {"sin", "cos", "tan"} else None
-    return ExpressionError(
-        "function_power",
+    message = (
         "A negative power of a function has two readings. Write asin(x), acos(x) or atan(x) "
-        "for the inverse function, or 1/sin(x) for one over it.",
-        whole,
-        inverse and failure.replaced(inverse, whole),
+        "for the inverse function, or 1/sin(x) for one over it."
     )
-
-
-def _end(failure: Failure) -> int:
-    """The end of -1 in the source, however it was raised."""
-    match = re.compile(r"[\s^*]*(?:⁻\s*¹|[({]*\s*[-−–]\s*1(?:\s*[)}])*)").match(
-        failure.source, failure.details["function"][1]
-    )
-    return match.end() if match else failure.span[1]
+    suggestion = inverse and failure.replaced(inverse, whole)
+    return error(failure, "function_power", message, suggestion, whole)

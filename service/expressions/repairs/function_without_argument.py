@@ -1,37 +1,23 @@
 """A function without its argument: sin, sin(), sin * q1."""
 
-from service.expressions.errors import ExpressionError, Span
-from service.expressions.repairs.failure import Failure, UnexpectedToken, quoted, unexpected_token
+from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("grammar")
+def repair(failure: Failure) -> Repair:
     """Ask for the argument; offer sin(-q1) for sin -q1."""
-    unexpected = unexpected_token(failure)
-    span = None if unexpected is None else _function(unexpected)
-    if unexpected is None or span is None:
+    if failure.terminal(1) == "FUNCTION":
+        span = failure.place(1)
+    elif [failure.terminal(back) for back in (2, 1, 0)] == ["FUNCTION", "LEFT", "RIGHT"]:
+        span = failure.place(2)
+    else:
         return None
-    name = failure.source[span[0] : span[1]]
-    return ExpressionError(
-        "function_without_argument",
-        f"The function {quoted(name)} has nothing to work on; "
-        "write its argument in brackets behind it.",
-        span,
-        _negative(failure, unexpected),
+    suggestion = None
+    if failure.terminal() == "MINUS" and failure.terminal(-1) == "NAME":
+        start, end = failure.span[0], failure.place(-1)[1]
+        suggestion = failure.replaced(f"({failure.source[start:end]})", (span[1], end))
+    message = (
+        f"The function {quoted(failure.source[slice(*span)])} has nothing to work on; "
+        "write its argument in brackets behind it."
     )
-
-
-def _function(unexpected: UnexpectedToken) -> Span | None:
-    if unexpected.before == "FUNCTION":
-        return unexpected.span(1)
-    empty = unexpected.before == "LEFT" and unexpected.terminal == "RIGHT" and unexpected.index > 1
-    if empty and unexpected.tokens[unexpected.index - 2][0] == "FUNCTION":
-        return unexpected.span(2)
-    return None
-
-
-def _negative(failure: Failure, unexpected: UnexpectedToken) -> str | None:
-    tokens, at = unexpected.tokens, unexpected.index
-    if unexpected.terminal != "MINUS" or at + 1 >= len(tokens) or tokens[at + 1][0] != "NAME":
-        return None
-    start, end = tokens[at][2], tokens[at + 1][3]
-    return failure.replaced(f"({failure.source[start:end]})", (tokens[at - 1][3], end))
+    return error(failure, "function_without_argument", message, suggestion, span)

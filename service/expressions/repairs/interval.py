@@ -2,8 +2,7 @@
 
 import re
 
-from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure
+from service.expressions.repairs.failure import Failure, Repair, error
 
 _BETWEEN = re.compile(
     r"[<>≤≥∈]|\.\.+|…|\\(?:leq?|geq?|lt|gt|in)(?![A-Za-z])|\bto\b|(?<=[0-9i])\s*:\s*(?=[-0-9])"
@@ -11,15 +10,10 @@ _BETWEEN = re.compile(
 _LIST = re.compile(r"\s*(?:\[[^\[\]()]*,[^\[\]()]*[\])]|\([^\[\]()]*,[^\[\]()]*\])\s*")
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+def repair(failure: Failure) -> Repair:
     """Ask for one value."""
-    if failure.cause == "beyond":
-        return None
-    if _LIST.fullmatch(failure.source):
-        span = (0, len(failure.source))
-    elif match := _BETWEEN.search(failure.source):
-        span = match.span()
-    else:
+    match = _LIST.fullmatch(failure.source) or _BETWEEN.search(failure.source)
+    if match is None:
         return None
     message = "This looks like a list or a range of values; write the one value that is asked for."
-    return ExpressionError("interval", message, span)
+    return error(failure, "interval", message, span=match.span())

@@ -2,9 +2,8 @@
 
 import re
 
-from service.expressions.errors import ExpressionError
 from service.expressions.parsing.lexer import OPERAND_ENDS
-from service.expressions.repairs.failure import Failure
+from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 _UNIT = re.compile(
     r"(?:k|c|m|d|µ|μ)?m|in|inch|inches|ft|foot|feet|(?:centi|milli)?met(?:er|re)s?|[°]?C|kg|s|N"
@@ -12,16 +11,15 @@ _UNIT = re.compile(
 _OPERANDS = OPERAND_ENDS - {"UNIT"}
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("name")
+def repair(failure: Failure) -> Repair:
     """Ask for the bare number; offer it for metres only, for cm and mm change its size."""
-    if failure.cause != "name" or failure.details["before"] not in _OPERANDS:
+    if failure.details["before"] not in _OPERANDS or not _UNIT.fullmatch(failure.written):
         return None
-    if _UNIT.fullmatch(failure.written) is None:
-        return None
-    metres = failure.written in {"m", "meter", "meters", "metre", "metres"}
     message = "Lengths are written without a unit, in the unit that the exercise gives."
-    if not metres:
+    if failure.written not in {"m", "meter", "meters", "metre", "metres"}:
         message += f" Convert from {failure.written} first."
+        return error(failure, "length_unit", message)
     start, end = failure.span
-    suggestion = f"{failure.source[:start].rstrip()}{failure.source[end:]}" if metres else None
-    return ExpressionError("length_unit", message, failure.span, suggestion)
+    number = failure.source[:start].rstrip() + failure.source[end:]
+    return error(failure, "length_unit", message, number)

@@ -1,20 +1,15 @@
 """The letter x for a product: 2 x q1."""
 
-from service.expressions.errors import ExpressionError
 from service.expressions.parsing.lexer import OPERAND_ENDS
-from service.expressions.repairs.failure import Failure
+from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("name")
+def repair(failure: Failure) -> Repair:
     """Offer * where a value stands on either side."""
-    if failure.cause != "name" or failure.details["before"] not in OPERAND_ENDS:
-        return None
     run, (start, end) = failure.details["run"], failure.span
-    if run[0] not in "xX" or not failure.source[end - len(run) + 1 :].strip():
+    behind = failure.source[end - len(run) + 1 :].strip()
+    if run[0] not in "xX" or not behind or failure.details["before"] not in OPERAND_ENDS:
         return None
-    return ExpressionError(
-        "letter_x",
-        "The letter x is a name; for a product write * instead.",
-        (start, start + 1),
-        failure.replaced("*", (start, start + 1)),
-    )
+    message, span = "The letter x is a name; for a product write * instead.", (start, start + 1)
+    return error(failure, "letter_x", message, failure.replaced("*", span), span)

@@ -2,14 +2,12 @@
 
 from unicodedata import digit
 
-from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, quoted
+from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("invalid_shorthand")
+def repair(failure: Failure) -> Repair:
     """Say why that joint has no angle; offer c12 for c123 where joint 3 alone slides."""
-    if failure.cause != "invalid_shorthand":
-        return None
     joint = failure.details["joint"]
     if joint in failure.vocabulary.turning:
         return None
@@ -20,9 +18,9 @@ def repair(failure: Failure) -> ExpressionError | None:
     )
     turning = _of_those_that_turn(failure)
     if turning is None:
-        return ExpressionError("not_revolute", message, failure.span)
+        return error(failure, "not_revolute", message)
     message += " Only joints that turn add to the angle."
-    return ExpressionError("not_revolute", message, failure.span, failure.replaced(turning))
+    return error(failure, "not_revolute", message, failure.replaced(turning))
 
 
 def _of_those_that_turn(failure: Failure) -> str | None:

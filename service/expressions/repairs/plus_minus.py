@@ -2,19 +2,16 @@
 
 import re
 
-from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure
+from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 _TYPED = re.compile(r"\+\s*/\s*-")
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("plus_minus", "grammar")
+def repair(failure: Failure) -> Repair:
     """Ask for one of the two."""
-    if failure.cause == "plus_minus":
-        span = failure.span
-    elif failure.cause == "grammar" and (match := _TYPED.search(failure.source)):
-        span = match.span()
-    else:
+    typed = _TYPED.search(failure.source) if failure.cause == "grammar" else None
+    if failure.cause == "grammar" and typed is None:
         return None
     message = "This sign stands for two values; write the one that you mean, with + or with -."
-    return ExpressionError("two_values", message, span)
+    return error(failure, "two_values", message, span=typed and typed.span())

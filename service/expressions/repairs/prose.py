@@ -2,11 +2,11 @@
 
 import re
 
-from service.expressions.errors import ExpressionError
 from service.expressions.parsing.words import split
-from service.expressions.repairs.failure import Failure
+from service.expressions.repairs.failure import Failure, Repair, error
 
 _WORD = re.compile(r"[A-Za-zÀ-ÿ]+")
+_FORMULA = re.compile(r"[-+*/^=(){}\[\]_0-9\\]")
 _PHRASES = {
     *("n/a", "n.a.", "na", "none", "null", "nil", "variable", "var", "unknown", "tbd", "idk"),
     *("any", "free", "same", "constant", "const", "undefined", "joint variable", "varies"),
@@ -16,27 +16,21 @@ _PHRASES = {
 _NUMBERS = {"zero": "0", "one": "1", "two": "2", "ninety": "90", "half": "1/2", "nil": "0"}
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+def repair(failure: Failure) -> Repair:
     """Ask for the value itself."""
-    if failure.cause == "beyond":
-        return None
     text = failure.source.strip().lower()
     number = _NUMBERS.get(text)
     if text not in _PHRASES and number is None and not _is_prose(failure):
         return None
-    return ExpressionError(
-        "prose",
-        "These are words; write the value as a number or a formula, for example 0, l1 or theta1.",
-        (0, len(failure.source)),
-        number,
+    message = (
+        "These are words; write the value as a number or a formula, for example 0, l1 or theta1."
     )
+    return error(failure, "prose", message, number, (0, len(failure.source)))
 
 
 def _is_prose(failure: Failure) -> bool:
     """Whether the text holds two words or more that mean nothing here, and no formula."""
-    if failure.cause != "name" or "\\" in failure.source:
+    if failure.cause != "name" or _FORMULA.search(failure.source):
         return False
     words = [word for word in _WORD.findall(failure.source) if len(word) > 1]
-    strange = [word for word in words if split(word, failure.vocabulary) is None]
-    formula = re.search(r"[-+*/^=(){}\[\]_0-9]", failure.source)
-    return len(strange) > 1 and formula is None
+    return sum(split(word, failure.vocabulary) is None for word in words) > 1

@@ -2,8 +2,8 @@
 
 import re
 
-from service.expressions.errors import ExpressionError, Span
-from service.expressions.repairs.failure import Failure
+from service.expressions.errors import Span
+from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 _LETTER = "[oO]"
 _STYLED = rf"(?:\\[a-z]+\s*\{{\s*{_LETTER}\s*\}}|{_LETTER})"
@@ -11,24 +11,19 @@ _STYLED = rf"(?:\\[a-z]+\s*\{{\s*{_LETTER}\s*\}}|{_LETTER})"
 _RAISED = re.compile(rf"\^\s*(?:\{{\s*{_STYLED}\s*\}}|{_STYLED})|(?<=[0-9])\s*o")
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("raised_zero", "name")
+def repair(failure: Failure) -> Repair:
     """Offer the degree sign; 90^0 could be a power as well, so name both."""
-    start, end = failure.span
-    message = "Degrees are written with the sign °, or with deg: 90° or 90deg."
-    if failure.cause == "name":
-        raised = _raised_letter(failure)
-        if raised is None:
-            return None
-        start, end = raised
-    elif failure.cause != "raised_zero":
+    span = _raised_letter(failure) if failure.cause == "name" else failure.span
+    if span is None:
         return None
-    elif failure.details.get("power"):
+    message = "Degrees are written with the sign °, or with deg: 90° or 90deg."
+    if failure.details.get("power"):
         message = (
             "A 0 raised behind a number looks like the sign of degrees. If degrees are meant, "
             "write 90° or 90deg; if it is a power, write 1."
         )
-    suggestion = failure.replaced("°", (start, end))
-    return ExpressionError("raised_zero", message, (start, end), suggestion)
+    return error(failure, "raised_zero", message, failure.replaced("°", span), span)
 
 
 def _raised_letter(failure: Failure) -> Span | None:

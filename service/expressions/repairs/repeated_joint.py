@@ -1,19 +1,15 @@
 """c11, which names one joint twice."""
 
-from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, quoted
+from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("invalid_shorthand")
+def repair(failure: Failure) -> Repair:
     """Ask for the sum to be written out."""
-    if (
-        failure.cause != "invalid_shorthand"
-        or failure.details["joint"] not in failure.vocabulary.turning
-    ):
+    if failure.details["joint"] not in failure.vocabulary.turning:
         return None
-    return ExpressionError(
-        "repeated_joint",
+    message = (
         f"{quoted(failure.written)} names one joint twice. "
-        "Write the sum of angles out, for example cos(2*q1).",
-        failure.span,
+        "Write the sum of angles out, for example cos(2*q1)."
     )
+    return error(failure, "repeated_joint", message)

@@ -1,21 +1,16 @@
 """Two values in place of one: 2 3, q1, q2, a second line."""
 
-from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, unexpected_token
+from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("values", "grammar")
+def repair(failure: Failure) -> Repair:
     """Ask for one value, or for an operator between them."""
-    unexpected = unexpected_token(failure)
-    span = failure.span
-    if unexpected is not None:
-        after_value = unexpected.terminal != "COMMA" and unexpected.index
-        span = (unexpected.span(1)[0], span[1]) if after_value else span
-    elif failure.cause != "values":
-        return None
-    return ExpressionError(
-        "two_values",
+    start, end = failure.span
+    if failure.terminal(1) and failure.terminal() != "COMMA":
+        start = failure.place(1)[0]
+    message = (
         "Two values stand side by side here. Write one value, or put an operator "
-        "such as * between them.",
-        span,
+        "such as * between them."
     )
+    return error(failure, "two_values", message, span=(start, end))

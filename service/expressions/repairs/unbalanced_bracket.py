@@ -1,51 +1,41 @@
 """A bracket without its partner."""
 
-from service.expressions.errors import ExpressionError, Span
+from service.expressions.errors import Span
 from service.expressions.parsing.brackets import PARTNERS
 from service.expressions.parsing.lexer import END, OPERAND_ENDS
-from service.expressions.repairs.failure import (
-    Failure,
-    UnexpectedToken,
-    position,
-    quoted,
-    unexpected_token,
-)
+from service.expressions.repairs.failure import Failure, Repair, answers, error, position, quoted
 
 _BEFORE_BRACKET = OPERAND_ENDS | {"LEFT"}
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("unclosed", "grammar")
+def repair(failure: Failure) -> Repair:
     """Close the open brackets at the end of the text, or leave out the one that closes nothing."""
     if failure.cause == "unclosed":
         return _error(failure, failure.span, f"{failure.source}}}")
-    unexpected = unexpected_token(failure)
-    if unexpected is None or (unexpected.before and unexpected.before not in _BEFORE_BRACKET):
+    if failure.terminal(1) and failure.terminal(1) not in _BEFORE_BRACKET:
         return None
-    opened = _opened(unexpected)
-    if unexpected.terminal == "RIGHT" and not opened:
-        return _error(failure, unexpected.span(), failure.replaced("", unexpected.span()))
-    if unexpected.terminal == END and opened:
+    opened = _opened(failure)
+    if failure.terminal() == "RIGHT" and not opened:
+        return _error(failure, failure.span, failure.replaced(""))
+    if failure.terminal() == END and opened:
         closing = "".join(PARTNERS.get(failure.source[start], ")") for start, _ in opened[::-1])
         return _error(failure, opened[-1], f"{failure.source.rstrip()}{closing}")
     return None
 
 
-def _opened(unexpected: UnexpectedToken) -> list[Span]:
+def _opened(failure: Failure) -> list[Span]:
     opened: list[Span] = []
-    for token in unexpected.tokens[: unexpected.index]:
-        if token[0] == "LEFT":
-            opened.append(token[2:])
-        elif token[0] == "RIGHT" and opened:
+    for terminal, _, start, end in failure.details["tokens"][: failure.details["index"]]:
+        if terminal == "LEFT":
+            opened.append((start, end))
+        elif terminal == "RIGHT" and opened:
             opened.pop()
     return opened
 
 
-def _error(failure: Failure, span: Span, suggestion: str) -> ExpressionError:
-    bracket = failure.source[span[0] : span[1]]
+def _error(failure: Failure, span: Span, suggestion: str) -> Repair:
+    bracket = failure.source[slice(*span)]
     partner = "opening" if bracket in {")", "]", "}"} else "closing"
-    return ExpressionError(
-        "unbalanced_bracket",
-        f"The {quoted(bracket)} at {position(span)} has no {partner} bracket.",
-        span,
-        suggestion,
-    )
+    message = f"The {quoted(bracket)} at {position(span)} has no {partner} bracket."
+    return error(failure, "unbalanced_bracket", message, suggestion, span)

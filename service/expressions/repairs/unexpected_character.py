@@ -1,13 +1,9 @@
 """A character that means nothing here."""
 
-from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, quoted
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+def repair(failure: Failure) -> Repair:
     """Name it."""
-    return ExpressionError(
-        "unexpected_character",
-        f"The character {quoted(failure.written)} means nothing in an expression.",
-        failure.span,
-    )
+    message = f"The character {quoted(failure.written)} means nothing in an expression."
+    return error(failure, "unexpected_character", message)

@@ -1,13 +1,11 @@
 """(q1 + 90)deg: a variable is not a number of degrees."""
 
-from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure
+from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("unit_on_variable")
+def repair(failure: Failure) -> Repair:
     """Ask for the unit behind the number."""
-    if failure.cause != "unit_on_variable":
-        return None
     start, end = failure.span
     inside = failure.details["variable"]
     # The unit stands behind nothing but the variable: q1° is the angle q1.
@@ -16,10 +14,8 @@ def repair(failure: Failure) -> ExpressionError | None:
     suggestion = None
     if alone and rest in {"°", "deg", "degree", "degrees", "rad", "radian", "radians"}:
         suggestion = failure.replaced("", (inside[1], end))
-    return ExpressionError(
-        "unit_on_variable",
+    message = (
         f"The unit stands behind {failure.details['name']}, which has its own. "
-        "Put the unit directly behind the number, for example q1 + 90deg.",
-        failure.span,
-        suggestion,
+        "Put the unit directly behind the number, for example q1 + 90deg."
     )
+    return error(failure, "unit_on_variable", message, suggestion)

@@ -1,7 +1,6 @@
 """Functions that are not read: sec, cot, ln, hypot."""
 
-from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, quoted
+from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
 from service.expressions.vocabulary.functions import ARITY
 
 _RECIPROCALS = {"sec": "cos", "csc": "sin", "cosec": "sin", "cot": "tan", "ctg": "tan"}
@@ -18,9 +17,10 @@ _OTHERS = {
 }
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("name")
+def repair(failure: Failure) -> Repair:
     """Offer 1/cos(x) for sec(x), and the known name for another spelling."""
-    if failure.cause != "name" or not failure.details["called"]:
+    if not failure.details["called"]:
         return None
     name = failure.details["run"]
     message = f"The function {quoted(failure.written)} is not known here."
@@ -35,7 +35,7 @@ def repair(failure: Failure) -> ExpressionError | None:
         message += f" These are: {', '.join(ARITY)}."
     else:
         return None
-    return ExpressionError("unknown_function", message, failure.span, suggestion)
+    return error(failure, "unknown_function", message, suggestion)
 
 
 def _reciprocal(failure: Failure, name: str) -> str | None:

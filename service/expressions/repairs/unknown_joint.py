@@ -3,10 +3,10 @@
 import re
 
 from service.expressions.characters import greek
-from service.expressions.errors import ExpressionError, Span
+from service.expressions.errors import Span
 from service.expressions.parsing.words import split
 from service.expressions.printing.symbol_names import symbol_latex
-from service.expressions.repairs.failure import Failure, quoted
+from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
 from service.expressions.vocabulary.symbols import Vocabulary, normal_form
 
 _JOINT = re.compile(rf"(?P<stem>[A-Za-z{greek.CLASS}]+?)(?P<index>[0-9]+)(?P<rest>.*)")
@@ -14,11 +14,10 @@ _STEMS = frozenset({"q", "theta", "θ", "th"})
 _AS_TYPED = re.compile(r"[^0-9₀-₉]*(?:[0-9]+|[₀-₉]+)(?:\s*\})?")
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("name")
+def repair(failure: Failure) -> Repair:
     """Say which joints there are; offer the sum of angles for theta12."""
     vocabulary = failure.vocabulary
-    if failure.cause != "name":
-        return None
     match = _JOINT.fullmatch(normal_form(failure.details["run"]))
     if match is None or match["stem"] not in _STEMS or not _joints(vocabulary):
         return None
@@ -37,7 +36,7 @@ def repair(failure: Failure) -> ExpressionError | None:
         start, end = span
         alone = failure.source[start - 1 : start] == "(" and failure.source[end : end + 1] == ")"
         suggestion = failure.replaced(total if alone else f"({total})", span)
-    return ExpressionError("unknown_joint", message, span, suggestion)
+    return error(failure, "unknown_joint", message, suggestion, span)
 
 
 def _place(failure: Failure, goes_on: bool) -> Span:

@@ -2,29 +2,27 @@
 
 import re
 
-from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure, quoted
+from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
 from service.expressions.repairs.nearest_name import nearest
 from service.expressions.vocabulary.symbols import Vocabulary, normal_form
 
 _INDEXED = re.compile(r"([^0-9]+)[0-9]+")
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("name")
+def repair(failure: Failure) -> Repair:
     """Offer the nearest declared name, or list those that differ in their index alone."""
-    if failure.cause != "name":
-        return None
     run = failure.details["run"]
     message = f"The name {quoted(failure.written)} is not known in this exercise."
     siblings = _siblings(normal_form(run), failure.vocabulary)
     if siblings:
         message += f" These are: {', '.join(siblings)}."
-        return ExpressionError("unknown_symbol", message, failure.span)
+        return error(failure, "unknown_symbol", message)
     known = nearest(run, failure.vocabulary, failure.details["called"])
-    if known is not None:
-        message += f" Did you mean {known}?"
-    suggestion = None if known is None else failure.replaced(known)
-    return ExpressionError("unknown_symbol", message, failure.span, suggestion)
+    if known is None:
+        return error(failure, "unknown_symbol", message)
+    message += f" Did you mean {known}?"
+    return error(failure, "unknown_symbol", message, failure.replaced(known))
 
 
 def _siblings(name: str, vocabulary: Vocabulary) -> list[str]:

@@ -1,18 +1,16 @@
 """atan2 of one value, sin of two, atan(y, x), and cos(0,5) with a decimal comma."""
 
-from service.expressions.errors import ExpressionError
-from service.expressions.repairs.failure import Failure
+from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 
-def repair(failure: Failure) -> ExpressionError | None:
+@answers("arguments")
+def repair(failure: Failure) -> Repair:
     """Count the arguments; offer atan2 for atan(y, x), and a point for a decimal comma."""
-    if failure.cause != "arguments":
-        return None
     name, wanted = failure.details["name"], failure.details["wanted"]
     places = failure.details["places"]
     if len(places) == 2 * wanted and (point := _with_points(failure)) is not None:
         message = "A comma separates values here. If this is one number, write it with a point."
-        return ExpressionError("decimal_comma", message, (places[0][1], places[1][0]), point)
+        return error(failure, "decimal_comma", message, point, (places[0][1], places[1][0]))
     message = f"The function {name} takes {_count(wanted)}, but {_count(len(places))} stand here."
     suggestion = None
     if len(places) == 1:
@@ -21,7 +19,7 @@ def repair(failure: Failure) -> ExpressionError | None:
         suggestion = failure.replaced("atan2", failure.details["function"])
     if name == "atan2":
         message += " Write atan2(y, x)."
-    return ExpressionError("wrong_number_of_arguments", message, failure.span, suggestion)
+    return error(failure, "wrong_number_of_arguments", message, suggestion)
 
 
 def _with_points(failure: Failure) -> str | None:

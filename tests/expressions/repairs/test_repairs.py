@@ -31,7 +31,7 @@ def vocabulary(repair: str) -> Vocabulary:
 
 
 def test_every_rule_is_registered_once_and_has_cases() -> None:
-    registered = [str(rule.__module__).rsplit(".", 1)[1] for rule in RULES]
+    registered = [rule.__name__.rsplit(".", 1)[1] for rule in RULES]
     assert sorted(registered) == sorted(MODULES - HELPERS) == NAMES
     assert {name for name, case in CASES if case.code} == set(NAMES)
     assert {name for name, case in CASES if not case.code} == set(NAMES)
