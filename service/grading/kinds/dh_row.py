@@ -2,7 +2,8 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,43 +31,34 @@ LABEL = "1"
 NONE = "none"
 
 
-@dataclass(frozen=True, slots=True)
-class DhRowAnswer:
-    """The row that was handed in; None for the answer that there is none."""
-
-    row: HandedInRow | None
+# A row, or the answer that there is none.
+RowOrNone = HandedInRow | Literal["none"]
 
 
-def read(part: DhRowSpec, answer: object, grading: Grading) -> DhRowAnswer:
+def read(part: DhRowSpec, answer: object, grading: Grading) -> RowOrNone:
     """The row, or "none"."""
-    return DhRowAnswer(None if _says_none(answer) else _read_row(answer, grading))
+    return "none" if _says_none(answer) else _read_row(answer, grading)
 
 
-def judge(part: DhRowSpec, answer: DhRowAnswer, grading: Grading) -> Judged:
+def judge(part: DhRowSpec, answer: RowOrNone, grading: Grading) -> Judged:
     """One row, of four cells or of one for "none"."""
     transform = np.moveaxis(given_values(part, grading), -1, 0)
     broken = violated(transform, part.convention, grading.exercise.length_scale)
-    if answer.row is None:
-        cells: tuple[CellReport, ...] = (_none_cell(right=bool(broken)),)
+    if isinstance(answer, str):
+        verdict = Verdict.CORRECT if broken else Verdict.INCORRECT
+        cells: tuple[CellReport, ...] = (CellReport(NONE, verdict),)
         findings = [] if broken else [has_a_row(part.convention)]
     elif broken:
-        cells = _cells(answer.row, np.full(len(COLUMNS), int(Match.DIFFERENT)), {}, grading)
+        cells = _cells(answer, np.full(len(COLUMNS), int(Match.DIFFERENT)), {}, grading)
         findings = broken
     else:
-        cells, findings = _against_the_row(answer.row, transform, part, grading)
+        cells, findings = _against_the_row(answer, transform, part, grading)
     messages = grading.visible(tuple(findings), LABEL)
     return Judged((row_report(LABEL, part.points, cells, messages),))
 
 
-def _none_cell(*, right: bool) -> CellReport:
-    return CellReport(NONE, Verdict.CORRECT if right else Verdict.INCORRECT)
-
-
 def _cells(
-    written: HandedInRow,
-    found: NDArray[np.int_],
-    slips: Mapping[int, Finding],
-    grading: Grading,
+    written: HandedInRow, found: NDArray[np.int_], slips: Mapping[int, Finding], grading: Grading
 ) -> tuple[CellReport, ...]:
     """The four cells; ``found`` is the Match of each."""
     return tuple(
