@@ -1,4 +1,4 @@
-"""The work that one submission may set going, counted and never timed.
+"""The work that the reading of one submission may set going, counted and never timed.
 
 Counted work is the same on every machine, so that the same submission gives the same report.
 """
