@@ -8,12 +8,12 @@ In the order in which they are used:
 
   - ``few_cells``: the table as written, or with one or two cells repaired; of several repairs
     ``slip_likelihood`` finds the likeliest
-  - ``wrong_convention_or_unit``: the intended table, if the convention or the unit was mistaken
+  - ``wrong_convention_or_unit``: the intended table, if the convention or the unit was mistaken;
+    ``written_table`` holds these misconceptions
   - ``kinematics.frame_choice``: a search row by row; ``constants`` takes the table apart for it,
     ``validity`` names the targets of its rows
 
 - ``best_roles``: of several ways to pair rows and joints, the one with the nearest valid table
-
 - ``remarks``: where the student's frames are valid but not the reference's
 
 ``reference`` holds the reference in the forms that the others need; ``validity`` also tests many
