@@ -4,7 +4,7 @@ import math
 import re
 from typing import Any, Final
 
-from service.expressions.characters.normalise import Characters, is_separator
+from service.expressions.characters.normalise import BREAKS, Characters
 from service.expressions.characters.unicode import CLOSE, MARKER, OPEN
 from service.expressions.errors import Note, Span, UnreadableError
 from service.expressions.parsing.brackets import WRAPPING, Brackets
@@ -41,15 +41,8 @@ OPERAND_ENDS: Final = frozenset({"NUMBER", "NAME", "RIGHT", "CLOSE", "UNIT"})
 _TIGHT_STARTS: Final = frozenset({"NAME", "LEFT", "OPEN"})
 
 
-def tokenise(
-    source: str, characters: Characters, vocabulary: Vocabulary, *, degrees: bool, notes: list[Note]
-) -> list[Token]:
-    """The tokens of ``characters``, with END last. Raises UnreadableError."""
-    return _Lexer(source, characters, vocabulary, degrees, notes).run()
-
-
-class _Lexer:
-    """One pass over the characters."""
+class Lexer:
+    """One pass over the ``characters`` of ``source``."""
 
     __slots__ = (
         "brackets", "degrees", "ends", "fraction_end", "has_separators", "indices", "last", "notes",
@@ -61,6 +54,7 @@ class _Lexer:
         source: str,
         characters: Characters,
         vocabulary: Vocabulary,
+        *,
         degrees: bool,
         notes: list[Note],
     ) -> None:
@@ -80,6 +74,7 @@ class _Lexer:
         self.indices: list[tuple[Indexed, str, Span]] = []
 
     def run(self) -> list[Token]:
+        """The tokens, with END last. Raises UnreadableError."""
         text, match, position = self.text, _TOKEN.match, 0
         in_place, length = self.starts is None, len(text)
         while position < length:
@@ -126,7 +121,7 @@ class _Lexer:
             tokens = self.tokens
             before = tokens[-1]
             if terminal == "NUMBER" or (
-                self.has_separators and is_separator(self.source[before[3] : start])
+                self.has_separators and not BREAKS.isdisjoint(self.source[before[3] : start])
             ):
                 glued = before[0] == "NUMBER" and before[3] == start
                 raise UnreadableError("values", (before[2], end), number=glued)
@@ -264,7 +259,8 @@ class _Lexer:
 
     def _word(self, run: str, start: int, end: int) -> int:
         """Read a run of letters and digits; return where to go on."""
-        if run in MODULES and self.text[end : end + 1] == "." and self._letter(end + 1):
+        following = self.text[end : end + 2]
+        if run in MODULES and following[:1] == "." and following[1:].isalpha():
             return self._after_module(end + 1)
         pieces = split(run, self.vocabulary)
         if pieces is None:
@@ -288,9 +284,6 @@ class _Lexer:
             else:
                 raise UnreadableError("invalid_shorthand", (a, b), joint=piece.joint)
         return end
-
-    def _letter(self, at: int) -> bool:
-        return self.text[at : at + 1].isalpha()
 
     def _after_module(self, at: int) -> int:
         """Read what follows ``np.``, where radians(90) is 90 degrees; return where to go on."""
@@ -338,8 +331,7 @@ class _Lexer:
                 raise UnreadableError(
                     "ambiguous_shorthand", (a, b), function=piece.word, names=names
                 )
-        if piece.ambiguous or self.source[a] in "CS":
-            self.notes.shorthand(piece, a, b)
+        self.notes.shorthand(piece, a, b)
         self._operand("NAME", Call(piece.word, (total,), a, b), a, b)
 
     def _function(self, name: str, at: int, end: int, a: int, b: int) -> int:
@@ -353,13 +345,11 @@ class _Lexer:
         if raised is not None:
             exponent = _EXPONENT.match(self.text, raised.end())
             if exponent is None or len(exponent[exponent.lastindex or 0]) > 4:
+                end = self._span(at, raised.end())[1]
                 raise UnreadableError(
-                    "function_power",
-                    (a, self._span(at, raised.end())[1]),
-                    name=name,
-                    function=(a, b),
+                    "function_power", (a, end), name=name, function=(a, b),
                     exponent=self.text[raised.end() :],
-                )
+                )  # fmt: skip
             power = int(exponent[exponent.lastindex or 0])
             end = exponent.end()
         self._operand("FUNCTION", (name, power), a, b)
@@ -391,7 +381,6 @@ class _Lexer:
 
 def _sum_of(symbols: tuple[Symbol, ...], a: int, b: int) -> Node:
     total: Node = SymbolNode(symbols[0], a, b)
-    if len(symbols) > 1:
-        for symbol in symbols[1:]:
-            total = Binary("+", total, SymbolNode(symbol, a, b), a, b)
+    for symbol in symbols[1:]:
+        total = Binary("+", total, SymbolNode(symbol, a, b), a, b)
     return total
