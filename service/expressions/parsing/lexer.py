@@ -157,9 +157,9 @@ class Lexer:
 
     def _operator(self, text: str, start: int, end: int) -> None:
         span = self._span(start, end)
-        if text == "(":
-            self._open(text, span)
-        elif text == ")":
+        if text in "([{":
+            self._open(text, start, span)
+        elif text in ")]}":
             self._close(text, span)
         elif text == "*" and self._is_marker(start, end):
             self.notes.marker(span)
@@ -169,22 +169,6 @@ class Lexer:
             self._emit("UNIT", "deg", *span)
         elif text == "√":
             self._operand("ROOT", None, *span)
-        else:
-            self._other(text, start, span)
-
-    def _other(self, text: str, start: int, span: Span) -> None:
-        """Read a rarer operator: other brackets, bars, fractions and raised stars."""
-        if text == "[" and self.last in OPERAND_ENDS:
-            index = INDEX.match(self.text, start)
-            if index is not None:
-                place = self._span(start, index.end())
-                raise UnreadableError("index", place, reason="no_stem", digits=index[1])
-        if text == "{" and self.last == "FUNCTION" and self._is_wrapped(start):
-            self.brackets.open(text, span, WRAPPING)
-        elif text in "[{":
-            self._open(text, span)
-        elif text in "]}":
-            self._close(text, span)
         elif text == "|":
             self._bar(span)
         elif text == MARKER:
@@ -210,9 +194,16 @@ class Lexer:
                 return at > inner and self.text[at + 1 :].lstrip().startswith("}")
         return False
 
-    def _open(self, bracket: str, span: Span) -> None:
-        self.brackets.open(bracket, span, len(self.tokens))
-        self._operand("LEFT", None, *span)
+    def _open(self, bracket: str, start: int, span: Span) -> None:
+        is_index = bracket == "[" and self.last in OPERAND_ENDS
+        if is_index and (index := INDEX.match(self.text, start)):
+            place = self._span(start, index.end())
+            raise UnreadableError("index", place, reason="no_stem", digits=index[1])
+        if bracket == "{" and self.last == "FUNCTION" and self._is_wrapped(start):
+            self.brackets.open(bracket, span, WRAPPING)
+        else:
+            self.brackets.open(bracket, span, len(self.tokens))
+            self._operand("LEFT", None, *span)
 
     def _bar(self, span: Span) -> None:
         """Read |x|: a bar behind an operand closes, any other opens."""

@@ -121,7 +121,7 @@ def _candidates(run: str, start: int, vocabulary: Vocabulary) -> list[tuple[Piec
 def _shorthand(run: str, start: int, vocabulary: Vocabulary) -> Piece | None:
     """The shorthand of joint angles at ``start``, if any: c12, s3, cθ1, cosθ12 or sin12."""
     match = _SHORTHAND.match(run, start)
-    if match is None or not (vocabulary.turning or vocabulary.sliding):
+    if match is None or not vocabulary.joints:
         return None
     function, angle, index = match.group("function", "angle", "index")
     spelled = len(function) > 1
@@ -163,9 +163,8 @@ def _of_angle(run: str, start: int, vocabulary: Vocabulary) -> Piece | None:
 def _joints(index: str, vocabulary: Vocabulary) -> tuple[int, ...]:
     """The joints that ``index`` names: one digit each, or else one joint from 10 on."""
     digits = tuple(map(int, index))
-    known = vocabulary.turning.keys() | vocabulary.sliding.keys()
-    if len(set(digits)) == len(digits) and known.issuperset(digits):
+    if len(set(digits)) == len(digits) and set(digits).issubset(vocabulary.joints):
         return digits
     # Twelve rows are the most that a table has; a longer index is no single joint.
     whole = int(index) if len(index) == 2 else -1
-    return (whole,) if whole in known else digits
+    return (whole,) if whole in vocabulary.joints else digits
