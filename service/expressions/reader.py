@@ -13,7 +13,7 @@ from service.expressions.errors import ExpressionError, Note, UnreadableError
 from service.expressions.evaluation.samples import SampleArray, SymbolValues, compile_tree
 from service.expressions.limits import LIMITS
 from service.expressions.parsing.degrees import in_degrees, without_degree_functions
-from service.expressions.parsing.lexer import tokenise
+from service.expressions.parsing.lexer import Lexer
 from service.expressions.parsing.parser import parse
 from service.expressions.parsing.tree_builder import Builder
 from service.expressions.printing.latex import to_latex
@@ -171,7 +171,6 @@ def read(
 
 
 def _number_as_text(number: int | float) -> str:
-    """A JSON number as text."""
     if isinstance(number, bool):
         raise _explained("", UnreadableError("boolean", (0, 0)), _NO_SYMBOLS)
     # Python refuses to write out an integer of several thousand digits.
@@ -232,7 +231,7 @@ def _parsed(text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool) ->
     if not characters.text or characters.text.isspace():
         raise UnreadableError("empty", (0, len(text)))
     notes: list[Note] = []
-    tokens = tokenise(text, characters, vocabulary, degrees=degrees, notes=notes)
+    tokens = Lexer(text, characters, vocabulary, degrees=degrees, notes=notes).run()
     builder = Builder(text, notes, degrees=degrees)
     tree = parse(tokens, builder)
     symbols = _shared(_used_symbols(tree))

@@ -6,11 +6,12 @@ element: ``[c1 -s1]`` has two, ``[c1 - s1]`` and ``[c1 -  s1]`` one.
 
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 from service.expressions.vocabulary.functions import SPELLINGS
 from service.grids.limits import GRID_LIMITS
-from service.grids.pairs import pairs
+from service.grids.pairs import outside, pairs
 from service.grids.source_text import SourceText
 
 _SIGNS: Final = "+-−–"
@@ -68,20 +69,5 @@ def continues(left: str, right: str) -> bool:
 
 def _words(text: str) -> list[tuple[int, int]]:
     """The [start, end) of each word between blanks; blanks in brackets separate nothing."""
-    ends = pairs(text)
-    found: list[tuple[int, int]] = []
-    start: int | None = None
-    i = 0
-    while i < len(text):
-        if text[i].isspace():
-            if start is not None:
-                found.append((start, i))
-                start = None
-            i += 1
-            continue
-        if start is None:
-            start = i
-        i = ends.get(i, i + 1)
-    if start is not None:
-        found.append((start, len(text)))
-    return found
+    blanks = [i for i in outside(text, pairs(text)) if text[i].isspace()]
+    return [(a + 1, b) for a, b in pairwise([-1, *blanks, len(text)]) if a + 1 < b]

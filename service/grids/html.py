@@ -16,16 +16,14 @@ _START: Final = re.compile(r"<(?:table|tbody|thead|tr)(?![A-Za-z0-9-])", re.IGNO
 _NAME: Final = re.compile(r"</?([A-Za-z][A-Za-z0-9-]{0,30})")
 _ENTITY: Final = re.compile(r"&(?:#[0-9]{1,7}|#[xX][0-9A-Fa-f]{1,6}|[A-Za-z][A-Za-z0-9]{1,31});")
 _SPAN: Final = re.compile(r"(?:col|row)span\s{0,4}=\s{0,4}[\"']?\s{0,4}([0-9]{1,4})", re.IGNORECASE)
-# fmt: off
 _STYLING: Final = frozenset({
     "a", "abbr", "b", "bdi", "big", "code", "em", "font", "i", "kbd", "mark", "nobr", "p", "small",
     "span", "strong", "tt", "u", "var", "div", "wbr",
-})
+})  # fmt: skip
 _LAYOUT: Final = frozenset({
     "html", "body", "table", "thead", "tbody", "tfoot", "caption", "colgroup", "col", "tr", "td",
     "th",
-})
-# fmt: on
+})  # fmt: skip
 _SKIPPED: Final = frozenset({"style", "script", "caption"})
 _MARK: Final = re.compile("<(?=[/!A-Za-z])|&")
 _DEGREE_SIGNS: Final = frozenset({"o", "O", "0", "°", "º", "∘", "˚"})

@@ -28,7 +28,7 @@ def lines_of(content: SourceText) -> list[SourceText] | None:
         if text[i] in CLOSES:
             line = content.cut(i + 1, ends[i] - 1)
             # (a + b), (c + d) are values in round brackets; (a, b), (c, d) are rows.
-            if text[i] == "(" and len(split(line, ",", strict_pairs(line))) == 1:
+            if text[i] == "(" and len(split(line, ",")) == 1:
                 return None
             if len(lines) > GRID_LIMITS.rows:
                 message = f"There are too many rows here; at most {GRID_LIMITS.rows} are read."
@@ -74,7 +74,7 @@ def flat(content: SourceText, matrix: WrittenMatrix) -> list[list[SourceText]]:
 
 
 def _values(line: SourceText) -> list[SourceText]:
-    pieces = split(line, ",", strict_pairs(line))
+    pieces = split(line, ",")
     if len(pieces) == 1:
         # NumPy prints its arrays with blanks.
         return list(split_blanks(line).elements)

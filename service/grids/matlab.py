@@ -3,7 +3,7 @@
 from service.expressions.errors import Note
 from service.grids.blanks import split_blanks
 from service.grids.grid import GridError
-from service.grids.pairs import split, strict_pairs
+from service.grids.pairs import split
 from service.grids.source_text import SourceText
 
 
@@ -12,9 +12,9 @@ def rows(content: SourceText) -> tuple[list[list[SourceText]], tuple[Note, ...]]
 
     Raises GridError where commas and blanks separate values and both readings make a matrix.
     """
-    lines = split(content, ";\r\n", strict_pairs(content))
+    lines = split(content, ";\r\n")
     lines = [line.strip() for line in lines if line.text.strip(" \t,")]
-    by_commas = [_without_last_empty(split(line, ",", strict_pairs(line))) for line in lines]
+    by_commas = [_without_last_empty(split(line, ",")) for line in lines]
     by_blanks, signs = _by_blanks(by_commas)
     if list(map(len, by_commas)) == list(map(len, by_blanks)):
         return by_commas, ()

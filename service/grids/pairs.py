@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Final
 
 from service.grids.grid import GridError
@@ -89,23 +90,11 @@ def outside(text: str, ends: dict[int, int]) -> Iterator[int]:
             i += 1
 
 
-def split(
-    source: SourceText, separators: str, ends: dict[int, int], offset: int = 0
-) -> list[SourceText]:
+def split(source: SourceText, separators: str) -> list[SourceText]:
     """The pieces between ``separators`` that stand in no brackets and no quotes.
 
-    ``ends`` may be those of a longer text in which ``source`` begins at ``offset``.
+    Raises GridError as ``strict_pairs`` does.
     """
     text = source.text
-    pieces: list[SourceText] = []
-    start = i = 0
-    while i < len(text):
-        if i + offset in ends:
-            i = ends[i + offset] - offset
-            continue
-        if text[i] in separators:
-            pieces.append(source.cut(start, i))
-            start = i + 1
-        i += 1
-    pieces.append(source.cut(start, len(text)))
-    return pieces
+    places = [i for i in outside(text, strict_pairs(source)) if text[i] in separators]
+    return [source.cut(a + 1, b) for a, b in pairwise([-1, *places, len(text)])]

@@ -42,15 +42,6 @@ class WrittenMatrix:
     shape: tuple[int, int] | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class _Head:
-    """The begin of a matrix: the ``start`` of its first bracket, or of the call that makes it."""
-
-    start: int
-    call: str = ""
-    inside: int = 0
-
-
 def begins_as_matrix(text: str) -> bool:
     """Whether the text begins with a matrix in brackets, after harmless lines and a name."""
     plain = _without_remarks(SourceText.of(text)).text
@@ -66,11 +57,11 @@ def unwrap(source: SourceText, calls: int = 3) -> WrittenMatrix:
     head = _head(source.text)
     if head is None:
         raise GridError("no_grid", "No matrix begins here.", source.whole)
-    source = source.cut(head.start, len(source.text)).strip(_TAIL)
-    if head.call:
-        return _unwrap_call(source, head, calls)
-    ends = strict_pairs(source)
-    return WrittenMatrix(tuple(_groups(source, ends)))
+    start, call = head
+    source = source.cut(start, len(source.text)).strip(_TAIL)
+    if call:
+        return _unwrap_call(source, call, calls)
+    return WrittenMatrix(tuple(_groups(source)))
 
 
 def _without_remarks(source: SourceText) -> SourceText:
@@ -97,7 +88,8 @@ def _without_remarks(source: SourceText) -> SourceText:
     return joined([*pieces, source.cut(start, len(text))], source.whole[0])
 
 
-def _head(text: str) -> _Head | None:
+def _head(text: str) -> tuple[int, re.Match[str] | None] | None:
+    """The place where a matrix begins, with its first bracket or with the call that makes it."""
     at = 0
     while at < len(text) and (line := _HARMLESS.match(text, at)):
         at = line.end()
@@ -107,14 +99,14 @@ def _head(text: str) -> _Head | None:
     if call := _CALL.match(text, at):
         name = call[1].rpartition(".")[2]
         if name in MAKERS or text[call.end()] == "[":
-            return _Head(call.start(1), call[1], call.end())
+            return call.start(1), call
     at += len(text[at:]) - len(text[at:].lstrip())
     if _NESTED.match(text, at) is None:
         return None
     # Round brackets begin many an expression; they are a list only if they hold all there is.
     if text[at] == "(" and not _ends_the_text(text, at):
         return None
-    return _Head(at)
+    return at, None
 
 
 def _ends_the_text(text: str, start: int) -> bool:
@@ -129,8 +121,9 @@ def _ends_the_text(text: str, start: int) -> bool:
     return False
 
 
-def _groups(source: SourceText, ends: dict[int, int]) -> list[SourceText]:
+def _groups(source: SourceText) -> list[SourceText]:
     """The contents of brackets in a row. Raises GridError for anything else."""
+    ends = strict_pairs(source)
     groups: list[SourceText] = []
     i = 0
     while i < len(source.text):
@@ -147,25 +140,21 @@ def _groups(source: SourceText, ends: dict[int, int]) -> list[SourceText]:
     return groups
 
 
-def _unwrap_call(source: SourceText, head: _Head, calls: int) -> WrittenMatrix:
-    call, inside = head.call, head.inside - head.start
-    name = call.rpartition(".")[2]
+def _unwrap_call(source: SourceText, call: re.Match[str], calls: int) -> WrittenMatrix:
+    name, inside = call[1].rpartition(".")[2], call.end() - call.start(1)
     if name not in MAKERS or not calls:
         raise GridError(
             "unknown_call",
-            f"What {call}(…) makes of this matrix is not worked out here; "
+            f"What {call[1]}(…) makes of this matrix is not worked out here; "
             "paste the finished matrix itself.",
-            source.span(0, len(call)),
+            source.span(0, len(call[1])),
         )
     opened = source.text.index("(")
     ends = strict_pairs(source)
     if ends[opened] != len(source.text):
         raise text_around(source.cut(ends[opened], len(source.text)))
-    arguments = [
-        argument.strip()
-        for argument in split(source.cut(inside, len(source.text) - 1), ",", ends, inside)
-        if not _KEYWORD.match(argument.text)
-    ]
+    arguments = split(source.cut(inside, len(source.text) - 1), ",")
+    arguments = [argument.strip() for argument in arguments if not _KEYWORD.match(argument.text)]
     arguments = [argument for argument in arguments if argument.text]
     shape = None
     if len(arguments) == 3 and all(_is_small(argument.text) for argument in arguments[:2]):
@@ -173,9 +162,7 @@ def _unwrap_call(source: SourceText, head: _Head, calls: int) -> WrittenMatrix:
         arguments = arguments[2:]
     if len(arguments) == 1 and _CALL.match(arguments[0].text):
         return unwrap(arguments[0], calls - 1)
-    groups: list[SourceText] = []
-    for argument in arguments:
-        groups += _groups(argument, strict_pairs(argument))
+    groups = [group for argument in arguments for group in _groups(argument)]
     return WrittenMatrix(tuple(groups), name, shape)
 
 

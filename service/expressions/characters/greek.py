@@ -1,5 +1,6 @@
 """Greek letters and their ASCII names."""
 
+import re
 from itertools import product
 from typing import Final
 
@@ -16,6 +17,9 @@ LETTERS: Final = {name: letter for letter, name in NAMES.items()}
 VARIANTS: Final = {"ϑ": "θ", "ϕ": "φ", "ϵ": "ε", "ϱ": "ρ", "ς": "σ", "ϖ": "π", "µ": "μ", "Ω": "Ω",
                    "∆": "Δ", "ϰ": "κ"}  # fmt: skip
 CLASS: Final = "".join(NAMES)
+# A letter's name begins a word: theta1, but not the eta in beta.
+_SPELLED: Final = "|".join(sorted(LETTERS, key=len, reverse=True))
+_PARTS: Final = re.compile(rf"(?<![^\W\d_])(?:{_SPELLED})|.", re.DOTALL)
 
 
 def spellings(name: str) -> set[str]:
@@ -23,21 +27,6 @@ def spellings(name: str) -> set[str]:
 
     The letters stay letters in the text itself: spelled out there, ``bη`` would read as beta.
     """
-    parts: list[tuple[str, ...]] = []
-    position = 0
-    while position < len(name):
-        letter = name[position]
-        spelled = next((word for word in _LONGEST_FIRST if name.startswith(word, position)), None)
-        if letter in NAMES:
-            parts.append((letter, NAMES[letter]))
-            position += 1
-        elif spelled is not None and (position == 0 or not name[position - 1].isalpha()):
-            parts.append((spelled, LETTERS[spelled]))
-            position += len(spelled)
-        else:
-            parts.append((letter,))
-            position += 1
+    both = NAMES | LETTERS
+    parts = [{part, both.get(part, part)} for part in _PARTS.findall(name)]
     return {"".join(choice) for choice in product(*parts)}
-
-
-_LONGEST_FIRST: Final = sorted(LETTERS, key=len, reverse=True)

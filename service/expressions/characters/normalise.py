@@ -19,7 +19,8 @@ _CHUNK: Final = re.compile(rf"[A-Za-z0-9{greek.CLASS} +\-*/().,|\[\]{{}}]+")
 _INDEX: Final = re.compile(rf"[A-Za-z0-9{greek.CLASS} _*]*")
 _PLAIN_INDEX: Final = re.compile(r"_[A-Za-z0-9]+")
 _POWER: Final = re.compile(r"[+-]?[0-9]+|[A-Za-z]")
-_BREAKS: Final = "\t\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029"
+# These separate cells or lines, and not the factors of a product.
+BREAKS: Final = frozenset("\t\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029")
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,11 +40,6 @@ def normalise(source: str) -> Characters:
     if _PLAIN.fullmatch(source) and "^*" not in source:
         return Characters(source)
     return _Normaliser(source).run()
-
-
-def is_separator(gap: str) -> bool:
-    """Whether ``gap`` separates cells or lines, and not the factors of a product."""
-    return any(letter in _BREAKS for letter in gap)
 
 
 class _Normaliser:
@@ -125,9 +121,7 @@ class _Normaliser:
 
     def _underscore(self, at: int, end: int, depth: int) -> int:
         r"""Read _1, _{12}, _\alpha and _{\theta_1}: an index of letters and digits."""
-        start = at + 1
-        while start < end and self.source[start].isspace():
-            start += 1
+        start = self._skip_blanks(at + 1, end)
         if start < end and self.source[start] == "{":
             stop = self._partner(start, end)
             inside, after = (start + 1, stop), stop + 1
@@ -209,9 +203,6 @@ class _Normaliser:
             return self._function(latex_commands.FUNCTIONS[name], at, after)
         if name in latex_commands.SPACES:
             return self._emit(" ", at, after)
-        return self._with_argument(name, at, after, end, depth)
-
-    def _with_argument(self, name: str, at: int, after: int, end: int, depth: int) -> int:
         if name in latex_commands.STYLES:
             return self._style(name, at, after, end, depth)
         if name in latex_commands.FRACTIONS:
@@ -233,12 +224,10 @@ class _Normaliser:
         if self.letters and self.letters[-1].isalpha():
             self._emit(" ", at, at)
         self._emit(name, at, after)
-        if self.source[after : after + 1] not in {"_", "^"} and not self._digit(after):
+        following = self.source[after : after + 1]
+        if following not in {"_", "^"} and not following.isdigit():
             self._emit(" ", after, after)
         return after
-
-    def _digit(self, at: int) -> bool:
-        return self.source[at : at + 1].isdigit()
 
     def _style(self, name: str, at: int, after: int, end: int, depth: int) -> int:
         """Read the argument of a command that only styles it."""

@@ -42,7 +42,14 @@ LOOK_ALIKES: Final = dict(
 )
 # Unicode does not call these invisible, but they are blank.
 _BLANKS: Final = frozenset("\u115f\u1160\u2800\u3164\uffa0")
-_TRANSPOSES: Final = frozenset("′″‴’‘ʹ´`ᵀ⊤")
+_CAUSES: Final[dict[str, Cause]] = {
+    **dict.fromkeys("±∓", "plus_minus"),
+    **dict.fromkeys("′″‴’‘ʹ´`ᵀ⊤", "transpose"),
+    **dict.fromkeys("∛∜", "cube_root"),
+    **dict.fromkeys("∞", "not_finite"),
+    **dict.fromkeys("ᵒ⁰", "raised_zero"),
+    **dict.fromkeys(LOOK_ALIKES, "look_alike"),
+}
 _FRACTION: Final = re.compile("[0-9]⁄[0-9]+")
 
 
@@ -59,7 +66,7 @@ def plain(letter: str) -> str | None:
         return _SPELLINGS[letter]
     if letter.isspace():
         return " "
-    if letter in LOOK_ALIKES or letter in _TRANSPOSES or is_invisible(letter):
+    if letter in _CAUSES or is_invisible(letter):
         return None
     return _compatible(letter)
 
@@ -76,16 +83,4 @@ def _compatible(letter: str) -> str | None:
 
 def cause(letter: str) -> Cause:
     """The reason why a character without a plain spelling cannot be read."""
-    if letter in LOOK_ALIKES:
-        return "look_alike"
-    if letter in "±∓":
-        return "plus_minus"
-    if letter in _TRANSPOSES:
-        return "transpose"
-    if letter in "∛∜":
-        return "cube_root"
-    if letter == "∞":
-        return "not_finite"
-    if letter in "ᵒ⁰":
-        return "raised_zero"
-    return "invisible" if is_invisible(letter) else "character"
+    return _CAUSES.get(letter) or ("invisible" if is_invisible(letter) else "character")

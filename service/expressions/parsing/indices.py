@@ -44,15 +44,13 @@ def indexed(run: str, text: str, end: int, vocabulary: Vocabulary) -> Indexed | 
 
 def is_family(run: str, vocabulary: Vocabulary) -> bool:
     """Whether some name is ``run`` with an index: q, where there is a q1."""
-    joints = vocabulary.turning.keys() | vocabulary.sliding.keys()
-    return any(split(f"{run}{index}", vocabulary) for index in {1, 2, *joints})
+    return any(split(f"{run}{index}", vocabulary) for index in {1, 2, *vocabulary.joints})
 
 
 def _first(run: str, vocabulary: Vocabulary) -> int:
     """The index of the first joint for a joint variable's letter, else 1."""
-    joints = sorted(vocabulary.turning.keys() | vocabulary.sliding.keys())
-    for joint in joints:
+    for joint in vocabulary.joints:
         pieces = split(f"{run}{joint}", vocabulary)
         if pieces and pieces[-1].kind == "symbol" and pieces[-1].symbols[0].joint is not None:
-            return joints[0]
+            return vocabulary.joints[0]
     return 1

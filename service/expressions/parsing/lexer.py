@@ -4,7 +4,7 @@ import math
 import re
 from typing import Any, Final
 
-from service.expressions.characters.normalise import Characters, is_separator
+from service.expressions.characters.normalise import BREAKS, Characters
 from service.expressions.characters.unicode import CLOSE, MARKER, OPEN
 from service.expressions.errors import Note, Span, UnreadableError
 from service.expressions.parsing.brackets import WRAPPING, Brackets
@@ -41,15 +41,8 @@ OPERAND_ENDS: Final = frozenset({"NUMBER", "NAME", "RIGHT", "CLOSE", "UNIT"})
 _TIGHT_STARTS: Final = frozenset({"NAME", "LEFT", "OPEN"})
 
 
-def tokenise(
-    source: str, characters: Characters, vocabulary: Vocabulary, *, degrees: bool, notes: list[Note]
-) -> list[Token]:
-    """The tokens of ``characters``, with END last. Raises UnreadableError."""
-    return _Lexer(source, characters, vocabulary, degrees, notes).run()
-
-
-class _Lexer:
-    """One pass over the characters."""
+class Lexer:
+    """One pass over the ``characters`` of ``source``."""
 
     __slots__ = (
         "brackets", "degrees", "ends", "fraction_end", "has_separators", "indices", "last", "notes",
@@ -61,6 +54,7 @@ class _Lexer:
         source: str,
         characters: Characters,
         vocabulary: Vocabulary,
+        *,
         degrees: bool,
         notes: list[Note],
     ) -> None:
@@ -80,6 +74,7 @@ class _Lexer:
         self.indices: list[tuple[Indexed, str, Span]] = []
 
     def run(self) -> list[Token]:
+        """The tokens, with END last. Raises UnreadableError."""
         text, match, position = self.text, _TOKEN.match, 0
         in_place, length = self.starts is None, len(text)
         while position < length:
@@ -126,7 +121,7 @@ class _Lexer:
             tokens = self.tokens
             before = tokens[-1]
             if terminal == "NUMBER" or (
-                self.has_separators and is_separator(self.source[before[3] : start])
+                self.has_separators and not BREAKS.isdisjoint(self.source[before[3] : start])
             ):
                 glued = before[0] == "NUMBER" and before[3] == start
                 raise UnreadableError("values", (before[2], end), number=glued)
@@ -162,9 +157,9 @@ class _Lexer:
 
     def _operator(self, text: str, start: int, end: int) -> None:
         span = self._span(start, end)
-        if text == "(":
-            self._open(text, span)
-        elif text == ")":
+        if text in "([{":
+            self._open(text, start, span)
+        elif text in ")]}":
             self._close(text, span)
         elif text == "*" and self._is_marker(start, end):
             self.notes.marker(span)
@@ -174,22 +169,6 @@ class _Lexer:
             self._emit("UNIT", "deg", *span)
         elif text == "√":
             self._operand("ROOT", None, *span)
-        else:
-            self._other(text, start, span)
-
-    def _other(self, text: str, start: int, span: Span) -> None:
-        """Read a rarer operator: other brackets, bars, fractions and raised stars."""
-        if text == "[" and self.last in OPERAND_ENDS:
-            index = INDEX.match(self.text, start)
-            if index is not None:
-                place = self._span(start, index.end())
-                raise UnreadableError("index", place, reason="no_stem", digits=index[1])
-        if text == "{" and self.last == "FUNCTION" and self._is_wrapped(start):
-            self.brackets.open(text, span, WRAPPING)
-        elif text in "[{":
-            self._open(text, span)
-        elif text in "]}":
-            self._close(text, span)
         elif text == "|":
             self._bar(span)
         elif text == MARKER:
@@ -215,9 +194,16 @@ class _Lexer:
                 return at > inner and self.text[at + 1 :].lstrip().startswith("}")
         return False
 
-    def _open(self, bracket: str, span: Span) -> None:
-        self.brackets.open(bracket, span, len(self.tokens))
-        self._operand("LEFT", None, *span)
+    def _open(self, bracket: str, start: int, span: Span) -> None:
+        is_index = bracket == "[" and self.last in OPERAND_ENDS
+        if is_index and (index := INDEX.match(self.text, start)):
+            place = self._span(start, index.end())
+            raise UnreadableError("index", place, reason="no_stem", digits=index[1])
+        if bracket == "{" and self.last == "FUNCTION" and self._is_wrapped(start):
+            self.brackets.open(bracket, span, WRAPPING)
+        else:
+            self.brackets.open(bracket, span, len(self.tokens))
+            self._operand("LEFT", None, *span)
 
     def _bar(self, span: Span) -> None:
         """Read |x|: a bar behind an operand closes, any other opens."""
@@ -264,7 +250,8 @@ class _Lexer:
 
     def _word(self, run: str, start: int, end: int) -> int:
         """Read a run of letters and digits; return where to go on."""
-        if run in MODULES and self.text[end : end + 1] == "." and self._letter(end + 1):
+        following = self.text[end : end + 2]
+        if run in MODULES and following[:1] == "." and following[1:].isalpha():
             return self._after_module(end + 1)
         pieces = split(run, self.vocabulary)
         if pieces is None:
@@ -288,9 +275,6 @@ class _Lexer:
             else:
                 raise UnreadableError("invalid_shorthand", (a, b), joint=piece.joint)
         return end
-
-    def _letter(self, at: int) -> bool:
-        return self.text[at : at + 1].isalpha()
 
     def _after_module(self, at: int) -> int:
         """Read what follows ``np.``, where radians(90) is 90 degrees; return where to go on."""
@@ -338,8 +322,7 @@ class _Lexer:
                 raise UnreadableError(
                     "ambiguous_shorthand", (a, b), function=piece.word, names=names
                 )
-        if piece.ambiguous or self.source[a] in "CS":
-            self.notes.shorthand(piece, a, b)
+        self.notes.shorthand(piece, a, b)
         self._operand("NAME", Call(piece.word, (total,), a, b), a, b)
 
     def _function(self, name: str, at: int, end: int, a: int, b: int) -> int:
@@ -353,13 +336,11 @@ class _Lexer:
         if raised is not None:
             exponent = _EXPONENT.match(self.text, raised.end())
             if exponent is None or len(exponent[exponent.lastindex or 0]) > 4:
+                end = self._span(at, raised.end())[1]
                 raise UnreadableError(
-                    "function_power",
-                    (a, self._span(at, raised.end())[1]),
-                    name=name,
-                    function=(a, b),
+                    "function_power", (a, end), name=name, function=(a, b),
                     exponent=self.text[raised.end() :],
-                )
+                )  # fmt: skip
             power = int(exponent[exponent.lastindex or 0])
             end = exponent.end()
         self._operand("FUNCTION", (name, power), a, b)
@@ -391,7 +372,6 @@ class _Lexer:
 
 def _sum_of(symbols: tuple[Symbol, ...], a: int, b: int) -> Node:
     total: Node = SymbolNode(symbols[0], a, b)
-    if len(symbols) > 1:
-        for symbol in symbols[1:]:
-            total = Binary("+", total, SymbolNode(symbol, a, b), a, b)
+    for symbol in symbols[1:]:
+        total = Binary("+", total, SymbolNode(symbol, a, b), a, b)
     return total

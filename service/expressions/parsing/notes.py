@@ -4,12 +4,7 @@ from typing import Final
 
 from service.expressions.errors import Note, Span
 from service.expressions.parsing.words import Piece
-from service.expressions.vocabulary.functions import (
-    CAPITALS,
-    IN_DEGREES,
-    OF_DEGREES,
-    PI_CAPITALS,
-)
+from service.expressions.vocabulary.functions import CAPITALS, IN_DEGREES, OF_DEGREES, PI_CAPITALS
 from service.expressions.vocabulary.symbols import Symbol, Vocabulary
 
 _INDEXING: Final = {
@@ -34,11 +29,8 @@ class WordNotes:
 
     def marker(self, span: Span) -> None:
         """Note a star that marks a joint variable."""
-        self._add(
-            "joint_marker",
-            "The * behind the joint variable was read as its marker, not as a product.",
-            span,
-        )
+        message = "The * behind the joint variable was read as its marker, not as a product."
+        self._add("joint_marker", message, span)
 
     def index(self, style: str, symbol: Symbol, span: Span) -> None:
         """Note how q[0] or q(1) was counted."""
@@ -62,26 +54,18 @@ class WordNotes:
         if written in CAPITALS:
             self._add("letter_case", f"This was read as the function {name}.", (a, b))
         if name in OF_DEGREES:
-            self._add(
-                "degrees_function",
+            message = (
                 f"{name} takes degrees: bare numbers inside it were read as degrees, and an "
-                "angle symbol as the angle itself.",
-                (a, b),
+                "angle symbol as the angle itself."
             )
+            self._add("degrees_function", message, (a, b))
         if name in IN_DEGREES:
-            self._add(
-                "degrees_function",
-                f"{name} gives degrees; this was read as that angle.",
-                (a, b),
+            message = f"{name} gives degrees; this was read as that angle."
+            self._add("degrees_function", message, (a, b))
+        inverted, a_is_known = name[1:], "a" in self.vocabulary.by_name
+        if written[0] == "a" and inverted in {"sin", "cos", "tan"} and a_is_known:
+            message = (
+                f"This was read as the inverse function {name}, not as a times {inverted}; "
+                f"for the product write a*{inverted}."
             )
-        if (
-            written[0] == "a"
-            and name[1:] in {"sin", "cos", "tan"}
-            and "a" in self.vocabulary.by_name
-        ):
-            self._add(
-                "function_name",
-                f"This was read as the inverse function {name}, not as a times {name[1:]}; "
-                f"for the product write a*{name[1:]}.",
-                (a, b),
-            )
+            self._add("function_name", message, (a, b))

@@ -27,14 +27,16 @@ on a list for its operand, so that no text comes near Python's recursion limit.
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from typing import Final
 
 from service.expressions.errors import UnreadableError
 from service.expressions.parsing.lexer import END, Token
 from service.expressions.parsing.tree_builder import Builder
-from service.expressions.tree import Node
+from service.expressions.tree import Node, Operator
 
 # Signs, powers and functions that wait for their operand.
 _Pending = list[Callable[[Node], Node]]
+_SUMS: Final[dict[str, Operator]] = {"PLUS": "+", "MINUS": "-"}
 
 
 def parse(tokens: Sequence[Token], builder: Builder) -> Node:
@@ -77,16 +79,10 @@ class _Parser:
 
     def sum(self) -> Node:
         left = self.product()
-        while True:
-            terminal = self.tokens[self.at][0]
-            if terminal == "PLUS":
-                self.at += 1
-                left = self.builder.add(left, self.product())
-            elif terminal == "MINUS":
-                self.at += 1
-                left = self.builder.subtract(left, self.product())
-            else:
-                return left
+        while operator := _SUMS.get(self.tokens[self.at][0]):
+            self.at += 1
+            left = self.builder.add(operator, left, self.product())
+        return left
 
     def product(self) -> Node:
         left = self.signed()

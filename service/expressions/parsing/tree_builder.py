@@ -13,6 +13,7 @@ from service.expressions.tree import (
     Negation,
     Node,
     Number,
+    Operator,
     SymbolNode,
     Unit,
     UnitName,
@@ -35,15 +36,10 @@ class Builder:
         self.barred: set[int] = set()
         self.degree_functions = False
 
-    def add(self, left: Node, right: Node) -> Node:
-        """Build left + right."""
+    def add(self, operator: Operator, left: Node, right: Node) -> Node:
+        """Build left + right or left - right."""
         self._note_degrees(left, right)
-        return Binary("+", left, right, left.start, right.end)
-
-    def subtract(self, left: Node, right: Node) -> Node:
-        """Build left - right."""
-        self._note_degrees(left, right)
-        return Binary("-", left, right, left.start, right.end)
+        return Binary(operator, left, right, left.start, right.end)
 
     def multiply(self, left: Node, right: Node) -> Node:
         """Build left * right."""
@@ -60,13 +56,11 @@ class Builder:
     def join(self, left: Node, right: Node) -> Node:
         """Build a product that is not written, with a note on ``1/2q1``."""
         if type(left) is Binary and left.operator == "/" and self._is_open(left):
-            self._note(
-                "division_then_product",
+            message = (
                 f"This was read from left to right, as ({self._text(left)})*{self._text(right)}. "
-                "Add brackets if all of it belongs below the line.",
-                left.start,
-                right.end,
+                "Add brackets if all of it belongs below the line."
             )
+            self._note("division_then_product", message, left.start, right.end)
         if type(right) is not Call:
             self._note_bare(left)
         return Binary("*", left, right, left.start, right.end)
@@ -102,10 +96,8 @@ class Builder:
             if type(node) is Unit or (type(node) is Call and node.function in INVERSE):
                 raise UnreadableError("two_units", span)
             if type(node) is SymbolNode and node.symbol.kind != "number":
-                place = (node.start, node.end)
-                raise UnreadableError(
-                    "unit_on_variable", span, name=node.symbol.name, variable=place
-                )
+                name, place = node.symbol.name, (node.start, node.end)
+                raise UnreadableError("unit_on_variable", span, name=name, variable=place)
         return Unit(operand, unit, *span)
 
     def group(self, start: int, inner: Node, end: int) -> Node:
@@ -129,39 +121,38 @@ class Builder:
 
         Raises UnreadableError for a wrong number of them.
         """
-        _, (name, power), start, stop = function
-        wanted = ARITY.get(name, 1)
-        if len(arguments) != wanted:
-            raise UnreadableError(
-                "arguments", (start, end), name=name, function=(start, stop), wanted=wanted,
-                places=[(argument.start, argument.end) for argument in arguments],
-            )  # fmt: skip
+        _, (name, _), start, _ = function
+        if len(arguments) != ARITY.get(name, 1):
+            raise _wrong_number(function, arguments, end)
         if name == "deg" or name == "rad":
             node = self.unit(arguments[0], name, end)
             node.start = start
             return node
         if name == "atan2":
             self._note_order(arguments[0], arguments[1], start, end)
-        self.degree_functions = self.degree_functions or name in OF_DEGREES
-        return _powered(Call(name, tuple(arguments), start, end), power)
+        return self._called(function, tuple(arguments), end)
 
     def bare_call(self, function: Token, argument: Node) -> Node:
         """Build a function of one argument without brackets.
 
         Raises UnreadableError for a function of two.
         """
-        _, (name, power), start, stop = function
+        name = function[1][0]
         if ARITY.get(name, 1) != 1 or name == "deg" or name == "rad":
-            raise UnreadableError(
-                "arguments", (start, argument.end), name=name, function=(start, stop),
-                wanted=ARITY.get(name, 1), places=[(argument.start, argument.end)],
-            )  # fmt: skip
+            raise _wrong_number(function, [argument], argument.end)
         if type(argument) is Binary and (
             argument.operator == "^" or (name == "sqrt" and id(argument) not in self.grouped)
         ):
             self._note_argument(argument.start, argument.end)
+        return self._called(function, (argument,), argument.end)
+
+    def _called(self, function: Token, arguments: tuple[Node, ...], end: int) -> Node:
+        _, (name, power), start, _ = function
         self.degree_functions = self.degree_functions or name in OF_DEGREES
-        return _powered(Call(name, (argument,), start, argument.end), power)
+        call = Call(name, arguments, start, end)
+        if power is None:
+            return call
+        return Binary("^", call, Number(float(power), str(power), start, start), start, end)
 
     def _may_be_degrees(self, base: Node) -> bool:
         """Whether ``base`` is made of numbers alone, and is not the ten of 3*10^0."""
@@ -181,25 +172,20 @@ class Builder:
             if type(one) is not Unit or one.unit != "deg" or type(number) is not Number:
                 continue
             if number.value and not self.degrees:
-                self._note(
-                    "mixed_units",
-                    f"Only one of these is in degrees: {self._text(number)} was read as radians.",
-                    number.start,
-                    number.end,
-                )
+                text = self._text(number)
+                message = f"Only one of these is in degrees: {text} was read as radians."
+                self._note("mixed_units", message, number.start, number.end)
 
     def _note_order(self, y: Node, x: Node, start: int, end: int) -> None:
         """Note atan2(c1, s1) and atan2(x, y), whose arguments seem to be swapped."""
         first, second = _names(y), _names(x)
         for ours, theirs in (("sin", "cos"), ("y", "x")):
             if theirs in first and ours in second and not {ours} & first and not {theirs} & second:
-                self._note(
-                    "atan2_order",
+                message = (
                     "atan2 takes y first: atan2(y, x), so atan2(sin, cos). "
-                    "These two look as if they were the other way round.",
-                    start,
-                    end,
+                    "These two look as if they were the other way round."
                 )
+                self._note("atan2_order", message, start, end)
                 return
 
     def _text(self, node: Node) -> str:
@@ -209,12 +195,9 @@ class Builder:
         self.notes.append(Note(code, message, (start, end)))
 
     def _note_argument(self, start: int, end: int) -> None:
-        self._note(
-            "bare_argument",
-            f"Without brackets, {self.source[start:end]} was read as the function's argument.",
-            start,
-            end,
-        )
+        text = self.source[start:end]
+        message = f"Without brackets, {text} was read as the function's argument."
+        self._note("bare_argument", message, start, end)
 
     def _note_bare(self, left: Node) -> None:
         """Note where ``left`` ends in a function without brackets: sin q1/2 is (sin q1)/2."""
@@ -253,8 +236,9 @@ def _names(node: Node) -> set[str]:
     return found
 
 
-def _powered(call: Call, power: int | None) -> Node:
-    if power is None:
-        return call
-    exponent = Number(float(power), str(power), call.start, call.start)
-    return Binary("^", call, exponent, call.start, call.end)
+def _wrong_number(function: Token, arguments: list[Node], end: int) -> UnreadableError:
+    _, (name, _), start, stop = function
+    return UnreadableError(
+        "arguments", (start, end), name=name, function=(start, stop), wanted=ARITY.get(name, 1),
+        places=[(argument.start, argument.end) for argument in arguments],
+    )  # fmt: skip

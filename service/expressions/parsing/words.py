@@ -11,15 +11,7 @@ from functools import lru_cache
 from typing import Final, Literal
 
 from service.expressions.characters import greek
-from service.expressions.vocabulary.functions import (
-    CAPITALS,
-    IN_DEGREES,
-    OF_DEGREES,
-    PI,
-    PI_CAPITALS,
-    SPELLINGS,
-    UNITS,
-)
+from service.expressions.vocabulary import functions
 from service.expressions.vocabulary.symbols import Symbol, Vocabulary
 
 PieceKind = Literal["symbol", "pi", "function", "number", "unit", "shorthand", "invalid_shorthand"]
@@ -31,14 +23,14 @@ _SHORTHAND: Final = re.compile(
 _SHORT: Final = {"c": "cos", "s": "sin", "C": "cos", "S": "sin"}
 _DIGITS: Final = re.compile(r"[0-9]+")
 _WORDS: Final[dict[str, tuple[PieceKind, str]]] = {
-    **{spelling: ("function", name) for spelling, name in CAPITALS.items()},
-    **dict.fromkeys(PI_CAPITALS, ("pi", "pi")),
-    **{spelling: ("function", name) for spelling, name in SPELLINGS.items()},
-    **{spelling: ("unit", name) for spelling, name in UNITS.items()},
-    **dict.fromkeys(PI, ("pi", "pi")),
+    **{spelling: ("function", name) for spelling, name in functions.CAPITALS.items()},
+    **dict.fromkeys(functions.PI_CAPITALS, ("pi", "pi")),
+    **{spelling: ("function", name) for spelling, name in functions.SPELLINGS.items()},
+    **{spelling: ("unit", name) for spelling, name in functions.UNITS.items()},
+    **dict.fromkeys(functions.PI, ("pi", "pi")),
 }
 # sind30 may be read as sin(d30): these need a bracket or a space before their number.
-_NOT_BEFORE_NUMBERS: Final = frozenset({*OF_DEGREES, *IN_DEGREES})
+_NOT_BEFORE_NUMBERS: Final = frozenset({*functions.OF_DEGREES, *functions.IN_DEGREES})
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +121,7 @@ def _candidates(run: str, start: int, vocabulary: Vocabulary) -> list[tuple[Piec
 def _shorthand(run: str, start: int, vocabulary: Vocabulary) -> Piece | None:
     """The shorthand of joint angles at ``start``, if any: c12, s3, cθ1, cosθ12 or sin12."""
     match = _SHORTHAND.match(run, start)
-    if match is None or not (vocabulary.turning or vocabulary.sliding):
+    if match is None or not vocabulary.joints:
         return None
     function, angle, index = match.group("function", "angle", "index")
     spelled = len(function) > 1
@@ -171,9 +163,8 @@ def _of_angle(run: str, start: int, vocabulary: Vocabulary) -> Piece | None:
 def _joints(index: str, vocabulary: Vocabulary) -> tuple[int, ...]:
     """The joints that ``index`` names: one digit each, or else one joint from 10 on."""
     digits = tuple(map(int, index))
-    known = vocabulary.turning.keys() | vocabulary.sliding.keys()
-    if len(set(digits)) == len(digits) and known.issuperset(digits):
+    if len(set(digits)) == len(digits) and set(digits).issubset(vocabulary.joints):
         return digits
     # Twelve rows are the most that a table has; a longer index is no single joint.
     whole = int(index) if len(index) == 2 else -1
-    return (whole,) if whole in known else digits
+    return (whole,) if whole in vocabulary.joints else digits

@@ -10,17 +10,7 @@ from service.expressions.printing.brackets import (
     needs_brackets,
 )
 from service.expressions.printing.symbol_names import symbol_latex
-from service.expressions.tree import (
-    Binary,
-    Call,
-    Negation,
-    Node,
-    Number,
-    Operator,
-    Pi,
-    SymbolNode,
-    Unit,
-)
+from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
 
 _FUNCTIONS: Final = {
     "sin": r"\sin", "cos": r"\cos", "tan": r"\tan", "asin": r"\arcsin", "acos": r"\arccos",
@@ -43,21 +33,28 @@ def to_latex(node: Node) -> str:
             return _at(operand, ATOM) + (r"^{\circ}" if unit == "deg" else r"\,\mathrm{rad}")
         case Negation(operand):
             return f"-{_at(operand, PRODUCT)}"
+        case Binary():
+            return _binary(node)
+
+
+def _binary(node: Binary) -> str:
+    match node:
+        case Binary(
+            "^", Call("sin" | "cos" | "tan" as function, (argument,)), Number(literal=power)
+        ) if power.isdigit() and len(power) < 5:
+            return rf"{_FUNCTIONS[function]}^{{{power}}}\left({to_latex(argument)}\right)"
+        case Binary("^", base, exponent):
+            return f"{_at(base, ATOM)}^{{{to_latex(exponent)}}}"
+        case Binary("/", Negation(upper), lower):
+            # The sign of -π/2 stands before the bar, as it was typed.
+            return rf"-\frac{{{to_latex(upper)}}}{{{to_latex(lower)}}}"
+        case Binary("/", upper, lower):
+            return rf"\frac{{{to_latex(upper)}}}{{{to_latex(lower)}}}"
+        case Binary("*", left, right):
+            times = r" \cdot " if begins_with_digit(right) else " "
+            return f"{_at(left, PRODUCT, first=True)}{times}{_at(right, POWER)}"
         case Binary(operator, left, right):
-            return _binary(operator, left, right)
-
-
-def _binary(operator: Operator, left: Node, right: Node) -> str:
-    if operator == "^":
-        return _power(left, right)
-    if operator == "/":
-        # The sign of -π/2 stands before the bar, as it was typed.
-        sign, upper = ("-", left.operand) if isinstance(left, Negation) else ("", left)
-        return rf"{sign}\frac{{{to_latex(upper)}}}{{{to_latex(right)}}}"
-    if operator == "*":
-        times = r" \cdot " if begins_with_digit(right) else " "
-        return f"{_at(left, PRODUCT, first=True)}{times}{_at(right, POWER)}"
-    return f"{to_latex(left)} {operator} {_at(right, PRODUCT)}"
+            return f"{to_latex(left)} {operator} {_at(right, PRODUCT)}"
 
 
 def number(literal: str) -> str:
@@ -72,19 +69,6 @@ def _call(function: str, arguments: list[str]) -> str:
     if function == "abs":
         return rf"\left|{arguments[0]}\right|"
     return rf"{_FUNCTIONS[function]}\left({', '.join(arguments)}\right)"
-
-
-def _power(base: Node, exponent: Node) -> str:
-    raised = f"^{{{to_latex(exponent)}}}"
-    if (
-        isinstance(base, Call)
-        and base.function in {"sin", "cos", "tan"}
-        and type(exponent) is Number
-        and exponent.literal.isdigit()
-        and len(exponent.literal) < 5
-    ):
-        return rf"{_FUNCTIONS[base.function]}{raised}\left({to_latex(base.arguments[0])}\right)"
-    return f"{_at(base, ATOM)}{raised}"
 
 
 def _at(node: Node, place: int, *, first: bool = False) -> str:

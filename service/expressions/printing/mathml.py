@@ -13,17 +13,7 @@ from service.expressions.printing.brackets import (
     needs_brackets,
 )
 from service.expressions.printing.symbol_names import stem_and_index
-from service.expressions.tree import (
-    Binary,
-    Call,
-    Negation,
-    Node,
-    Number,
-    Operator,
-    Pi,
-    SymbolNode,
-    Unit,
-)
+from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
 from service.expressions.vocabulary.symbols import Symbol
 
 _NAMES: Final = {"asin": "arcsin", "acos": "arccos", "atan": "arctan"}
@@ -63,22 +53,24 @@ def _row(node: Node) -> str:
             return _mrow(f"{_at(operand, ATOM)}<mspace width='0.2em'/><mi>rad</mi>")
         case Negation(operand):
             return _mrow(f"<mo>−</mo>{_at(operand, PRODUCT)}")
-        case Binary(operator, left, right):
-            return _binary(operator, left, right)
+        case Binary():
+            return _binary(node)
 
 
-def _binary(operator: Operator, left: Node, right: Node) -> str:
-    if operator == "^":
-        return f"<msup>{_at(left, ATOM)}{_row(right)}</msup>"
-    if operator == "/":
-        if isinstance(left, Negation):
+def _binary(node: Binary) -> str:
+    match node:
+        case Binary("^", base, exponent):
+            return f"<msup>{_at(base, ATOM)}{_row(exponent)}</msup>"
+        case Binary("/", Negation(upper), lower):
             # The sign of -π/2 stands before the bar, as it was typed.
-            return _mrow(f"<mo>−</mo><mfrac>{_row(left.operand)}{_row(right)}</mfrac>")
-        return f"<mfrac>{_row(left)}{_row(right)}</mfrac>"
-    if operator == "*":
-        times = "<mo>⋅</mo>" if begins_with_digit(right) else _INVISIBLE_TIMES
-        return _mrow(f"{_at(left, PRODUCT, first=True)}{times}{_at(right, POWER)}")
-    return _mrow(f"{_row(left)}{_OPERATORS[operator]}{_at(right, PRODUCT)}")
+            return _mrow(f"<mo>−</mo><mfrac>{_row(upper)}{_row(lower)}</mfrac>")
+        case Binary("/", upper, lower):
+            return f"<mfrac>{_row(upper)}{_row(lower)}</mfrac>"
+        case Binary("*", left, right):
+            times = "<mo>⋅</mo>" if begins_with_digit(right) else _INVISIBLE_TIMES
+            return _mrow(f"{_at(left, PRODUCT, first=True)}{times}{_at(right, POWER)}")
+        case Binary(operator, left, right):
+            return _mrow(f"{_row(left)}{_OPERATORS[operator]}{_at(right, PRODUCT)}")
 
 
 def _mrow(inside: str) -> str:

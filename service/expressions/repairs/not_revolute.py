@@ -27,8 +27,8 @@ def _of_those_that_turn(failure: Failure) -> str | None:
     """The shorthand without its sliding joints, if it names some that turn, each once."""
     turning, sliding = failure.vocabulary.turning, failure.vocabulary.sliding
     # Lowered digits count as well: c₁₂₃.
-    joints = [digit(letter) for letter in failure.written if letter.isdigit()]
-    kept = [joint for joint in joints if joint in turning]
-    if not kept or len(set(joints)) < len(joints) or not sliding.keys() | turning >= set(joints):
+    digits = [digit(letter) for letter in failure.written if letter.isdigit()]
+    joints, known = set(digits), failure.vocabulary.joints
+    if len(joints) < len(digits) or joints.isdisjoint(turning) or not joints.issubset(known):
         return None
     return "".join(letter for letter in failure.written if digit(letter, -1) not in sliding)

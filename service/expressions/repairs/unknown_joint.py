@@ -19,7 +19,7 @@ def repair(failure: Failure) -> Repair:
     """Say which joints there are; offer the sum of angles for theta12."""
     vocabulary = failure.vocabulary
     match = _JOINT.fullmatch(normal_form(failure.details["run"]))
-    if match is None or match["stem"] not in _STEMS or not _joints(vocabulary):
+    if match is None or match["stem"] not in _STEMS or not vocabulary.joints:
         return None
     if match["rest"] and split(match["rest"], vocabulary) is None:
         return None
@@ -54,16 +54,10 @@ def _total(index: str, vocabulary: Vocabulary, *, latex: bool) -> str | None:
     digits = [int(digit) for digit in index]
     if not 1 < len(digits) < 7 or len(set(digits)) < len(digits):
         return None
-    if not set(digits) <= {*vocabulary.turning, *vocabulary.sliding}:
-        return None
     turning = [vocabulary.turning[digit] for digit in digits if digit in vocabulary.turning]
-    if len(turning) < 2:
+    if len(turning) < 2 or not set(digits).issubset(vocabulary.joints):
         return None
     return " + ".join(symbol_latex(part) if latex else part.name for part in turning)
-
-
-def _joints(vocabulary: Vocabulary) -> list[int]:
-    return sorted(vocabulary.turning.keys() | vocabulary.sliding.keys())
 
 
 def _reason(joint: int, vocabulary: Vocabulary) -> str:
@@ -71,5 +65,5 @@ def _reason(joint: int, vocabulary: Vocabulary) -> str:
         return f"joint {joint} slides, and its variable is {vocabulary.sliding[joint].name}"
     if joint in vocabulary.turning:
         return f"joint {joint}'s variable is {vocabulary.turning[joint].name} here"
-    known = _joints(vocabulary)
+    known = vocabulary.joints
     return f"there is no joint {joint}; this robot's joints are {known[0]} to {known[-1]}"

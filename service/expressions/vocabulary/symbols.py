@@ -63,7 +63,9 @@ class Vocabulary:
     cannot be written in an expression.
     """
 
-    __slots__ = ("_hash", "_shared", "by_name", "longest", "sliding", "symbols", "turning")
+    __slots__ = (
+        "_hash", "_shared", "by_name", "joints", "longest", "sliding", "symbols", "turning",
+    )  # fmt: skip
 
     def __init__(self, symbols: Sequence[Symbol]) -> None:
         self.symbols: Final = tuple(symbols)
@@ -72,6 +74,7 @@ class Vocabulary:
         self.sliding: Final[dict[int, Symbol]] = {}
         for symbol in self.symbols:
             self._declare(symbol)
+        self.joints: Final = sorted(self.turning | self.sliding)
         self.longest: Final = max(map(len, (*self.by_name, *RESERVED)))
         self._hash: Final = hash(self.symbols)
         # One tuple for all equal vocabularies, so that they need not be compared symbol by symbol:
