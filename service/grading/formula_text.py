@@ -1,6 +1,5 @@
 """The formula that a student would write for values of which only the numbers are known."""
 
-from collections.abc import Iterator
 from fractions import Fraction
 
 import numpy as np
@@ -39,8 +38,13 @@ def sum_text(
     if found is None:
         return ""
     shares, remainder = found
-    terms = [*zip(counts, moving, strict=True), *shares]
-    return _sum(_terms(terms, _constant(remainder, angle)))
+    terms = [
+        {1: name, -1: f"-{name}"}.get(count, f"{count}*{name}")
+        for count, name in (*zip(counts, moving, strict=True), *shares)
+        if count
+    ]
+    constant = _constant(remainder, angle)
+    return " + ".join([*terms, constant] if constant else terms).replace(" + -", " - ") or "0"
 
 
 def multiples(
@@ -57,19 +61,19 @@ def multiples(
     letters = [v.name for v in exercise.variables if v.joint is None and v.kind == kind]
     if not letters:
         return None
-    basis, solver = samples.cached(("letters", kind), lambda: _basis(letters, samples))
+
+    def basis_and_inverse() -> tuple[Numbers, Numbers]:
+        basis = np.array([*(samples.values[name][:HALF] for name in letters), np.ones(HALF)])
+        return basis, np.asarray(np.linalg.pinv(basis), dtype=np.float64)
+
+    # The letters' values and a constant, ``(letters + 1, HALF)``.
+    basis, solver = samples.cached(("letters", kind), basis_and_inverse)
     shares = np.round(constant @ solver)[:-1]
     rest = constant - shares @ basis[:-1]
     if np.ptp(rest) > WHOLE_MULTIPLE:
         return None
     found = zip(shares.astype(np.int_).tolist(), letters, strict=True)
     return [(share, letter) for share, letter in found if share], float(rest.mean())
-
-
-def _basis(letters: list[str], samples: Samples) -> tuple[Numbers, Numbers]:
-    """The letters' values and a constant, ``(letters + 1, HALF)``, and the pseudo-inverse."""
-    basis = np.array([*(samples.values[name][:HALF] for name in letters), np.ones(HALF)])
-    return basis, np.asarray(np.linalg.pinv(basis), dtype=np.float64)
 
 
 def _constant(value: float, angle: bool) -> str:
@@ -86,24 +90,3 @@ def _constant(value: float, angle: bool) -> str:
         share = Fraction(1)
     top = {1: "pi", -1: "-pi"}.get(share.numerator, f"{share.numerator}*pi")
     return top if share.denominator == 1 else f"{top}/{share.denominator}"
-
-
-def _terms(multiples: list[tuple[int, str]], constant: str) -> Iterator[str]:
-    for count, name in multiples:
-        if count:
-            yield {1: name, -1: f"-{name}"}.get(int(count), f"{count}*{name}")
-    if constant:
-        yield constant
-
-
-def _sum(terms: Iterator[str]) -> str:
-    """The terms joined by their signs; 0 where there is none."""
-    text = ""
-    for term in terms:
-        if not text:
-            text = term
-        elif term.startswith("-"):
-            text += f" - {term[1:]}"
-        else:
-            text += f" + {term}"
-    return text or "0"

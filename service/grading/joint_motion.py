@@ -46,7 +46,14 @@ def joint_counts(
     """
     if not joints:
         return np.zeros((len(values), 0), np.int_), np.asarray(np.isfinite(values).all(axis=-1))
-    moves, solver = _solver(tuple(joint.variable for joint in joints), samples)
+
+    names = tuple(joint.variable for joint in joints)
+
+    def moves_and_inverse() -> tuple[Numbers, Numbers]:
+        moves = changes(np.array([samples.values[name] for name in names]))
+        return moves, np.asarray(np.linalg.pinv(moves), dtype=np.float64)
+
+    moves, solver = samples.cached(names, moves_and_inverse)
     change = np.nan_to_num(changes(values), nan=np.inf, posinf=np.inf, neginf=np.inf)
     finite = np.asarray(np.isfinite(change).all(axis=-1))
     change = np.where(finite[:, None], change, 0.0)
@@ -72,13 +79,3 @@ def coefficients(
     counts, linear = joint_counts(values, joints, samples, angle)
     found = zip(counts.tolist(), linear.tolist(), strict=True)
     return [tuple(cell) if is_linear else None for cell, is_linear in found]
-
-
-def _solver(names: tuple[str, ...], samples: Samples) -> tuple[Numbers, Numbers]:
-    """How the joints move between the halves, and the pseudo-inverse of that."""
-
-    def compute() -> tuple[Numbers, Numbers]:
-        moves = changes(np.array([samples.values[name] for name in names]))
-        return moves, np.asarray(np.linalg.pinv(moves), dtype=np.float64)
-
-    return samples.cached(names, compute)

@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from service.catalogue import Exercise, Variable
+from service.catalogue import Exercise
 from service.kinematics.transforms import Numbers
 
 HALF = 16
@@ -75,14 +75,12 @@ class Samples:
 
     def at(self, sample: int, names: Set[str]) -> dict[str, float]:
         """The values of the named symbols in one sample, short enough to be read."""
+        units = {name: math.degrees if name in self.in_degrees else float for name in names}
         return {
-            name: float(f"{self._shown(name, values[sample]):.4g}")
+            name: float(f"{units[name](values[sample]):.4g}")
             for name, values in self.values.items()
             if name in names
         }
-
-    def _shown(self, name: str, value: float) -> float:
-        return math.degrees(value) if name in self.in_degrees else value
 
 
 def draw(exercise: Exercise, answers: object, *, degrees: bool = False) -> Samples:
@@ -96,7 +94,7 @@ def draw(exercise: Exercise, answers: object, *, degrees: bool = False) -> Sampl
     of_others = np.tile(uniform[split:].reshape(len(others), HALF), 2)
     return Samples(
         {
-            variable.name: _scaled(variable, row)
+            variable.name: variable.low + (variable.high - variable.low) * row
             for variable, row in zip((*joints, *others), (*of_joints, *of_others), strict=True)
         },
         frozenset(v.name for v in exercise.variables if degrees and v.kind == "angle"),
@@ -119,7 +117,3 @@ def _uniform(seed: str, count: int) -> Numbers:
     """``count`` numbers in [0, 1) from an extendable hash of the seed."""
     stream = hashlib.shake_128(seed.encode("utf-8", "surrogatepass")).digest(4 * count)
     return np.frombuffer(stream, dtype="<u4") * 2.0**-32
-
-
-def _scaled(variable: Variable, uniform: Numbers) -> Numbers:
-    return variable.low + (variable.high - variable.low) * uniform

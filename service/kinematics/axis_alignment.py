@@ -33,7 +33,8 @@ def _basis(axes: Matrices, sliding: NDArray[np.bool_]) -> Matrices:
     """
     z = axes[0, :, :3, 2]
     directions = axes[:, :, :3, 2]
-    points = axes[..., :3, 3] - _first_point(axes, sliding)
+    # Seen from a point of the first axis that turns.
+    points = axes[..., :3, 3] - axes[np.argmin(sliding), :, :3, 3]
     points = np.where(sliding[:, None, None], 0.0, points)
     for across in (*_across(directions, z), *_across(points, z)):
         length = np.linalg.norm(across, axis=-1, keepdims=True)
@@ -50,11 +51,6 @@ def _across(vectors: Numbers, z: Numbers) -> Numbers:
 
 def _from_x_and_z(x: Numbers, z: Numbers) -> Matrices:
     return np.stack([x, np.cross(z, x), z], axis=-1)
-
-
-def _first_point(axes: Matrices, sliding: NDArray[np.bool_]) -> Numbers:
-    turning = np.flatnonzero(~sliding)
-    return np.asarray(axes[turning[0] if len(turning) else 0, :, :3, 3])
 
 
 def _translation(

@@ -68,8 +68,7 @@ class BaseFreedom:
         unmoved = np.zeros(rows.shape[::2])
         if self.anywhere:
             moved = rows.copy()
-            for column in (A, D):
-                moved[:, column] = written_or(written[column], rows[:, column])
+            moved[:, [A, D]] = written_or(written[[A, D]], rows[:, [A, D]])
             return [(moved, unmoved)]
         if self.slide is None:
             return [(rows, unmoved)]

@@ -64,15 +64,19 @@ class RowConstants:
 class ChainMatch:
     """A valid table, and how its frames lie to the reference's.
 
-    ``rows`` is what each row should be, ``(4, L)`` each; ``joint_signs`` the sign that the joint
-    variable of each target should have; ``relative_poses`` the relative pose at each target,
-    ``(L, 4, 4)`` each; ``cost`` how far the written table is from this one.
+    ``rows`` ``(rows, 4, L)`` is what each row should be; ``relative_poses`` ``(rows, L, 4, 4)`` are
+    those at each target; ``cost`` is how far the written table is from this one.
     """
 
-    rows: tuple[Numbers, ...]
-    joint_signs: tuple[int, ...]
-    relative_poses: tuple[Matrices, ...]
+    rows: Numbers
+    relative_poses: Matrices
     cost: float
+
+    @property
+    def joint_signs(self) -> list[int]:
+        """The sign that the joint variable of each target should have."""
+        signs: list[int] = joint_signs_of(self.relative_poses).tolist()
+        return signs
 
 
 def match_as_written(
@@ -92,14 +96,7 @@ def match_as_written(
     written = np.array([row.written for row in rows])
     signs = np.array([row.joint_sign if directions_given else 0 for row in rows])
     valid, poses = match_tables(written[None], signs[None], targets, length_scale, start=start)
-    if not valid[0]:
-        return None
-    return ChainMatch(
-        rows=tuple(written),
-        joint_signs=tuple(int(joint_signs_of(pose)[0]) for pose in poses),
-        relative_poses=tuple(pose[0] for pose in poses),
-        cost=0.0,
-    )
+    return ChainMatch(written, poses[:, 0], 0.0) if valid[0] else None
 
 
 def match_tables(

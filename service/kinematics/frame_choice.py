@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from service.kinematics.base_freedom import BaseFreedom
 from service.kinematics.candidate_rows import TargetKind, axis_relations, candidate_rows
-from service.kinematics.chain import ALPHA, THETA, A, D
+from service.kinematics.chain import ALPHA, THETA
 from service.kinematics.chain_match import ChainMatch, RowConstants, Target, joint_signs_of
 from service.kinematics.dh import standard_link
 from service.kinematics.dh_row import is_unreachable
@@ -46,8 +46,8 @@ TURNED_OVER = 0.010
 TURNED_ABOUT = 0.004
 MOVED = 0.020
 
-# Each row so far: what it should be, the relative pose that it leads to, and its joint's sign.
-_Path = tuple[tuple[Numbers, Matrices, int], ...]
+# Each row so far: what it should be, and the relative pose that it leads to.
+_Path = tuple[tuple[Numbers, Matrices], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,8 +84,8 @@ def nearest_table(
         if target.reference is not None and target.rebases and not freedom.is_used_up:
             freedom = freedom.at_next(target.reference, target.kind, length_scale)
     best = int(np.argmin(beam.cost))
-    valid_rows, poses, signs = zip(*beam.paths[best], strict=True)
-    return ChainMatch(valid_rows, signs, poses, float(beam.cost[best]))
+    valid_rows, poses = map(np.array, zip(*beam.paths[best], strict=True))
+    return ChainMatch(valid_rows, poses, float(beam.cost[best]))
 
 
 def _from_free_base(first: RowConstants, target: Target) -> tuple[_Beam, BaseFreedom]:
@@ -93,8 +93,7 @@ def _from_free_base(first: RowConstants, target: Target) -> tuple[_Beam, BaseFre
     samples = first.written.shape[-1]
     poses = np.stack([identity((samples,)), rot_x(np.full(samples, np.pi))])
     row = np.nan_to_num(first.written)
-    paths: list[_Path] = [((row, pose, sign),) for pose, sign in zip(poses, (1, -1), strict=True)]
-    beam = _Beam(poses, np.array([0.0, TURNED_OVER]), paths)
+    beam = _Beam(poses, np.array([0.0, TURNED_OVER]), [((row, pose),) for pose in poses])
     return beam, BaseFreedom.on_first_axis(target.kind is TargetKind.PRISMATIC, samples)
 
 
@@ -107,19 +106,19 @@ def _next_beam(
     freedom: BaseFreedom,
 ) -> _Beam:
     """The cheapest hypotheses one row further on."""
-    on = _continuations(beam, row, target, length_scale, freedom)
-    expected = freedom.with_written_angle(on.rows, row.written)
+    parents, rows, distance, unreachable = _continuations(beam, row, target, length_scale, freedom)
+    expected = freedom.with_written_angle(rows, row.written)
     wrong = _wrong_cells(row, expected, length_scale)
     if row.variable is not None and directions_given:
-        wrong[:, row.variable] |= row.joint_sign * joint_signs_of(beam.pose)[on.parents] < 0
+        wrong[:, row.variable] |= row.joint_sign * joint_signs_of(beam.pose)[parents] < 0
     wrong |= row.wrong_regardless
-    cost = beam.cost[on.parents] + WRONG_CELL * (wrong & row.is_gradable).sum(axis=1)
-    cost += NO_SUCH_CELL * (wrong & row.absent).sum(axis=1) + UNREACHABLE * on.unreachable
+    cost = beam.cost[parents] + WRONG_CELL * (wrong & row.is_gradable).sum(axis=1)
+    cost += NO_SUCH_CELL * (wrong & row.absent).sum(axis=1) + UNREACHABLE * unreachable
     kept = np.argsort(cost, kind="stable")[:MAX_CONTINUATIONS]
     kept = kept[cost[kept] <= cost[kept[0]] + MAX_COST_BEHIND]
-    parents, rows, expected, cost = on.parents[kept], on.rows[kept], expected[kept], cost[kept]
-    start = _slid(beam.pose[parents], freedom, on.distance[kept])
-    pose = start @ standard_link(*rows.swapaxes(0, 1))
+    parents, expected, cost = parents[kept], expected[kept], cost[kept]
+    start = _slid(beam.pose[parents], freedom, distance[kept])
+    pose = start @ standard_link(*rows[kept].swapaxes(0, 1))
     if target.reference is not None:
         relative = inverse(target.reference) @ pose
         if target.rebases:
@@ -128,37 +127,24 @@ def _next_beam(
                 pose[..., :3, 3] = 0.0
         cost = cost + departure(relative, length_scale)
     kept = _distinct(pose, cost, length_scale)
-    signs = joint_signs_of(pose)
-    return _Beam(
-        pose[kept],
-        cost[kept],
-        [(*beam.paths[parents[i]], (expected[i], pose[i], int(signs[i]))) for i in kept],
-    )
-
-
-@dataclass(frozen=True, slots=True)
-class _Continuations:
-    """N ways to continue: the hypothesis ``(N,)`` that each continues, and its row ``(N, 4, L)``.
-
-    ``distance`` ``(N, L)`` is how far the frame must be slid along what is left of the base's
-    freedom; ``unreachable`` ``(N,)`` says that no row leads to the target.
-    """
-
-    parents: NDArray[np.int_]
-    rows: Numbers
-    distance: Numbers
-    unreachable: NDArray[np.bool_]
+    paths = [(*beam.paths[parents[i]], (expected[i], pose[i])) for i in kept]
+    return _Beam(pose[kept], cost[kept], paths)
 
 
 def _continuations(
     beam: _Beam, row: RowConstants, target: Target, length_scale: float, freedom: BaseFreedom
-) -> _Continuations:
-    """Every row that the hypotheses allow."""
+) -> tuple[NDArray[np.int_], Numbers, Numbers, NDArray[np.bool_]]:
+    """Every row that the hypotheses allow, in N ways.
+
+    Of each way the hypothesis ``(N,)`` that it continues, its row ``(N, 4, L)``, the distance
+    ``(N, L)`` that the frame must be slid along what is left of the base's freedom, and whether no
+    row leads to the target ``(N,)``.
+    """
     reference = target.reference
     if reference is None:
         rows = np.broadcast_to(np.nan_to_num(row.written), (len(beam.pose), *row.written.shape))
         nowhere = np.zeros((len(rows), rows.shape[-1]))
-        return _Continuations(np.arange(len(rows)), rows, nowhere, np.zeros(len(rows), np.bool_))
+        return np.arange(len(rows)), rows, nowhere, np.zeros(len(rows), np.bool_)
     seen = inverse(beam.pose) @ reference
     relations = axis_relations(seen, length_scale)
     found = []
@@ -168,23 +154,22 @@ def _continuations(
         candidates = candidate_rows(here, row.written, target.kind, length_scale)
         parents = np.repeat(members, candidates.shape[1])
         rows = candidates.reshape(-1, *candidates.shape[2:])
-        if freedom.slide is None and not freedom.anywhere:
-            options = [(rows, np.zeros((len(rows), rows.shape[-1])))]
-        else:
+        beyond = candidates
+        if freedom.slide is not None:
             step = np.ones(here.shape[:2])
             there = inverse(_slid(beam.pose[members], freedom, step)) @ reference
             beyond = candidate_rows(there, row.written, target.kind, length_scale)
             # One step aside the axes may lie differently; then there is nothing to compare with.
             beyond = beyond if beyond.shape == candidates.shape else candidates
-            options = freedom.use_up(rows, beyond.reshape(rows.shape), row.written)
-        for chosen, distance in options:
+        for chosen, distance in freedom.use_up(rows, beyond.reshape(rows.shape), row.written):
             if target.kind is TargetKind.TOOL:
                 reached = inverse(_slid(beam.pose[parents], freedom, distance)) @ reference
                 unreachable = is_unreachable(reached, length_scale) & (not freedom.anywhere)
             else:
                 unreachable = np.zeros(len(parents), np.bool_)
             found.append((parents, chosen, distance, unreachable))
-    return _Continuations(*(np.concatenate(parts) for parts in zip(*found, strict=True)))
+    parents, rows, distances, unreachable = map(np.concatenate, zip(*found, strict=True))
+    return parents, rows, distances, unreachable
 
 
 def _slid(pose: Matrices, freedom: BaseFreedom, distance: Numbers) -> Matrices:
@@ -202,10 +187,8 @@ def _wrong_cells(row: RowConstants, rows: Numbers, length_scale: float) -> NDArr
     turns = error[:, [ALPHA, THETA]] / (2 * np.pi)
     error[:, [ALPHA, THETA]] = 2 * np.pi * np.abs(turns - np.round(turns))
     size = np.sqrt(np.mean(rows * rows, axis=-1))
-    scale = np.ones(4)
-    scale[[A, D]] = length_scale
-    largest = np.full(4, LARGEST_ANGLE)
-    largest[[A, D]] = LARGEST_LENGTH * length_scale
+    scale = np.array([length_scale, 1.0, length_scale, 1.0])
+    largest = scale * [LARGEST_LENGTH, LARGEST_ANGLE, LARGEST_LENGTH, LARGEST_ANGLE]
     with np.errstate(invalid="ignore"):
         bounded = np.minimum(size, largest)
         right = error.max(axis=-1) <= np.maximum(row.tolerance * bounded, EXACT_CELL * scale)

@@ -1,8 +1,9 @@
 """Formulas of an exercise -> SymPy: the tree is walked, and no text is ever given to SymPy."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from decimal import Decimal
 from fractions import Fraction
+from operator import add, mul, sub, truediv
 
 import sympy
 
@@ -20,7 +21,7 @@ from service.expressions.tree import (
     Unit,
 )
 
-_FUNCTIONS: Mapping[str, sympy.Function] = {
+FUNCTIONS: Mapping[str, sympy.Function] = {
     "sin": sympy.sin,
     "cos": sympy.cos,
     "tan": sympy.tan,
@@ -31,6 +32,15 @@ _FUNCTIONS: Mapping[str, sympy.Function] = {
     "sqrt": sympy.sqrt,
     "abs": sympy.Abs,
     "exp": sympy.exp,
+}
+
+
+_OPERATORS: Mapping[Operator, Callable[[sympy.Expr, sympy.Expr], sympy.Expr]] = {
+    "+": add,
+    "-": sub,
+    "*": mul,
+    "/": truediv,
+    "^": pow,
 }
 
 
@@ -67,20 +77,6 @@ class Algebra:
             case Negation(operand):
                 return -self._node(operand)
             case Call(function, arguments):
-                return _FUNCTIONS[function](*map(self._node, arguments))
+                return FUNCTIONS[function](*map(self._node, arguments))
             case Binary(operator, left, right):
-                return _joined(operator, self._node(left), self._node(right))
-
-
-def _joined(operator: Operator, left: sympy.Expr, right: sympy.Expr) -> sympy.Expr:
-    match operator:
-        case "+":
-            return left + right
-        case "-":
-            return left - right
-        case "*":
-            return left * right
-        case "/":
-            return left / right
-        case "^":
-            return left**right
+                return _OPERATORS[operator](self._node(left), self._node(right))

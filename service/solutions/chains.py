@@ -1,6 +1,5 @@
 """The reference robot as a product of motions."""
 
-from collections.abc import Sequence
 from itertools import chain
 
 import sympy
@@ -10,7 +9,7 @@ from service.catalogue.fields import FrameName
 from service.catalogue.robot import FormulaRow
 from service.kinematics.dh import Convention
 from service.solutions.algebra import Algebra
-from service.solutions.motions import Fixed, Motion, Shift, Turn, X, Z, inverse, rotation_about
+from service.solutions.motions import Fixed, Motion, Shift, Turn, X, Z, inverse, multiplied
 
 
 def link(row: FormulaRow, convention: Convention, algebra: Algebra) -> list[Motion]:
@@ -81,36 +80,21 @@ def at_home(motion: Motion, exercise: Exercise, algebra: Algebra) -> Motion:
             return motion
 
 
-def joint_axes(
-    exercise: Exercise, algebra: Algebra
-) -> tuple[Sequence[sympy.Matrix], Sequence[sympy.Matrix]]:
+def joint_axes(exercise: Exercise, algebra: Algebra) -> list[tuple[sympy.Matrix, sympy.Matrix]]:
     """The direction of each joint's axis and a point on it, at home in the base frame, 3×1 each.
 
     Only for a robot with a table. Raises LookupError where there is none.
     """
     robot = exercise.robot
-    table = robot.tables[robot.convention]
+    # A standard row begins on its joint's axis; a modified one comes to it by a and α.
+    at = 0 if robot.convention is Convention.STANDARD else 2
     rotation, position = sympy.eye(3), sympy.zeros(3, 1)
-    directions, points = [], []
-    for row, _ in zip(table.rows, robot.joints, strict=False):
-        steps = link(row, robot.convention, algebra)
-        # A standard row begins on its joint's axis; a modified one comes to it by a and α.
-        at = 0 if robot.convention is Convention.STANDARD else 2
-        for i, motion in enumerate(steps):
+    axes = []
+    for row, _ in zip(robot.tables[robot.convention].rows, robot.joints, strict=False):
+        for i, motion in enumerate(link(row, robot.convention, algebra)):
             if i == at:
-                directions.append(rotation * Z)
-                points.append(position)
-            rotation, position = _moved(rotation, position, at_home(motion, exercise, algebra))
-    return directions, points
-
-
-def _moved(
-    rotation: sympy.Matrix, position: sympy.Matrix, motion: Motion
-) -> tuple[sympy.Matrix, sympy.Matrix]:
-    match motion:
-        case Shift(by):
-            return rotation, position + rotation * by
-        case Turn(axis, angle):
-            return rotation * rotation_about(axis, angle), position
-        case Fixed(fixed):
-            return rotation * fixed, position
+                axes.append((rotation * Z, position))
+            step = multiplied([at_home(motion, exercise, algebra)])
+            position += rotation * step.position
+            rotation *= step.rotation
+    return axes

@@ -1,6 +1,7 @@
 """An answer as it is posted, as text that may be pasted, and as LaTeX."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from service.expressions.printing.latex import to_latex
 from service.expressions.printing.text import to_text
@@ -48,13 +49,10 @@ def table(
     return PrintedAnswer(_markdown(labels, cells), _tabular(labels, rows, convention), answer)
 
 
-def row(nodes: Sequence[Node], label: str, convention: Convention) -> PrintedAnswer:
+def row(nodes: Sequence[Node], convention: Convention) -> PrintedAnswer:
     """One row of a DH table, set as a table of its own."""
-    cells = list(map(to_text, nodes))
-    answer = dict(zip(COLUMNS, cells, strict=True))
-    return PrintedAnswer(
-        _markdown([label], [cells]), _tabular([label], [nodes], convention), answer
-    )
+    answer = dict(zip(COLUMNS, map(to_text, nodes), strict=True))
+    return replace(table([nodes], ["1"], convention, named=False), answer=answer)
 
 
 def no_row() -> PrintedAnswer:

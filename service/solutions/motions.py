@@ -31,10 +31,6 @@ class Turn:
     axis: sympy.Matrix
     angle: sympy.Expr
 
-    def inverse(self) -> "Turn":
-        """The turn back."""
-        return Turn(self.axis, -self.angle)
-
 
 @dataclass(frozen=True, slots=True)
 class Shift:
@@ -42,20 +38,12 @@ class Shift:
 
     by: sympy.Matrix
 
-    def inverse(self) -> "Shift":
-        """The shift back."""
-        return Shift(-self.by)
-
 
 @dataclass(frozen=True, slots=True)
 class Fixed:
     """A rotation by a matrix that no joint variable enters."""
 
     rotation: sympy.Matrix
-
-    def inverse(self) -> "Fixed":
-        """The rotation back."""
-        return Fixed(self.rotation.T)
 
 
 Motion = Turn | Shift | Fixed
@@ -88,7 +76,17 @@ class Normal:
 
 def inverse(motions: Sequence[Motion]) -> list[Motion]:
     """The product that undoes ``motions``."""
-    return [motion.inverse() for motion in reversed(motions)]
+    return [_undone(motion) for motion in reversed(motions)]
+
+
+def _undone(motion: Motion) -> Motion:
+    match motion:
+        case Turn(axis, angle):
+            return Turn(axis, -angle)
+        case Shift(by):
+            return Shift(-by)
+        case Fixed(rotation):
+            return Fixed(rotation.T)
 
 
 def multiplied(motions: Iterable[Motion]) -> Pose:

@@ -4,7 +4,7 @@ A rotation that already is a product of turns in the sequence asked for gives it
 spherical wrist is ZYZ with its joint angles. Any other is written with atan2 of its entries.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from itertools import product
 
 import sympy
@@ -66,39 +66,29 @@ def _by_entries(rotation: sympy.Matrix, sequence: str) -> Angles:
     for ZYX; the other sequences follow by renaming the axes, with a sign where that turns a
     right-handed frame into a left-handed one.
     """
-    i, j = "XYZ".index(sequence[0]), "XYZ".index(sequence[1])
+    i, j = map("XYZ".index, sequence[:2])
     k = 3 - i - j
     sign = 1 if (j - i) % 3 == 1 else -1
     R = rotation
     if sequence[0] == sequence[2]:
         return (
             sympy.atan2(R[j, i], -sign * R[k, i]),
-            sympy.atan2(_root(R[i, j], R[i, k]), R[i, i]),
+            sympy.atan2(sympy.sqrt(R[i, j] ** 2 + R[i, k] ** 2), R[i, i]),
             sympy.atan2(R[i, j], sign * R[i, k]),
         )
     return (
         sympy.atan2(-sign * R[j, k], R[k, k]),
-        sympy.atan2(sign * R[i, k], _root(R[i, i], R[i, j])),
+        sympy.atan2(sign * R[i, k], sympy.sqrt(R[i, i] ** 2 + R[i, j] ** 2)),
         sympy.atan2(-sign * R[i, j], R[i, i]),
     )
 
 
-def _root(*sides: sympy.Expr) -> sympy.Expr:
-    return sympy.sqrt(sum((side**2 for side in sides), sympy.S.Zero))
-
-
 def as_angle(sine: sympy.Expr, cosine: sympy.Expr) -> sympy.Expr:
     """The angle with this sine and cosine: φ itself for sin φ and cos φ, with any signs."""
-    for angle in _candidates((sine, cosine)):
+    found = sine.atoms(sympy.sin, sympy.cos) | cosine.atoms(sympy.sin, sympy.cos)
+    arguments = sorted((call.args[0] for call in found), key=str)
+    for argument, quarter, sign in product((sympy.S.Zero, *arguments), _QUARTERS, (1, -1)):
+        angle = quarter + sign * argument
         if sympy.sin(angle) == sine and sympy.cos(angle) == cosine:
             return angle
     return sympy.atan2(sine, cosine)
-
-
-def _candidates(values: Sequence[sympy.Expr]) -> Iterable[sympy.Expr]:
-    found = set().union(*(value.atoms(sympy.sin, sympy.cos) for value in values))
-    arguments = sorted((call.args[0] for call in found), key=str)
-    for angle in (sympy.S.Zero, *arguments):
-        for quarter in _QUARTERS:
-            yield angle + quarter
-            yield quarter - angle

@@ -4,7 +4,7 @@ The trees are printed by service.expressions like any formula. A shorthand such 
 them as a symbol of that name, and only where a student's c12 would be read as just that.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from functools import reduce
@@ -15,18 +15,9 @@ from service.catalogue import Exercise
 from service.expressions import ExpressionError, Symbol, Vocabulary, read
 from service.expressions.printing.text import to_text
 from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
+from service.solutions.algebra import FUNCTIONS
 
-_NAMES: Mapping[type, str] = {
-    sympy.sin: "sin",
-    sympy.cos: "cos",
-    sympy.tan: "tan",
-    sympy.asin: "asin",
-    sympy.acos: "acos",
-    sympy.atan: "atan",
-    sympy.atan2: "atan2",
-    sympy.Abs: "abs",
-    sympy.exp: "exp",
-}
+_NAMES = {function: name for name, function in FUNCTIONS.items()}
 _TRIGONOMETRIC = (sympy.sin, sympy.cos, sympy.tan)
 # These fractions are written as such; another has a decimal point where its digits end.
 _PLAIN_DENOMINATORS = (1, 2, 3, 4)
@@ -150,13 +141,8 @@ class Writer:
     def _factor_order(self, factor: sympy.Expr) -> FactorOrder:
         """Numbers, then symbols, then sines and cosines by their joints, then brackets."""
         base = factor.base if isinstance(factor, sympy.Pow) else factor
-        rank = 3
-        if base.is_number:
-            rank = 0
-        elif isinstance(base, sympy.Symbol):
-            rank = 1
-        elif isinstance(base, _TRIGONOMETRIC):
-            rank = 2
+        is_symbol, is_turn = isinstance(base, sympy.Symbol), isinstance(base, _TRIGONOMETRIC)
+        rank = (bool(base.is_number), is_symbol, is_turn, True).index(True)
         orders = sorted(self._order[symbol.name] for symbol in base.free_symbols)
         return rank, orders, isinstance(base, sympy.sin), str(base)
 

@@ -27,13 +27,8 @@ class Work:
     algebra: Algebra
     writer: Writer
 
-    def given(self, part: PartSpec) -> list[list[sympy.Expr]] | None:
-        """The formulas that the part's file gives, in SymPy; None where the robot tells."""
-        grid = self.exercise.formulas.get(part.id)
-        return None if grid is None else self.algebra.matrix(grid).tolist()
-
     def as_written(self, part: PartSpec) -> list[list[Node]] | None:
-        """The same as the author has written them."""
+        """The formulas that the part's file gives; None where the robot tells."""
         grid, written = self.exercise.formulas.get(part.id), part.formulas()
         if grid is None or written is None:
             return None

@@ -103,6 +103,6 @@ def test_a_table_as_written_matches_itself_unless_a_cell_is_wrong_regardless() -
     match = match_as_written(written(wrong=False), TARGETS, 1.0)
     assert match is not None
     assert match.cost == 0
-    assert match.joint_signs == (1, 1, 1, 1)
-    np.testing.assert_array_equal(np.array(match.rows), rows_of(REFERENCE))
+    assert match.joint_signs == [1, 1, 1, 1]
+    np.testing.assert_array_equal(match.rows, rows_of(REFERENCE))
     assert match_as_written(written(wrong=True), TARGETS, 1.0) is None

@@ -46,7 +46,7 @@ def test_one_wrong_cell_costs_one_and_is_put_right(cell: tuple[int, int]) -> Non
     rows[cell] += 0.37
     match = nearest_table(constants(rows), TARGETS, 1.0)
     assert match.cost == pytest.approx(WRONG_CELL)
-    turns = np.array(match.rows) - arm()
+    turns = match.rows - arm()
     turns[:, [1, 3]] -= 2 * np.pi * np.round(turns[:, [1, 3]] / (2 * np.pi))
     np.testing.assert_allclose(turns, 0, atol=1e-9)
 
@@ -60,7 +60,7 @@ def test_other_frames_cost_little() -> None:
     written[2] = replace(written[2], joint_sign=-1)
     match = nearest_table(written, TARGETS, 1.0)
     assert match.cost == pytest.approx(TURNED_OVER)
-    assert match.joint_signs == (1, -1, 1, 1)
+    assert match.joint_signs == [1, -1, 1, 1]
 
 
 def test_a_departure_is_counted_for_each_way_in_which_a_frame_departs() -> None:

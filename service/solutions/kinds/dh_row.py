@@ -26,7 +26,7 @@ def answer(part: DhRowSpec, work: Work) -> PrintedAnswer:
         return layout.no_row()
     write = {"angle": work.writer.angle, "length": work.writer.number}
     nodes = [write[kind](cell) for kind, cell in zip(ROW_QUANTITIES, row, strict=True)]
-    return layout.row(nodes, "1", part.convention)
+    return layout.row(nodes, part.convention)
 
 
 def _dh_row(part: DhRowSpec, exercise: Exercise, algebra: Algebra) -> list[sympy.Expr] | None:

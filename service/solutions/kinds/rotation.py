@@ -17,10 +17,10 @@ def answer(part: RotationSpec, work: Work) -> PrintedAnswer:
 
 def _turns(part: RotationSpec, work: Work) -> list[Motion]:
     """The turns that the rotation is made of; about a fixed axis they go before all others."""
-    angles = work.given(part)
-    if part.steps is None or angles is None:
+    if part.steps is None:
         return work.pose_motions(part)
+    angles = work.algebra.matrix(work.exercise.formulas[part.id])
     motions: list[Motion] = []
-    for step, angle in zip(part.steps, angles[0], strict=True):
+    for step, angle in zip(part.steps, angles, strict=True):
         motions.insert(0 if step.about == "fixed" else len(motions), Turn(_AXES[step.axis], angle))
     return motions

@@ -33,10 +33,10 @@ def _in_space(exercise: Exercise, algebra: Algebra) -> list[tuple[sympy.Matrix, 
     if isinstance(exercise.reference, ScrewRobot):
         rows = algebra.matrix(exercise.reference.axes).tolist()
         return [(sympy.Matrix(row[:3]), sympy.Matrix(row[3:])) for row in rows]
-    directions, points = joint_axes(exercise, algebra)
+    axes = zip(exercise.joints, joint_axes(exercise, algebra), strict=True)
     return [
         (sympy.zeros(3, 1), direction) if joint.prismatic else (direction, point.cross(direction))
-        for joint, direction, point in zip(exercise.joints, directions, points, strict=True)
+        for joint, (direction, point) in axes
     ]
 
 

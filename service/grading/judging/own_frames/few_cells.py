@@ -104,7 +104,7 @@ def nearest_by_few_cells(
         return None
     if not case.wrong:
         reached = frames(case.table, convention)
-        if _coincide(reached[-1], case.reference[-1], case.unit):
+        if np.abs(_in_unit(reached[-1] - case.reference[-1], case.unit)).max() < SAME_POSE:
             on_axes = case.from_reference(reached[:, None, SUBSET_SAMPLES])
             return NearestTable(roles, case.table, on_axes[:, 0], 0.0)
     repairs = _repairs(case)
@@ -131,12 +131,6 @@ def _case(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> 
     right = finite & moves_with(table, motion, IS_ANGLE[:, None])
     wrong = frozenset((i, column) for i, column in np.argwhere(~right).tolist())
     return _Case(roles, table, variables, motion, wrong, convention, grading)
-
-
-def _coincide(one: Matrices, other: Matrices, unit: float) -> bool:
-    """Whether frames ``(samples, 4, 4)`` are the same."""
-    error = np.abs(one - other).max(axis=0)
-    return bool(error[:3, :3].max() < SAME_POSE and error[:3, 3].max() < SAME_POSE * unit)
 
 
 def _repairs(case: _Case) -> list[CellRepair]:

@@ -72,7 +72,7 @@ def _search(
             # It is not valid from any possible base: then it cannot be right.
             match = replace(match, cost=match.cost + NO_SUCH_CELL)
     # What each cell should be: the constants and the joint variables.
-    expected = np.tile(as_table(np.array(match.rows), convention), 2)
+    expected = np.tile(as_table(match.rows, convention), 2)
     for (i, column), joint in joint_cells(roles).items():
         sign = (freedom.directions and rows[i + 1].joint_sign) or match.joint_signs[i]
         expected[i, column] += sign * samples.values[joint.variable]
@@ -128,10 +128,10 @@ def _joint_frames(
     its axis in the standard convention; in the modified one, that is the frame which Z leads to.
     """
     places = [i for i, _ in joint_cells(roles)]
-    relative_poses = np.array(match.relative_poses)[places]
+    relative_poses = match.relative_poses[places]
     if convention is Convention.STANDARD:
         return relative_poses
-    offsets = z_links(np.array(match.rows[1:])[places])
+    offsets = z_links(match.rows[1:][places])
     return np.asarray(inverse(mechanism.offsets) @ relative_poses @ offsets)
 
 

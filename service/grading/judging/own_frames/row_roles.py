@@ -112,16 +112,14 @@ def pair_in_order(scores: Numbers) -> list[tuple[int | None, int | None]]:
             best[i, j] = max(scores[i, j] + best[i + 1, j + 1], best[i + 1, j], best[i, j + 1])
     pairs: list[tuple[int | None, int | None]] = []
     i = j = 0
-    while i < m and j < n:
-        if best[i, j] == scores[i, j] + best[i + 1, j + 1]:
+    while i < m or j < n:
+        if i < m and j < n and best[i, j] == scores[i, j] + best[i + 1, j + 1]:
             pairs.append((i, j))
             i, j = i + 1, j + 1
-        elif best[i, j] == best[i, j + 1]:
+        elif j < n and best[i, j] == best[i, j + 1]:
             pairs.append((None, j))
             j += 1
         else:
             pairs.append((i, None))
             i += 1
-    pairs.extend((k, None) for k in range(i, m))
-    pairs.extend((None, k) for k in range(j, n))
     return pairs

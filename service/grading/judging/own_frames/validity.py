@@ -1,7 +1,5 @@
 """Which of many tables describe the robot, in whatever frames."""
 
-from collections.abc import Iterator
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,7 +19,7 @@ from service.kinematics.candidate_rows import TargetKind
 from service.kinematics.chain import pose
 from service.kinematics.chain_match import Target, match_tables
 from service.kinematics.dh import Convention
-from service.kinematics.transforms import Matrices, Numbers
+from service.kinematics.transforms import Numbers
 
 
 def valid_tables(
@@ -81,33 +79,18 @@ def targets_of(
 ) -> list[Target]:
     """What each row leads to: joint axes, frames of fixed rows, and in the end the tool."""
     targets: list[Target] = []
-    links = iter(mechanism.joints)
-    fixed = iter(mechanism.fixed)
+    links, fixed = iter(mechanism.joints), iter(mechanism.fixed)
+    last_joint = max((i for i, role in enumerate(roles) if role.joint), default=-1)
     for i, role in enumerate(roles):
+        kind, frame = TargetKind.FIXED, None
         if role.joint is not None:
             kind = TargetKind.PRISMATIC if role.joint.prismatic else TargetKind.REVOLUTE
-            targets.append(Target(kind, next(links)))
-        else:
-            frame = _fixed_frame(i, roles, convention, mechanism, fixed)
-            targets.append(Target(TargetKind.FIXED, frame))
+            frame = next(links)
+        elif i == len(roles) - 1 and convention is Convention.MODIFIED:
+            # Z of the last row alone leads from there to the tool, so that z lies on the tool's z.
+            frame = mechanism.tool
+        elif i > last_joint:
+            frame = next(fixed, None)
+        targets.append(Target(kind, frame))
     tool = TargetKind.OPEN if freedom.tool else TargetKind.TOOL
     return [*targets, Target(tool, mechanism.tool)]
-
-
-def _fixed_frame(
-    i: int,
-    roles: tuple[Role, ...],
-    convention: Convention,
-    mechanism: Mechanism,
-    fixed: Iterator[Matrices],
-) -> Matrices | None:
-    """The frame that a fixed row after the last joint should start from, where that is known.
-
-    In the modified convention Z of the last row alone leads from there to the tool, so that z there
-    lies on the tool's z.
-    """
-    if any(role.joint for role in roles[i:]):
-        return None
-    if convention is Convention.MODIFIED and i == len(roles) - 1:
-        return mechanism.tool
-    return next(fixed, None)
