@@ -28,41 +28,37 @@ ARGUMENTS_SWAPPED = (
 
 def sign(case: WrongValue) -> Hypotheses:
     """The size is right, the direction is not."""
-    yield Written(-case.expected, Finding("sign", WRONG_SIGN, case.correction))
+    yield Written(-case.expected, case.finding("sign", WRONG_SIGN))
 
 
 def degrees_as_radians(case: WrongValue) -> Hypotheses:
     """A number in degrees was handed in where radians are read."""
-    finding = Finding("degrees_as_radians", FITS_IN_DEGREES, case.correction)
-    yield Repaired(np.radians(case.actual), finding)
+    yield Repaired(np.radians(case.actual), case.finding("degrees_as_radians", FITS_IN_DEGREES))
 
 
 def radians_as_degrees(case: WrongValue) -> Hypotheses:
     """A number in radians was handed in where degrees are read."""
-    finding = Finding("radians_as_degrees", FITS_IN_RADIANS, case.correction)
-    yield Repaired(np.degrees(case.actual), finding)
+    yield Repaired(np.degrees(case.actual), case.finding("radians_as_degrees", FITS_IN_RADIANS))
 
 
 def lost_quadrant(case: WrongValue) -> Hypotheses:
     """atan(y/x) was taken for atan2(y, x), which differs by half a turn where x is negative."""
     opposite = np.abs(difference(case.actual, case.expected, angle=True)) > np.pi / 2
     if opposite.any() and not opposite.all():
-        finding = Finding(
+        finding = case.finding(
             "lost_quadrant",
             "This angle is right for some joint values and half a turn off for others: atan(y/x) "
             "cannot tell opposite directions apart, atan2(y, x) can.",
-            case.correction,
         )
         yield Written(case.expected + np.pi * opposite, finding, tolerance=ROUNDED_VALUE)
 
 
 def half_turn(case: WrongValue) -> Hypotheses:
     """A direction was taken for its opposite."""
-    finding = Finding(
+    finding = case.finding(
         "half_turn",
         "This angle is off by half a turn (180°): the direction that it is measured to is the "
         "opposite one.",
-        case.correction,
     )
     yield Written(case.expected + np.pi, finding, tolerance=ROUNDED_VALUE)
 
@@ -73,8 +69,7 @@ def swapped_atan2(case: WrongValue) -> Hypotheses:
     Without an arctangent, a constant is more likely to lack a quarter turn.
     """
     if np.ptp(case.expected) > ROUNDED_VALUE or has_arctangent(case.expression.tree):
-        finding = Finding("swapped_atan2", ARGUMENTS_SWAPPED, case.correction)
-        yield Written(np.pi / 2 - case.expected, finding)
+        yield Written(np.pi / 2 - case.expected, case.finding("swapped_atan2", ARGUMENTS_SWAPPED))
 
 
 def has_arctangent(tree: Node) -> bool:
@@ -86,21 +81,15 @@ def has_arctangent(tree: Node) -> bool:
 
 def quarter_turn(case: WrongValue) -> Hypotheses:
     """A turn by 90° was left out or added."""
-    finding = Finding("quarter_turn", "This angle is off by a quarter turn (90°).", case.correction)
+    finding = case.finding("quarter_turn", "This angle is off by a quarter turn (90°).")
     error = difference(case.actual, case.expected, angle=True)
     yield Written(case.expected + np.copysign(np.pi / 2, error), finding, tolerance=ROUNDED_VALUE)
 
 
 CHECKS = (undefined,)
-MISCONCEPTIONS = (
-    sign,
-    degrees_as_radians,
-    radians_as_degrees,
-    lost_quadrant,
-    half_turn,
-    swapped_atan2,
-    quarter_turn,
-)
+OF_UNIT = (degrees_as_radians, radians_as_degrees)
+OF_TURNS = (lost_quadrant, half_turn, swapped_atan2, quarter_turn)
+MISCONCEPTIONS = (sign, *OF_UNIT, *OF_TURNS)
 
 
 def diagnose_angle(case: WrongValue) -> Finding:

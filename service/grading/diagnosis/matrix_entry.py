@@ -38,9 +38,7 @@ Formulas = Iterator[Rewritten]
 
 def sign(case: WrongEntry) -> Iterator[Written[Numbers]]:
     """The size is right, the direction is not."""
-    yield Written(
-        -case.expected, Finding("sign", "The sign of this entry is wrong.", case.correction)
-    )
+    yield Written(-case.expected, case.finding("sign", "The sign of this entry is wrong."))
 
 
 def degrees_as_radians(case: WrongEntry) -> Formulas:
@@ -140,16 +138,9 @@ def term_sign(case: WrongEntry) -> Formulas:
 
 
 CHECKS = (undefined,)
-MISCONCEPTIONS = (
-    sign,
-    degrees_as_radians,
-    radians_as_degrees,
-    sine_for_cosine,
-    sum_of_cosines,
-    product_for_sum_angle,
-    relative_angle,
-    term_sign,
-)
+OF_UNIT = (degrees_as_radians, radians_as_degrees)
+OF_ANGLES = (sine_for_cosine, sum_of_cosines, product_for_sum_angle, relative_angle)
+MISCONCEPTIONS = (sign, *OF_UNIT, *OF_ANGLES, term_sign)
 
 
 def diagnose(case: WrongEntry, *, take_apart: bool = True) -> Finding:

@@ -1,6 +1,6 @@
 """A wrong value, a wrong table cell and a wrong array of numbers, with all that explains them."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
@@ -15,7 +15,6 @@ from service.grading.diagnosis.wording import MEASURED, SYMBOLS
 from service.grading.feedback import Finding
 from service.grading.misconception import AnyHypothesis, Hypothesis, Index, Repaired, Written
 from service.grading.samples import Samples
-from service.kinematics.chain import COLUMNS
 from service.kinematics.transforms import Numbers
 
 Mask = NDArray[np.bool_]
@@ -38,10 +37,12 @@ class WrongValue:
     scale: float
     angle: bool
 
-    @property
-    def correction(self) -> str:
-        """The sentence that gives the answer away."""
-        return f"It should be {self.expected_text}." if self.expected_text else ""
+    def finding(
+        self, code: str, hint: str, values: dict[str, float | str] | None = None
+    ) -> Finding:
+        """A finding with the sentence that gives the answer away."""
+        correction = f"It should be {self.expected_text}." if self.expected_text else ""
+        return Finding(code, hint, correction, values=values)
 
     @property
     def constants(self) -> tuple[Numbers, Numbers]:
@@ -72,41 +73,42 @@ class WrongValue:
 class WrongCell(WrongValue):
     """A wrong table cell. ``joint`` is the row's joint, or None in a fixed row.
 
-    The coefficients say how often each of ``joints`` is contained in the student's cell, None if
-    not linearly, and in the expected one. ``shared`` says that the joint's axis has a parallel
-    neighbour, so that offsets along it add up.
+    ``contained`` says how often the student's cell contains which joint variables, None if not
+    linearly; ``required`` how often the expected one does. ``shared`` says that the joint's axis
+    has a parallel neighbour, so that offsets along it add up.
     """
 
-    column: str
+    column: int
     joint: Joint | None
-    joints: tuple[Joint, ...] = ()
-    actual_coefficients: tuple[int, ...] | None = ()
-    expected_coefficients: tuple[int, ...] = ()
+    contained: Mapping[Joint, int] | None
+    required: Mapping[Joint, int]
     shared: bool = False
 
     @property
     def symbol(self) -> str:
         """The parameter that the cell holds: a, α, d or θ."""
-        return SYMBOLS[COLUMNS.index(self.column)]
+        return SYMBOLS[self.column]
 
     @property
     def measured(self) -> str:
         """How that parameter is measured: along or about x or z."""
-        return MEASURED[COLUMNS.index(self.column)]
+        return MEASURED[self.column]
 
     @property
     def same_motion(self) -> bool:
         """Whether the cell moves with the joints as expected, so that only its constant differs."""
-        return self.actual_coefficients == self.expected_coefficients
+        return self.contained == self.required
+
+    @property
+    def contained_alone(self) -> tuple[Joint, int] | tuple[None, int]:
+        """The only joint variable in the cell with its count, else ``(None, 0)``."""
+        return next(iter(self.contained.items())) if len(self.contained or ()) == 1 else (None, 0)
 
     @cached_property
     def constants(self) -> tuple[Numbers, Numbers]:
         """The actual and the expected value without the joint variables that they share."""
-        motion = sum(
-            count * self.samples.values[joint.variable]
-            for count, joint in zip(self.expected_coefficients, self.joints, strict=True)
-            if count
-        )
+        values = self.samples.values
+        motion = sum(count * values[joint.variable] for joint, count in self.required.items())
         return self.actual - motion, self.expected - motion
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterator[AnyHypothesis]:
@@ -160,18 +162,15 @@ def undefined(case: WrongValue) -> Finding | None:
         return None
     at = case.samples.at(int(bad[0]), case.expression.symbols)
     where = ", ".join(f"{name} = {number:g}" for name, number in at.items())
-    return Finding(
+    return case.finding(
         "undefined",
         f"{case.expression.text()} has no value{' at ' if where else ''}{where}: it divides by "
         f"zero, takes the root of a negative number, or grows beyond all bounds.",
-        case.correction,
-        values={**at},
+        {**at},
     )
 
 
 def differs(case: WrongValue, hint: str) -> Finding:
     """``hint`` and one counterexample, for a value that no known misconception explains."""
     at = case.samples.at(0, case.expression.symbols)
-    return Finding(
-        UNEXPLAINED, hint, case.correction, values={**at, "yours": float(f"{case.actual[0]:.4g}")}
-    )
+    return case.finding(UNEXPLAINED, hint, {**at, "yours": float(f"{case.actual[0]:.4g}")})

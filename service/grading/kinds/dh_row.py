@@ -103,9 +103,10 @@ def _slip(
             samples=grading.samples,
             scale=1.0 if angle else grading.exercise.length_scale,
             angle=angle,
-            column=COLUMNS[i],
+            column=i,
             joint=None,
-            joints=(),
+            contained={},
+            required={},
         )
     )
 

@@ -10,6 +10,7 @@ from service.grading.diagnosis.table_cell import diagnose
 from service.grading.diagnosis.wrong_value import WrongCell, undefined
 from service.grading.joint_motion import coefficients
 from service.grading.samples import HALF, SAMPLES, Samples
+from service.kinematics.chain import COLUMNS
 from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
 
 RNG = np.random.default_rng(5)
@@ -29,8 +30,9 @@ def wrong(column: str, number: int, written: str, right: str) -> WrongCell:
     expected = read(right, WORDS, quantity=quantity)  # type: ignore[arg-type]
     values = [np.zeros(SAMPLES) + text.evaluate(VALUES) for text in (expression, expected)]
     values[0][~np.isfinite(values[0])] = np.nan
-    actual_counts, expected_counts = coefficients(
-        np.array(values), JOINTS, SAMPLE, np.array([angle, angle])
+    contained, required = (
+        None if counts is None else {JOINTS[k]: n for k, n in enumerate(counts) if n}
+        for counts in coefficients(np.array(values), JOINTS, SAMPLE, np.array([angle, angle]))
     )
     return WrongCell(
         expression=expression,
@@ -40,11 +42,10 @@ def wrong(column: str, number: int, written: str, right: str) -> WrongCell:
         samples=SAMPLE,
         scale=1.0 if angle else 0.5,
         angle=angle,
-        column=column,
+        column=COLUMNS.index(column),
         joint=JOINTS[number - 1],
-        joints=JOINTS,
-        actual_coefficients=actual_counts,
-        expected_coefficients=expected_counts or (0, 0, 0),
+        contained=contained,
+        required=required or {},
     )
 
 
