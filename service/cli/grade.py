@@ -1,33 +1,33 @@
 """`dh-grader grade`: submissions in files, graded here and now."""
 
 import io
-import json
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 from rich.console import Console
-from rich.text import Text
 
 from service.catalogue import Exercise
 from service.cli.submission_files import UnusableFileError, read_submission
 from service.cli.terminal import UNUSABLE, catalogue_or_exit, complain, give_up, stdout
-from service.formats import json as json_format
-from service.formats import text as text_format
+from service.formats import FORMATS
+from service.formats.text import visible
 from service.grading import FeedbackLevel, Report, UnknownPartError, grade
 from service.submissions import UnknownExerciseError, find_exercise, nearest
 
 BELOW_PASS_MARK = 1
 
 
-class Format(StrEnum):
-    """The form in which a report is written."""
-
-    TEXT = "text"
-    JSON = "json"
+if TYPE_CHECKING:
+    ReportFormat = StrEnum
+else:
+    # The format for people first, since it is the default.
+    ReportFormat = StrEnum(
+        "ReportFormat", {name: name for name in sorted(FORMATS, key=lambda name: name != "text")}
+    )
+_TEXT: Final = next(iter(ReportFormat))
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,13 +49,13 @@ def command(
         typer.Option(metavar="P", help="Grade this part only; a file may hold its answer alone."),
     ] = None,
     output_format: Annotated[
-        Format,
+        ReportFormat,
         typer.Option(
             "--format",
             help="For people, or for programs: json prints exactly the report, and for several "
             'files a list with {"file", "report"} or {"file", "error"} for each.',
         ),
-    ] = Format.TEXT,
+    ] = _TEXT,
     output: Annotated[
         Path | None, typer.Option(metavar="F", help="Write to this file instead.")
     ] = None,
@@ -81,14 +81,15 @@ def command(
     for result in graded:
         if result.error:
             complain(f"{result.file}: {result.error}")
-    if output_format is Format.JSON:
-        _deliver(_as_json(graded), output)
-    elif output is None:
-        _write_text(graded, stdout())
+    page = FORMATS[output_format.value]
+    results = [(str(each.file), each.report or each.error) for each in graded]
+    if output is None:
+        typer.echo(page(results, stdout()), nl=False)
     else:
-        page = io.StringIO()
-        _write_text(graded, Console(file=page, width=80, highlight=False, markup=False))
-        _deliver(page.getvalue().encode("utf-8", "replace"), output)
+        _save(
+            page(results, Console(file=io.StringIO(), width=80, highlight=False, markup=False)),
+            output,
+        )
     raise SystemExit(max(_exit_code(result, pass_mark) for result in graded))
 
 
@@ -124,7 +125,7 @@ def _graded(
         return Graded(file, None, str(error))
     except UnknownPartError as error:
         known = ", ".join(error.known)
-        name = text_format.visible(error.unknown[:60])
+        name = visible(error.unknown[:60])
         return Graded(file, None, f"answers {name!r}, but {exercise.id} has only {known}")
 
 
@@ -135,36 +136,7 @@ def _exit_code(result: Graded, pass_mark: float) -> int:
     return 0 if result.report.score >= pass_mark - 5e-7 else BELOW_PASS_MARK
 
 
-def _as_json(graded: Sequence[Graded]) -> bytes:
-    """The report alone for one file; nothing if it could not be used."""
-    if len(graded) == 1:
-        report = graded[0].report
-        return b"" if report is None else json_format.rendered(report, indent=2) + b"\n"
-    return b"[\n" + b",\n".join(map(_entry, graded)) + b"\n]\n"
-
-
-def _entry(result: Graded) -> bytes:
-    file = json.dumps(str(result.file)).encode()
-    if result.report is None:
-        return b'{"file": %b, "error": %b}' % (file, json.dumps(result.error).encode())
-    return b'{"file": %b, "report": %b}' % (file, json_format.rendered(result.report))
-
-
-def _write_text(graded: Iterable[Graded], console: Console) -> None:
-    several = len(list(graded)) > 1
-    for result in graded:
-        if several and result.report is not None:
-            console.print(Text(f"== {text_format.visible(str(result.file))}", "bold"))
-        if result.report is not None:
-            text_format.write(result.report, console)
-        if several and result.report is not None:
-            console.print()
-
-
-def _deliver(content: bytes, output: Path | None) -> None:
-    if output is None:
-        typer.echo(content, nl=False)
-        return
+def _save(content: bytes, output: Path) -> None:
     try:
         output.write_bytes(content)
     except OSError as error:

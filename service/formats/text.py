@@ -3,7 +3,7 @@
 Marks, not colours, carry the meaning, so it reads the same in a file or without colour.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Final
 
 from rich.console import Console
@@ -30,6 +30,19 @@ _SIGNS: Final[Mapping[Verdict, str]] = {
 _ASCII: Final = str.maketrans("✓✗–", "+x-")
 # Longer lines are hard to read however wide the terminal is.
 _WIDEST: Final = 100
+
+
+def page(results: Sequence[tuple[str, Report | str]], console: Console) -> bytes:
+    """The reports one after the other, each of several with its file's name."""
+    reports = [(file, result) for file, result in results if isinstance(result, Report)]
+    with console.capture() as captured:
+        for file, report in reports:
+            if len(results) > 1:
+                console.print(Text(f"== {visible(file)}", "bold"))
+            write(report, console)
+            if len(results) > 1:
+                console.print()
+    return captured.get().encode(console.encoding, "replace")
 
 
 def write(report: Report, console: Console) -> None:
