@@ -7,7 +7,7 @@ from fastapi import APIRouter, Request, Response
 from service.api.bodies import body_as
 from service.api.lookup import Catalogue, exercise_or_404, require_parts
 from service.api.openapi import answer, refusals, request_body
-from service.formats import json
+from service.formats.json import rendered
 from service.grading import Report, grade
 from service.submissions import GradeRequest
 
@@ -44,6 +44,6 @@ def routes(catalogue: Catalogue) -> APIRouter:
         exercise = exercise_or_404(catalogue, exercise_id)
         body = await body_as(GradeRequest, request)
         require_parts(exercise, {part: ("answers", part) for part in body.answers})
-        return Response(json.rendered(grade(exercise, body.submission())), media_type=JSON)
+        return Response(rendered(grade(exercise, body.submission())), media_type=JSON)
 
     return router

@@ -7,6 +7,7 @@ read is checked in ``compile.py``, where the exercise's symbols are known.
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StrictInt, StringConstraints
+from pydantic.fields import FieldInfo
 
 
 def _no_truth_value(value: object) -> object:
@@ -15,10 +16,20 @@ def _no_truth_value(value: object) -> object:
     return value
 
 
+def advice(text: str) -> FieldInfo:
+    """What an author should write whose text has another pattern, as metadata of the field."""
+    field: FieldInfo = Field(json_schema_extra={"advice": text})
+    return field
+
+
 NotBool = BeforeValidator(_no_truth_value)
 Formula = Annotated[str | float, NotBool]
 Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
-Identifier = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9]*(?:[-_][a-z0-9]+)*$")]
+Identifier = Annotated[
+    str,
+    StringConstraints(pattern=r"^[a-z][a-z0-9]*(?:[-_][a-z0-9]+)*$"),
+    advice('write small letters and digits, with - or _ between them, such as "link-2"'),
+]
 GivenOrFree = Literal["given", "free"]
 FrameName = Literal["base", "tool"] | Annotated[StrictInt, Field(ge=0)]
 
@@ -29,6 +40,6 @@ Screw = tuple[Formula, Formula, Formula, Formula, Formula, Formula]
 
 
 class StrictModel(BaseModel):
-    """A table of the file: a key that it does not have is a fault."""
+    """A table of the file; an unknown key is a fault. The text below a key is its meaning."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)

@@ -33,43 +33,22 @@ class PartSpec(StrictModel, ABC):
     holds_links: ClassVar[bool] = False
     compared_by_formulas: ClassVar[bool] = False
 
-    id: Annotated[
-        Identifier,
-        Field(
-            description="The name of the part in answers and reports.",
-            examples=["table"],
-            json_schema_extra={
-                "advice": "write small letters and digits, with - or _ between them, such as "
-                '"link-2"'
-            },
-        ),
-    ]
-    title: Text = Field(
-        description="The title that students see.", examples=["Denavit-Hartenberg table"]
-    )
-    prompt: str = Field(
-        "",
-        description="The task, in one sentence or more.",
-        examples=["Give the standard DH table, one row for each joint."],
-    )
-    points: Annotated[float, Field(gt=0, le=1000), NotBool] = Field(
-        1.0, description="The points for a right answer; its rows share them.", examples=[12]
-    )
-    all_or_nothing: bool = Field(
-        False, description="Whether an answer earns its points only when all of it is right."
-    )
-    follows: Identifier | None = Field(
-        None,
-        description="The id of an earlier part that this one builds on. An answer that is wrong "
-        "for the robot, but right for the student's own answer to that part, earns its points.",
-        examples=["table"],
-    )
-    follows_from: Annotated[float, Field(ge=0, le=1), NotBool] = Field(
-        0.5,
-        description="The share of its points that the student's answer to the earlier part must "
-        "have earned before this part may follow from it.",
-        examples=[0.75],
-    )
+    id: Identifier
+    """The name of the part in answers and reports."""
+    title: Text
+    """The title that students see."""
+    prompt: str = ""
+    """The task, in one sentence or more."""
+    points: Annotated[float, Field(gt=0, le=1000), NotBool] = 1.0
+    """The points for a right answer; its rows share them."""
+    all_or_nothing: bool = False
+    """Whether an answer earns its points only when all of it is right."""
+    follows: Identifier | None = None
+    """The id of an earlier part that this one builds on. An answer that is wrong for the robot,
+    but right for the student's own answer to that part, earns its points."""
+    follows_from: Annotated[float, Field(ge=0, le=1), NotBool] = 0.5
+    """The share of its points that the student's answer to the earlier part must have earned
+    before this part may follow from it."""
     if TYPE_CHECKING:
         kind: str
 
@@ -96,15 +75,13 @@ class PosePartSpec(PartSpec):
     A part of another robot, or of none, has the answer itself in one of its ``answer_fields``.
     """
 
-    start: FrameName = Field(
-        "base",
-        alias="from",
-        description='The frame that the pose is seen from: "base", "tool", or a number of the '
-        "robot's own table.",
-        examples=[2],
-    )
-    to: FrameName = Field("tool", description="The frame whose pose is asked for.", examples=[3])
-    home: bool = Field(False, description="Whether all joint variables are 0.")
+    start: FrameName = Field("base", alias="from")
+    """The frame that the pose is seen from: "base", "tool", or a number of the robot's own
+    table."""
+    to: FrameName = "tool"
+    """The frame whose pose is asked for."""
+    home: bool = False
+    """Whether all joint variables are 0."""
 
     def check_reference(self, field: str, reference: Reference | None) -> None:
         """Check that the robot has both frames. Raises FieldError."""

@@ -12,7 +12,7 @@ from pydantic import (
     model_validator,
 )
 
-from service.catalogue.fields import Formula, Four, Homogeneous, Screw, StrictModel, Text
+from service.catalogue.fields import Formula, Four, Homogeneous, Screw, StrictModel, Text, advice
 from service.catalogue.parts import SPECS, AnyPartSpec
 from service.expressions import Kind
 from service.kinematics.dh import Convention
@@ -20,24 +20,9 @@ from service.kinematics.dh import Convention
 Structure = Annotated[
     str,
     StringConstraints(pattern=r"^[RP]{1,10}$"),
-    Field(
-        description="One letter for each joint: R turns, P slides; at most 10.",
-        examples=["RP"],
-        json_schema_extra={
-            "advice": "write one letter for each joint, R if it turns and P if it slides, at most "
-            "10"
-        },
-    ),
+    advice("write one letter for each joint, R if it turns and P if it slides, at most 10"),
 ]
-Joints = Annotated[
-    list[Text],
-    Field(
-        min_length=1,
-        description="The joint variables in order. A number in the first one is the number of the "
-        "first joint.",
-        examples=[["theta1", "d2"]],
-    ),
-]
+Joints = Annotated[list[Text], Field(min_length=1)]
 
 
 class SymbolSpec(StrictModel):
@@ -46,38 +31,30 @@ class SymbolSpec(StrictModel):
     A joint variable needs no entry, but may have one that says more about it.
     """
 
-    kind: Kind = Field(description="Whether it is an angle, a length or a plain number.")
-    description: Text = Field(
-        description="Its meaning, as students see it.", examples=["length of link 1"]
-    )
-    unit: str = Field(
-        "",
-        description='Its unit, as students see it; without one "rad" for an angle and "m" for a '
-        "length.",
-        examples=["m"],
-    )
-    range: tuple[Formula, Formula] | None = Field(
-        None,
-        description="The least and the greatest test value; without it −π to π for an angle, 0.2 "
-        "to 1 for a length, 0.5 to 2 for a number.",
-        examples=[[0.3, 0.9]],
-    )
+    kind: Kind
+    """Whether it is an angle, a length or a plain number."""
+    description: Text
+    """Its meaning, as students see it."""
+    unit: str = ""
+    """Its unit, as students see it; without one "rad" for an angle and "m" for a length."""
+    range: tuple[Formula, Formula] | None = None
+    """The least and the greatest test value; without it −π to π for an angle, 0.2 to 1 for a
+    length, 0.5 to 2 for a number."""
 
 
 class RobotSpec(StrictModel):
     """The reference robot by its Denavit-Hartenberg table."""
 
     structure: Structure
-    convention: Convention = Field(
-        description='The convention of the table: "standard" (distal) or "modified" (proximal).'
-    )
+    """One letter for each joint: R turns, P slides; at most 10."""
+    convention: Convention
+    """The convention of the table: "standard" (distal) or "modified" (proximal)."""
     joints: Joints
-    table: list[Four] = Field(
-        description="A row [a, alpha, d, theta] for each joint, and one more where a fixed tool "
-        'row "e" follows. The joint variable stands in theta (R) or d (P), alone or plus a '
-        "constant; every other cell is constant.",
-        examples=[[["l1", "0", "0", "theta1"], ["l2", "180deg", "d2", "0"]]],
-    )
+    """The joint variables in order. A number in the first is the number of the first joint."""
+    table: list[Four]
+    """A row [a, alpha, d, theta] for each joint, and one more where a fixed tool row "e" follows.
+    The joint variable stands in theta (R) or d (P), alone or plus a constant; every other cell is
+    constant."""
 
     @model_validator(mode="after")
     def _fits_together(self) -> "RobotSpec":
@@ -99,16 +76,14 @@ class ScrewRobotSpec(StrictModel):
     """The reference robot by its product of exponentials."""
 
     structure: Structure
+    """One letter for each joint: R turns, P slides; at most 10."""
     joints: Joints
-    home: Homogeneous = Field(
-        description="The pose of the tool in the base frame with all joint variables 0, 4×4, row "
-        "by row."
-    )
-    screws: list[Screw] = Field(
-        description="The screw axis (ω; v) of each joint with all joint variables 0, seen from the "
-        "base frame (the space frame).",
-        examples=[[["0", "0", "1", "0", "0", "0"], ["0", "0", "0", "1", "0", "0"]]],
-    )
+    """The joint variables in order. A number in the first is the number of the first joint."""
+    home: Homogeneous
+    """The pose of the tool in the base frame with all joint variables 0, 4×4, row by row."""
+    screws: list[Screw]
+    """The screw axis (ω; v) of each joint with all joint variables 0, seen from the base frame
+    (the space frame)."""
 
     @model_validator(mode="after")
     def _fits_together(self) -> "ScrewRobotSpec":
@@ -139,23 +114,14 @@ AnyRobotSpec = Annotated[
 class ExpectSpec(StrictModel):
     """The result that one part must get: at least one key; a key left out allows any value."""
 
-    points: Annotated[float, Field(ge=0, strict=True)] | None = Field(
-        None, description="The points that it must get.", examples=[5.5]
-    )
-    verdict: Literal["correct", "partial", "incorrect", "unreadable", "missing"] | None = Field(
-        None, description="The verdict that it must get."
-    )
-    codes: list[Text] | None = Field(
-        None,
-        description="The codes that must be among those of the messages.",
-        examples=[["sign"]],
-    )
-    follow_through: StrictBool | None = Field(
-        None,
-        description="Whether it must earn its points as following from the student's own earlier "
-        "answer.",
-        examples=[True],
-    )
+    points: Annotated[float, Field(ge=0, strict=True)] | None = None
+    """The points that it must get."""
+    verdict: Literal["correct", "partial", "incorrect", "unreadable", "missing"] | None = None
+    """The verdict that it must get."""
+    codes: list[Text] | None = None
+    """The codes that must be among those of the messages."""
+    follow_through: StrictBool | None = None
+    """Whether it must earn its points as following from the student's own earlier answer."""
 
     @model_validator(mode="after")
     def _expects_something(self) -> "ExpectSpec":
@@ -167,23 +133,18 @@ class ExpectSpec(StrictModel):
 class CheckSpec(StrictModel):
     """One answer to the exercise, graded whenever the file is checked."""
 
-    title: Text = Field(
-        description="A few words on what is tried.", examples=["x1 the other way round, in degrees"]
-    )
-    kind: Literal["right", "equivalent", "wrong"] = Field(
-        description='"right" and "equivalent" must get full marks unless ``expect`` says '
-        'otherwise; "wrong" must lose some, as ``expect`` says.'
-    )
-    answers: Annotated[dict[str, JsonValue], Field(min_length=1)] = Field(
-        description="An answer for each part answered, by the part's id, as a submission has it; "
-        "a table or matrix may be pasted text.",
-    )
-    angle_unit: Literal["radians", "degrees"] = Field(
-        "radians", description="The unit of bare numbers where an angle is asked for."
-    )
-    expect: dict[str, ExpectSpec] = Field(
-        {}, description="The result that a part must get, by the part's id."
-    )
+    title: Text
+    """A few words on what is tried."""
+    kind: Literal["right", "equivalent", "wrong"]
+    """"right" and "equivalent" must get full marks unless ``expect`` says otherwise; "wrong" must
+    lose some, as ``expect`` says."""
+    answers: Annotated[dict[str, JsonValue], Field(min_length=1)]
+    """An answer for each part answered, by the part's id, as a submission has it; a table or
+    matrix may be pasted text."""
+    angle_unit: Literal["radians", "degrees"] = "radians"
+    """The unit of bare numbers where an angle is asked for."""
+    expect: dict[str, ExpectSpec] = Field({})
+    """The result that a part must get, by the part's id."""
 
     @model_validator(mode="after")
     def _says_what_is_wrong(self) -> "CheckSpec":
@@ -198,26 +159,20 @@ class CheckSpec(StrictModel):
 class ExerciseSpec(StrictModel):
     """One exercise file."""
 
-    title: Text = Field(description="The title of the exercise.", examples=["Elbow arm"])
-    source: Text = Field(
-        description="Where the exercise comes from, with a page; students see it.",
-        examples=["Spong, Hutchinson, Vidyasagar, Robot Modeling and Control, 3.2"],
-    )
-    statement: Text = Field(
-        description="All that a student has to know, without a figure.",
-    )
-    robot: AnyRobotSpec | None = Field(
-        None, description="The reference robot; without one every part holds its answer."
-    )
-    symbols: dict[Text, SymbolSpec] = Field(
-        {}, description="The letters that may stand in an answer, by their names."
-    )
-    parts: Annotated[list[AnyPartSpec], Field(min_length=1)] = Field(
-        description="The questions, one ``[[parts]]`` for each."
-    )
-    checks: list[CheckSpec] = Field(
-        [], description="Answers to try whenever the file is checked, one ``[[checks]]`` for each."
-    )
+    title: Text
+    """The title of the exercise."""
+    source: Text
+    """Where the exercise comes from, with a page; students see it."""
+    statement: Text
+    """All that a student has to know, without a figure."""
+    robot: AnyRobotSpec | None = None
+    """The reference robot; without one every part holds its answer."""
+    symbols: dict[Text, SymbolSpec] = Field({})
+    """The letters that may stand in an answer, by their names."""
+    parts: Annotated[list[AnyPartSpec], Field(min_length=1)]
+    """The questions, one ``[[parts]]`` for each."""
+    checks: list[CheckSpec] = Field([])
+    """Answers to try whenever the file is checked, one ``[[checks]]`` for each."""
 
     @model_validator(mode="after")
     def _part_ids_are_unique(self) -> "ExerciseSpec":

@@ -61,6 +61,7 @@ def test_show_tells_what_to_do_and_no_answer(run: Run) -> None:
     assert result.exit_code == 0
     for expected in ("Stanford arm", "RRPRRR", "distance from the wrist centre", "table:", "pose:"):
         assert expected in result.stdout
+    assert "Answer: a table with the rows 1, 2, 3, 4, 5, 6 and" in result.stdout
     assert "-90deg" not in result.stdout
     assert max(map(len, result.stdout.splitlines())) <= 80
 

@@ -1,7 +1,10 @@
+import io
 import json
 
 import pytest
+from rich.console import Console
 
+from service.formats import FORMATS, Results
 from service.formats.json import rendered
 from service.grading import (
     CellReport,
@@ -60,3 +63,14 @@ def test_a_value_that_json_does_not_have_is_still_json() -> None:
     content = rendered(Report("arm", "v1", True, 0, 1, 0, (part,)))
     assert b"NaN" not in content
     json.loads(content, parse_constant=pytest.fail)
+
+
+def test_every_file_of_formats_is_a_format() -> None:
+    assert set(FORMATS) == {"json", "text"}
+    console = Console(file=io.StringIO(), width=80)
+    results: Results = [("a.json", REPORT), ("b.json", "holds no answers")]
+    for page in FORMATS.values():
+        assert page(results, console)
+        assert page(results[1:], console) == b""
+    listed = json.loads(FORMATS["json"](results, console))
+    assert [sorted(each) for each in listed] == [["file", "report"], ["error", "file"]]

@@ -4,7 +4,6 @@ from dataclasses import replace
 from typing import ClassVar, Literal
 
 import numpy as np
-from pydantic import Field
 
 from service.catalogue.fields import Homogeneous
 from service.catalogue.formulas import (
@@ -48,10 +47,10 @@ class DhRowSpec(PartSpec):
     compared_by_formulas: ClassVar[bool] = True
 
     kind: Literal["dh_row"]
-    convention: Convention = Field(
-        Convention.STANDARD, description='"standard" (distal) or "modified" (proximal).'
-    )
-    transform: Homogeneous = Field(description="The transform by its entries, row by row.")
+    convention: Convention = Convention.STANDARD
+    """"standard" (distal) or "modified" (proximal)."""
+    transform: Homogeneous
+    """The transform by its entries, row by row."""
 
     def formulas(self) -> WrittenFormulas:
         """The entries of the transform."""

@@ -48,20 +48,18 @@ class DhTableSpec(TablePartSpec):
     """
 
     kind: Literal["dh_table"]
-    convention: Convention | Literal["either"] = Field(
-        description='"standard" (distal) or "modified" (proximal); with "either" the answer says '
-        "which it uses.",
-    )
-    frames: GivenOrFree = Field(
-        "given",
-        description='Whose choice the frames on the joints are: "given" accepts those of the '
-        'reference only, "free" every valid choice.',
-    )
-    base: GivenOrFree = Field("given", description="Whose choice the base frame is.")
-    tool: GivenOrFree = Field("given", description="Whose choice the tool frame is.")
-    directions: GivenOrFree = Field(
-        "given", description="Whose choice the positive direction of each joint is."
-    )
+    convention: Convention | Literal["either"]
+    """"standard" (distal) or "modified" (proximal); with "either" the answer says which it
+    uses."""
+    frames: GivenOrFree = "given"
+    """Whose choice the frames on the joints are: "given" accepts those of the reference only,
+    "free" every valid choice."""
+    base: GivenOrFree = "given"
+    """Whose choice the base frame is."""
+    tool: GivenOrFree = "given"
+    """Whose choice the tool frame is."""
+    directions: GivenOrFree = "given"
+    """Whose choice the positive direction of each joint is."""
 
     def shape(self, reference: Reference | None) -> DhTableShape:
         """The columns and the row labels of the table."""

@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from service.catalogue.fields import Triple
 from service.catalogue.formulas import WrittenFormulas, list_of
@@ -17,18 +17,13 @@ class EulerAnglesSpec(PosePartSpec):
     kind: Literal["euler_angles"]
     sequence: Literal[
         "RPY", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX", "XYX", "XZX", "YXY", "YZY", "ZXZ", "ZYZ"
-    ] = Field(
-        description='The axes in the order of the turns. "RPY" is Rz(α) Ry(β) Rx(γ), answered as '
-        'α, β, γ: the same as "ZYX" about moving axes.'
-    )
-    axes: Literal["moving", "fixed"] = Field(
-        "moving", description="Whether the axes are of the moving frame or of the fixed one."
-    )
-    expected: Triple | None = Field(
-        None,
-        description="One triple of angles that is right, in place of the robot's orientation.",
-        examples=[["phi", "theta", "psi"]],
-    )
+    ]
+    """The axes in the order of the turns. "RPY" is Rz(α) Ry(β) Rx(γ), answered as α, β, γ: the
+    same as "ZYX" about moving axes."""
+    axes: Literal["moving", "fixed"] = "moving"
+    """Whether the axes are of the moving frame or of the fixed one."""
+    expected: Triple | None = None
+    """One triple of angles that is right, in place of the robot's orientation."""
 
     @property
     def turns(self) -> str:

@@ -2,8 +2,6 @@
 
 from typing import ClassVar, Literal
 
-from pydantic import Field
-
 from service.catalogue.fields import GivenOrFree
 from service.catalogue.part import TablePartSpec
 from service.catalogue.robot import Robot
@@ -39,12 +37,11 @@ class LinkTransformsSpec(TablePartSpec):
     holds_links: ClassVar[bool] = True
 
     kind: Literal["link_transforms"]
-    convention: Convention = Field(description='"standard" (distal) or "modified" (proximal).')
-    frames: GivenOrFree = Field(
-        "given",
-        description='Whose choice the frames on the joints are: with "free" the transforms may be '
-        "those of any valid table, or of the student's own where the part follows one.",
-    )
+    convention: Convention
+    """"standard" (distal) or "modified" (proximal)."""
+    frames: GivenOrFree = "given"
+    """Whose choice the frames on the joints are: with "free" the transforms may be those of any
+    valid table, or of the student's own where the part follows one."""
 
     def shape(self, reference: Reference | None) -> LinkTransformsShape:
         """The names of the matrices and their size."""

@@ -19,16 +19,11 @@ class MatrixSpec(PartSpec):
     expected: Annotated[
         list[Annotated[list[Formula], Field(min_length=1, max_length=6)]],
         Field(min_length=1, max_length=6),
-    ] = Field(
-        description="The entries, row by row.",
-        examples=[[["0", "-omega3"], ["omega3", "0"]]],
-    )
-    quantity: Kind | list[Kind] = Field(
-        "number",
-        description="Whether the entries are angles, lengths or plain numbers: one word for all, "
-        "or one for each column.",
-        examples=[["number", "length"]],
-    )
+    ]
+    """The entries, row by row."""
+    quantity: Kind | list[Kind] = "number"
+    """Whether the entries are angles, lengths or plain numbers: one word for all, or one for each
+    column."""
 
     @property
     def quantities(self) -> tuple[tuple[Kind, ...], ...]:

@@ -2,9 +2,9 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, StringConstraints, model_validator
+from pydantic import StringConstraints, model_validator
 
-from service.catalogue.fields import Formula
+from service.catalogue.fields import Formula, advice
 from service.catalogue.formulas import WrittenFormulas, list_of
 from service.catalogue.part import PosePartSpec
 from service.catalogue.screw_robot import Reference
@@ -15,19 +15,14 @@ class PositionSpec(PosePartSpec):
     """The coordinates of a point: of a frame's origin, or of a point that the file gives."""
 
     kind: Literal["position"]
-    coordinates: Annotated[str, StringConstraints(pattern=r"^(x?y?z?)$", min_length=2)] = Field(
-        "xyz",
-        description="The coordinates that are asked for, in this order.",
-        examples=["xy"],
-        json_schema_extra={
-            "advice": 'write the coordinates that are asked for, such as "xy" or "xyz"'
-        },
-    )
-    expected: list[Formula] | None = Field(
-        None,
-        description="The coordinates themselves, in place of the robot's.",
-        examples=[["l1 + l2", "0", "d1"]],
-    )
+    coordinates: Annotated[
+        str,
+        StringConstraints(pattern=r"^(x?y?z?)$", min_length=2),
+        advice('write the coordinates that are asked for, such as "xy" or "xyz"'),
+    ] = "xyz"
+    """The coordinates that are asked for, in this order."""
+    expected: list[Formula] | None = None
+    """The coordinates themselves, in place of the robot's."""
 
     def formulas(self) -> WrittenFormulas | None:
         """The coordinates, if they are given."""

@@ -14,11 +14,12 @@ from service.catalogue.shapes import MatrixShape, matrix_shape
 class StepSpec(StrictModel):
     """One turn of a composite rotation."""
 
-    axis: Literal["x", "y", "z"] = Field(description="The axis of the turn.")
-    angle: Formula = Field(description="Its angle.", examples=["theta1"])
-    about: Literal["fixed", "moving"] = Field(
-        "moving", description="Whether the axis is of the fixed frame or of the moving one."
-    )
+    axis: Literal["x", "y", "z"]
+    """The axis of the turn."""
+    angle: Formula
+    """Its angle."""
+    about: Literal["fixed", "moving"] = "moving"
+    """Whether the axis is of the fixed frame or of the moving one."""
 
 
 class RotationSpec(PosePartSpec):
@@ -27,17 +28,11 @@ class RotationSpec(PosePartSpec):
     answer_fields: ClassVar[tuple[str, ...]] = ("expected", "steps")
 
     kind: Literal["rotation"]
-    expected: tuple[Triple, Triple, Triple] | None = Field(
-        None,
-        description="The rotation by its entries, row by row, in place of the robot's and of "
-        "``steps``.",
-    )
-    steps: Annotated[list[StepSpec], Field(min_length=1, max_length=6)] | None = Field(
-        None,
-        description="The rotation by its turns, in the order in which they are made, in place of "
-        "the robot's and of ``expected``.",
-        examples=[[{"axis": "x", "angle": "phi"}, {"axis": "z", "angle": "psi", "about": "fixed"}]],
-    )
+    expected: tuple[Triple, Triple, Triple] | None = None
+    """The rotation by its entries, row by row, in place of the robot's and of ``steps``."""
+    steps: Annotated[list[StepSpec], Field(min_length=1, max_length=6)] | None = None
+    """The rotation by its turns, in the order in which they are made, in place of the robot's and
+    of ``expected``."""
 
     def formulas(self) -> WrittenFormulas | None:
         """The entries or the angles of the turns, if they are given."""

@@ -35,18 +35,12 @@ class ScrewAxesSpec(PartSpec):
     """The screw axis (ω; v) of each joint with all joint variables 0."""
 
     kind: Literal["screw_axes"]
-    frame: Literal["space", "body"] = Field(
-        description='Where the axes are seen from: the base frame ("space") or the tool frame '
-        '("body").'
-    )
-    directions: GivenOrFree = Field(
-        "given", description='Whose choice the directions are: with "free" an axis may be reversed.'
-    )
-    expected: Annotated[list[Screw], Field(min_length=1, max_length=12)] | None = Field(
-        None,
-        description="The axes themselves, in place of the robot's.",
-        examples=[[["0", "0", "1", "0", "-l1", "0"]]],
-    )
+    frame: Literal["space", "body"]
+    """Where the axes are seen from: the base frame ("space") or the tool frame ("body")."""
+    directions: GivenOrFree = "given"
+    """Whose choice the directions are: with "free" an axis may be reversed."""
+    expected: Annotated[list[Screw], Field(min_length=1, max_length=12)] | None = None
+    """The axes themselves, in place of the robot's."""
 
     def formulas(self) -> WrittenFormulas | None:
         """The axes, if they are given."""

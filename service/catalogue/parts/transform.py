@@ -2,8 +2,6 @@
 
 from typing import ClassVar, Literal
 
-from pydantic import Field
-
 from service.catalogue.fields import Homogeneous
 from service.catalogue.formulas import WrittenFormulas, transform_of
 from service.catalogue.part import PosePartSpec
@@ -17,9 +15,8 @@ class TransformSpec(PosePartSpec):
     can_be_followed: ClassVar[bool] = True
 
     kind: Literal["transform"]
-    expected: Homogeneous | None = Field(
-        None, description="The transform by its entries, row by row, in place of the robot's pose."
-    )
+    expected: Homogeneous | None = None
+    """The transform by its entries, row by row, in place of the robot's pose."""
 
     def formulas(self) -> WrittenFormulas | None:
         """The entries, if they are given."""

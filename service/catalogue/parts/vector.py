@@ -15,9 +15,12 @@ from service.expressions import Kind
 class ComponentSpec(StrictModel):
     """One component of a vector."""
 
-    name: Text = Field(description="Its name.", examples=["p_x"])
-    quantity: Kind = Field(description="Whether it is an angle, a length or a plain number.")
-    expected: Formula = Field(description="The right value.", examples=["l1*c1 + l2*c12"])
+    name: Text
+    """Its name."""
+    quantity: Kind
+    """Whether it is an angle, a length or a plain number."""
+    expected: Formula
+    """The right value."""
 
 
 class VectorSpec(PartSpec):
@@ -26,10 +29,8 @@ class VectorSpec(PartSpec):
     answer_fields: ClassVar[tuple[str, ...]] = ("components",)
 
     kind: Literal["vector"]
-    components: Annotated[list[ComponentSpec], Field(min_length=1, max_length=12)] = Field(
-        description="The values in order.",
-        examples=[[{"name": "phi", "quantity": "angle", "expected": "theta1 + theta2"}]],
-    )
+    components: Annotated[list[ComponentSpec], Field(min_length=1, max_length=12)]
+    """The values in order."""
 
     def formulas(self) -> WrittenFormulas:
         """The right value of each component."""

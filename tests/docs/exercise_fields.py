@@ -1,6 +1,6 @@
 """The page on the keys of an exercise file, from the schema: docs/exercise-fields.md.
 
-``python -m service.authoring.field_reference > docs/exercise-fields.md`` writes it anew.
+``python -m tests.docs.exercise_fields > docs/exercise-fields.md`` writes it anew.
 """
 
 import inspect
@@ -27,6 +27,43 @@ from service.catalogue.schema import (
 
 Schema = Mapping[str, Any]
 
+# An example of a value in TOML, by model and attribute; none where the type says enough.
+_EXAMPLES: Final = {
+    "ExerciseSpec.title": '"Elbow arm"',
+    "ExerciseSpec.source": '"Spong, Hutchinson, Vidyasagar, Robot Modeling and Control, 3.2"',
+    "RobotSpec.table": '[["l1", "0", "0", "theta1"], ["l2", "180deg", "d2", "0"]]',
+    "RobotSpec.structure": '"RP"',
+    "RobotSpec.joints": '["theta1", "d2"]',
+    "ScrewRobotSpec.screws": '[["0", "0", "1", "0", "0", "0"], ["0", "0", "0", "1", "0", "0"]]',
+    "ScrewRobotSpec.structure": '"RP"',
+    "ScrewRobotSpec.joints": '["theta1", "d2"]',
+    "SymbolSpec.description": '"length of link 1"',
+    "SymbolSpec.unit": '"m"',
+    "SymbolSpec.range": "[0.3, 0.9]",
+    "PartSpec.title": '"Denavit-Hartenberg table"',
+    "PartSpec.prompt": '"Give the standard DH table, one row for each joint."',
+    "PartSpec.points": "12",
+    "PartSpec.follows": '"table"',
+    "PartSpec.follows_from": "0.75",
+    "PartSpec.id": '"table"',
+    "PosePartSpec.start": "2",
+    "PosePartSpec.to": "3",
+    "ExpectSpec.points": "5.5",
+    "ExpectSpec.codes": '["sign"]',
+    "ExpectSpec.follow_through": "true",
+    "CheckSpec.title": '"x1 the other way round, in degrees"',
+    "EulerAnglesSpec.expected": '["phi", "theta", "psi"]',
+    "ComponentSpec.name": '"p_x"',
+    "ComponentSpec.expected": '"l1*c1 + l2*c12"',
+    "VectorSpec.components": '[{ name = "phi", quantity = "angle", expected = "theta1 + theta2" }]',
+    "StepSpec.angle": '"theta1"',
+    "RotationSpec.steps": '[{ axis = "x", angle = "phi" }, { axis = "z", angle = "psi" }]',
+    "MatrixSpec.expected": '[["0", "-omega3"], ["omega3", "0"]]',
+    "MatrixSpec.quantity": '["number", "length"]',
+    "PositionSpec.coordinates": '"xy"',
+    "PositionSpec.expected": '["l1 + l2", "0", "d1"]',
+    "ScrewAxesSpec.expected": '[["0", "0", "1", "0", "-l1", "0"]]',
+}
 _KINDS: Final = ", ".join(f"`{kind}`" for kind in SPECS)
 _INTRODUCTION: Final = """\
 # The keys of an exercise file
@@ -39,7 +76,7 @@ A *formula* is text in the students' notation, such as `"l1 + 0.1"` or `"-90deg"
 angle without a unit is in radians. A key that is not listed here is a fault, and so is a value of
 another type.
 
-This page is generated: `python -m service.authoring.field_reference`."""
+This page is generated: `python -m tests.docs.exercise_fields`."""
 _PARTS: Final = f"""\
 Every part has these keys and the key `kind`; the further keys of each kind follow below. The kinds
 are {_KINDS}."""
@@ -89,7 +126,9 @@ def _section(heading: str, model: type[BaseModel], text: str = "", first: str = 
     if fields:
         blocks.append("\n".join(_rows(fields, schema)))
     examples = [
-        f"{key} = {_toml(field.examples[0])}" for key, field in fields.items() if field.examples
+        f"{field.alias or name} = {_EXAMPLES[f'{model.__name__}.{name}']}"
+        for name, field in model.model_fields.items()
+        if f"{model.__name__}.{name}" in _EXAMPLES
     ]
     if first or examples:
         blocks.append("\n".join(["```toml", *filter(None, [first]), *examples, "```"]))
