@@ -1,10 +1,12 @@
 import io
 import json
+from pathlib import Path
 
 import pytest
 from rich.console import Console
 
-from service.formats import FORMATS, Results
+from service.formats import FORMATS
+from service.formats.graded_file import GradedFile
 from service.formats.json import rendered
 from service.grading import (
     CellReport,
@@ -65,12 +67,15 @@ def test_a_value_that_json_does_not_have_is_still_json() -> None:
     json.loads(content, parse_constant=pytest.fail)
 
 
-def test_every_file_of_formats_is_a_format() -> None:
+def test_the_formats_are_found_by_their_names() -> None:
     assert set(FORMATS) == {"json", "text"}
     console = Console(file=io.StringIO(), width=80)
-    results: Results = [("a.json", REPORT), ("b.json", "holds no answers")]
-    for page in FORMATS.values():
-        assert page(results, console)
-        assert page(results[1:], console) == b""
-    listed = json.loads(FORMATS["json"](results, console))
+    graded = [
+        GradedFile(Path("a.json"), REPORT),
+        GradedFile(Path("b.json"), None, "holds no answers"),
+    ]
+    for report_format in FORMATS.values():
+        assert report_format.document(graded, console)
+        assert report_format.document(graded[1:], console) == b""
+    listed = json.loads(FORMATS["json"].document(graded, console))
     assert [sorted(each) for each in listed] == [["file", "report"], ["error", "file"]]
