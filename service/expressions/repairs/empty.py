@@ -1,5 +1,5 @@
 """An empty text."""
 
-from service.expressions.repairs.failure import advice
+from service.expressions.repairs.failure import refusal
 
-repair = advice("empty", "empty", "Nothing is written here. If the value is zero, write 0.")
+repair = refusal("empty", "empty", "Nothing is written here. If the value is zero, write 0.")

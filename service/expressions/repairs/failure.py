@@ -81,7 +81,7 @@ def answers(*causes: Cause) -> Callable[[Callable[[Failure], Repair]], Callable[
     return decorate
 
 
-def advice(cause: Cause, code: str, message: str) -> Callable[[Failure], Repair]:
+def refusal(cause: Cause, code: str, message: str) -> Callable[[Failure], Repair]:
     """The rule that answers each failure of this cause with this message."""
     return answers(cause)(lambda failure: error(failure, code, message))
 

@@ -1,5 +1,5 @@
 """true and false in place of a number."""
 
-from service.expressions.repairs.failure import advice
+from service.expressions.repairs.failure import refusal
 
-repair = advice("boolean", "not_a_number", "true and false are not numbers; write 1 or 0.")
+repair = refusal("boolean", "not_a_number", "true and false are not numbers; write 1 or 0.")

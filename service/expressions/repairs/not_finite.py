@@ -1,7 +1,7 @@
 """NaN, infinity, or a number too large for the machine."""
 
-from service.expressions.repairs.failure import advice
+from service.expressions.repairs.failure import refusal
 
-repair = advice(
+repair = refusal(
     "not_finite", "not_finite", "This is not a finite number; every answer here is one."
 )

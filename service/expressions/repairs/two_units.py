@@ -1,5 +1,5 @@
 """90 deg deg, deg(90°)."""
 
-from service.expressions.repairs.failure import advice
+from service.expressions.repairs.failure import refusal
 
-repair = advice("two_units", "two_units", "This has two units; one is enough.")
+repair = refusal("two_units", "two_units", "This has two units; one is enough.")
