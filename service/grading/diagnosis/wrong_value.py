@@ -102,7 +102,8 @@ class WrongCell(WrongValue):
     @property
     def contained_alone(self) -> tuple[Joint, int] | tuple[None, int]:
         """The only joint variable in the cell with its count, else ``(None, 0)``."""
-        return next(iter(self.contained.items())) if len(self.contained or ()) == 1 else (None, 0)
+        contained = self.contained or {}
+        return next(iter(contained.items())) if len(contained) == 1 else (None, 0)
 
     @cached_property
     def constants(self) -> tuple[Numbers, Numbers]:
