@@ -18,6 +18,11 @@ class Convention(StrEnum):
     STANDARD = "standard"
     MODIFIED = "modified"
 
+    @property
+    def other(self) -> "Convention":
+        """The one of the two that this is not."""
+        return Convention.MODIFIED if self is Convention.STANDARD else Convention.STANDARD
+
 
 def standard_link(a: ArrayLike, alpha: ArrayLike, d: ArrayLike, theta: ArrayLike) -> Matrices:
     """A_i = Rot_z(θ_i) Trans_z(d_i) Trans_x(a_i) Rot_x(α_i), the distal convention.

@@ -50,7 +50,7 @@ def exchanged_parameters(case: WrongRow) -> Hypotheses:
 
 def other_convention(case: WrongRow) -> Hypotheses:
     """The row is that of the other convention."""
-    other = next(each for each in Convention if each is not case.convention)
+    other = case.convention.other
     finding = Finding(
         "other_convention",
         f"This is the row of the {other.value} convention; the {case.convention.value} one is "
@@ -129,6 +129,5 @@ def has_a_row(convention: Convention) -> Finding:
     """The finding on the answer "none" where the transform has a row."""
     x, z = axes_named(convention)
     return Finding(
-        "dh_row_exists",
-        f"This transform has a row: {x} is perpendicular to {z} and meets it.",
+        "dh_row_exists", f"This transform has a row: {x} is perpendicular to {z} and meets it."
     )

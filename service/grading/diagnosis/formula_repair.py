@@ -12,7 +12,7 @@ from service.expressions.evaluation.point import Known, known_values, value_at
 from service.expressions.evaluation.samples import compile_tree
 from service.expressions.printing.text import to_text
 from service.expressions.tree import Call, Node
-from service.grading.diagnosis.formula_rewriting import EXCHANGED, negated, nodes
+from service.grading.diagnosis.formula_rewriting import is_sine_or_cosine, negated, nodes
 from service.grading.diagnosis.wrong_value import WrongValue
 from service.grading.misconception import AnyHypothesis, Repaired
 from service.grading.tolerances import EXACT_VALUE, ROUNDED_VALUE
@@ -59,8 +59,7 @@ class WrongEntry(WrongValue):
     @cached_property
     def sines_and_cosines(self) -> list[Call]:
         """The sines and cosines in the formula."""
-        calls = (node for node in nodes(self.tree) if isinstance(node, Call))
-        return [call for call in calls if call.function in EXCHANGED]
+        return list(filter(is_sine_or_cosine, nodes(self.tree)))
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterator[AnyHypothesis]:
         """Those hypotheses that explain the entry, each tried when it is asked for."""

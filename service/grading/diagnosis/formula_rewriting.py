@@ -5,21 +5,14 @@ is nothing to rewrite is returned itself.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import reduce
 from itertools import combinations
 from operator import is_
-from typing import NamedTuple
+from typing import NamedTuple, TypeGuard
 
 from service.expressions import Symbol
 from service.expressions.printing.text import to_text
-from service.expressions.tree import (
-    Binary,
-    Call,
-    Negation,
-    Node,
-    SymbolNode,
-    Unit,
-    children,
-)
+from service.expressions.tree import Binary, Call, Negation, Node, SymbolNode, Unit, children
 
 Rewriting = Callable[[Node], Node]
 # A factor or term with the sign that it counts with.
@@ -37,7 +30,7 @@ def nodes(tree: Node) -> Iterator[Node]:
         pending.extend(reversed(children(node)))
 
 
-def is_sine_or_cosine(node: Node) -> bool:
+def is_sine_or_cosine(node: Node) -> TypeGuard[Call]:
     """Whether the node is a sine or cosine."""
     return isinstance(node, Call) and node.function in EXCHANGED
 
@@ -46,21 +39,17 @@ def mapped(node: Node, rewrite: Rewriting) -> Node:
     """The node with ``rewrite`` applied to each of its operands or arguments."""
     if isinstance(node, Binary):
         left, right = rewrite(node.left), rewrite(node.right)
-        if left is node.left and right is node.right:
-            return node
-        return Binary(node.operator, left, right, node.start, node.end)
+        unchanged = left is node.left and right is node.right
+        return node if unchanged else Binary(node.operator, left, right)
     if isinstance(node, Call):
         arguments = tuple(map(rewrite, node.arguments))
-        if all(map(is_, arguments, node.arguments)):
-            return node
-        return Call(node.function, arguments, node.start, node.end)
+        unchanged = all(map(is_, arguments, node.arguments))
+        return node if unchanged else Call(node.function, arguments)
     if isinstance(node, Negation | Unit):
         operand = rewrite(node.operand)
         if operand is node.operand:
             return node
-        if isinstance(node, Unit):
-            return Unit(operand, node.unit, node.start, node.end)
-        return Negation(operand, node.start, node.end)
+        return Unit(operand, node.unit) if isinstance(node, Unit) else Negation(operand)
     return node
 
 
@@ -98,26 +87,21 @@ def _with_child(node: Node, child: Node, replacement: Node) -> Node:
 
 def exchanged(node: Node) -> Node:
     """Sine for cosine, and cosine for sine."""
-    if isinstance(node, Call) and node.function in EXCHANGED:
-        return Call(EXCHANGED[node.function], node.arguments, node.start, node.end)
-    return node
+    return Call(EXCHANGED[node.function], node.arguments) if is_sine_or_cosine(node) else node
 
 
 def other_operator(node: Node) -> Node:
     """Plus for minus, and minus for plus."""
-    if isinstance(node, Binary) and node.operator in ("+", "-"):
-        return Binary(
-            "-" if node.operator == "+" else "+", node.left, node.right, node.start, node.end
-        )
-    return node
+    if not _is_sum(node):
+        return node
+    return Binary("-" if node.operator == "+" else "+", node.left, node.right)
 
 
 def first_term_negated(node: Node) -> Node:
     """The first term of a sum with the other sign."""
-    if isinstance(node, Binary) and node.operator in ("+", "-") and not _is_sum(node.left):
-        left = _with_sign(-1, node.left)
-        return Binary(node.operator, left, node.right, node.start, node.end)
-    return node
+    if not _is_sum(node) or _is_sum(node.left):
+        return node
+    return Binary(node.operator, negated(node.left), node.right)
 
 
 def without_degrees(node: Node) -> Node:
@@ -129,14 +113,12 @@ def summed_from(first: int, turning: Mapping[int, Symbol]) -> Rewriting:
     """The sine or cosine of one joint angle as that of all from joint ``first`` up to it."""
 
     def rewrite(node: Node) -> Node:
-        if not (isinstance(node, Call) and node.function in EXCHANGED):
-            return node
-        last = _joint_of(node.arguments[0])
-        if last is None or last <= first:
+        last = _joint_of(node.arguments[0]) if is_sine_or_cosine(node) else None
+        if not isinstance(node, Call) or last is None or last <= first:
             return node
         angles = [SymbolNode(turning[k]) for k in sorted(turning) if first <= k <= last]
         total = joined([(1, angle) for angle in angles])
-        return Call(node.function, (total,), node.start, node.end)
+        return Call(node.function, (total,))
 
     return rewrite
 
@@ -172,9 +154,7 @@ def sums_merged(node: Node) -> Node:
 
 def _split(sign: int, term: Node) -> _Term:
     inner, factors = factors_of(term)
-    last = next((factor for factor in reversed(factors) if is_sine_or_cosine(factor)), None)
-    if not isinstance(last, Call):
-        return _Term(sign * inner, factors, None)
+    last = next(filter(is_sine_or_cosine, reversed(factors)), None)
     return _Term(sign * inner, [factor for factor in factors if factor is not last], last)
 
 
@@ -221,8 +201,7 @@ def _merged_factors(
     ]
     if len(chosen) < (2 if joints is None else len(joints)):
         return factors
-    angles = [(1, call.arguments[0]) for call in chosen]
-    merged = Call(function, (joined(angles),))
+    merged = Call(function, (joined([(1, call.arguments[0]) for call in chosen]),))
     place = next(i for i, factor in enumerate(factors) if factor is chosen[0])
     rest = [factor for factor in factors if not any(factor is call for call in chosen)]
     return [*rest[:place], merged, *rest[place:]]
@@ -258,13 +237,13 @@ def _products(tree: Node) -> Iterator[list[Node]]:
             pending.extend(children(node))
 
 
-def _is_sum(node: Node) -> bool:
+def _is_sum(node: Node) -> TypeGuard[Binary]:
     return isinstance(node, Binary) and node.operator in ("+", "-")
 
 
 def terms_of(node: Node) -> list[Signed]:
     """The terms of a sum with their signs; the node itself where it is no sum."""
-    if isinstance(node, Binary) and node.operator in ("+", "-"):
+    if _is_sum(node):
         sign = 1 if node.operator == "+" else -1
         right = [(sign * inner, term) for inner, term in terms_of(node.right)]
         return [*terms_of(node.left), *right]
@@ -295,10 +274,7 @@ def joined(terms: list[Signed]) -> Node:
 
 
 def _product(factors: list[Node]) -> Node:
-    first, *others = factors
-    for factor in others:
-        first = Binary("*", first, factor)
-    return first
+    return reduce(lambda first, factor: Binary("*", first, factor), factors)
 
 
 def _with_sign(sign: int, node: Node) -> Node:

@@ -51,17 +51,10 @@ class Chain:
         turned = np.swapaxes(self.links[::-1], -1, -2)
         return np.swapaxes(_running_products(turned), -1, -2)[::-1]
 
-    @property
-    def other_convention(self) -> Convention:
-        """The convention that the table is not written in."""
-        if self.convention is Convention.STANDARD:
-            return Convention.MODIFIED
-        return Convention.STANDARD
-
     @cached_property
     def misread_links(self) -> Matrices:
         """The link transforms of the same numbers in the other convention."""
-        return links(self.table, self.other_convention)
+        return links(self.table, self.convention.other)
 
     def product(self, order: Sequence[int]) -> str:
         """The product of the links in this order as a formula: A1·A2·A3."""
@@ -85,16 +78,16 @@ def chains_of(exercise: Exercise, samples: Samples) -> tuple[Chain, ...]:
     """The exercise's robot in each convention that can express it, the exercise's own first."""
     robot = exercise.robot
     base = str(robot.joints[0].index - 1)
-    order = sorted(robot.tables, key=lambda convention: convention is not robot.convention)
-    return tuple(
+    chains = [
         Chain(
-            table=robot.tables[convention].values(samples.values, samples.count),
-            convention=convention,
-            frames=(base, *robot.tables[convention].labels),
+            table.values(samples.values, samples.count),
+            convention,
+            frames=(base, *table.labels),
             is_asked=convention is robot.convention,
         )
-        for convention in order
-    )
+        for convention, table in robot.tables.items()
+    ]
+    return tuple(sorted(chains, key=lambda chain: not chain.is_asked))
 
 
 def reversed_product(chain: Chain) -> Iterator[LinkPose]:
@@ -111,7 +104,7 @@ def reversed_product(chain: Chain) -> Iterator[LinkPose]:
 
 def other_convention(chain: Chain) -> Iterator[LinkPose]:
     """The table's numbers were put into the link transform of the other convention."""
-    used, right = chain.other_convention.value, chain.convention.value
+    used, right = chain.convention.other.value, chain.convention.value
     finding = Finding(
         "other_convention",
         f"the product that the table gives with the link transform of the {used} convention. "
@@ -172,30 +165,16 @@ def premultiplied(chain: Chain) -> Iterator[LinkPose]:
     poses[:-1] = poses[:-1] @ chain.to_end[2:]
     for k, pose in zip(order[1:], poses, strict=True):
         wrong_order = chain.product([k, *order[:k], *order[k + 1 :]])
-        finding = Finding(
-            "premultiplied",
-            f"the product with A{chain.frames[k + 1]} multiplied from the left, {wrong_order}. "
-            f"{advice}",
-            correction,
-        )
-        yield Written(pose, finding)
-    throughout = Finding(
-        "premultiplied",
-        "the product of all turns and shifts in reverse order, each multiplied from the left. "
-        f"{advice}",
-        correction,
-    )
+        used = f"the product with A{chain.frames[k + 1]} multiplied from the left, {wrong_order}."
+        yield Written(pose, Finding("premultiplied", f"{used} {advice}", correction))
+    used = "the product of all turns and shifts in reverse order, each multiplied from the left."
+    throughout = Finding("premultiplied", f"{used} {advice}", correction)
     yield Written(compound(chain.misread_links[::-1]), throughout)
 
 
-MISCONCEPTIONS = (
-    reversed_product,
-    other_convention,
-    wrong_frame,
-    wrong_base,
-    missing_link,
-    premultiplied,
-)
+OF_FRAMES = (wrong_frame, wrong_base)
+OF_FACTORS = (missing_link, premultiplied)
+MISCONCEPTIONS = (reversed_product, other_convention, *OF_FRAMES, *OF_FACTORS)
 
 
 def other_poses(chains: tuple[Chain, ...]) -> list[LinkPose]:

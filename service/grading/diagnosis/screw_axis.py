@@ -159,17 +159,9 @@ def pitch(case: WrongScrew) -> Hypotheses:
         yield Written(case.with_velocity(velocity), Finding("pitch", hint, "v = −ω × q + h ω."))
 
 
-MISCONCEPTIONS = (
-    axis_reversed,
-    moment_sign,
-    other_frame,
-    sliding_as_turning,
-    turning_as_sliding,
-    exchanged_halves,
-    not_normalised,
-    point_for_velocity,
-    pitch,
-)
+OF_DIRECTION = (axis_reversed, moment_sign, other_frame)
+OF_HALVES = (sliding_as_turning, turning_as_sliding, exchanged_halves)
+MISCONCEPTIONS = (*OF_DIRECTION, *OF_HALVES, not_normalised, point_for_velocity, pitch)
 
 
 def explain_screw(case: WrongScrew) -> Finding | None:

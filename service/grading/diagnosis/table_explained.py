@@ -67,16 +67,12 @@ def explained(
     if len(values) < len(roles) or not np.isfinite(values).all():
         return (), judgement
     case = _wrong_table(part, roles, convention, values, grading)
-    intended = [
-        _intended(repaired, case.written, roles, grading)
-        for repaired in explaining(case, combine=combine)
-    ]
+    found = explaining(case, combine=combine)
+    intended = [_intended(repaired, case.written, roles, grading) for repaired in found]
     wrong = judgement.matches < Match.ROUNDED
-    agreeing = [
-        each for each in intended if each.table is None or np.array_equal(each.changed, wrong)
-    ]
-    if agreeing:
-        return _findings(agreeing), judgement
+    agree = [each for each in intended if each.table is None or (each.changed == wrong).all()]
+    if agree:
+        return _findings(agree), judgement
     nearest = min(intended, key=lambda each: each.departures, default=None)
     if nearest is None or nearest.table is None or nearest.departures >= judgement.departures:
         return (), judgement

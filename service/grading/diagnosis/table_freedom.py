@@ -116,24 +116,20 @@ def _one_axis(
 ) -> Finding:
     """Several joints were given one axis."""
     first, last = together[0], together[-1]
+    motion = "turn about one and the same line"
     if written.joints[first].prismatic:
         motion = "slide along one and the same direction"
-    else:
-        motion = "turn about one and the same line"
     named = listed([str(written.joints[k].index) for k in together])
-    between = _rows_between(first, last, written, convention)
-    if len(together) > 2:
-        return Finding(
-            "lost_freedom",
-            f"Joints {named} {motion}, so the arm has lost degrees of freedom: check a and α of "
-            f"{between}.",
-        )
-    parallel, right = _lie(intended.directions(first), intended.directions(last))
+    lost, columns, correction = "degrees", "a and α", ""
+    if len(together) == 2:
+        parallel, right = _lie(intended.directions(first), intended.directions(last))
+        lost, columns = "a degree", "a" if parallel else "α"
+        correction = f"The axes of these joints are {right}."
     return Finding(
         "lost_freedom",
-        f"Joints {named} {motion}, so the arm has lost a degree of freedom: check "
-        f"{'a' if parallel else 'α'} of {between}.",
-        f"The axes of these joints are {right}.",
+        f"Joints {named} {motion}, so the arm has lost {lost} of freedom: check {columns} of "
+        f"{_rows_between(first, last, written, convention)}.",
+        correction,
     )
 
 
@@ -154,10 +150,8 @@ def _rows_between(i: int, j: int, written: _Arm, convention: Convention) -> str:
     They begin with the row of joint ``i`` in a standard table, and end with the row of joint ``j``
     in a modified one.
     """
-    joints = (
-        written.joints[i:j] if convention is Convention.STANDARD else written.joints[i + 1 : j + 1]
-    )
-    labels = [str(joint.index) for joint in joints]
+    shift = int(convention is Convention.MODIFIED)
+    labels = [str(joint.index) for joint in written.joints[i + shift : j + shift]]
     return f"row {labels[0]}" if len(labels) == 1 else f"rows {listed(labels)}"
 
 

@@ -103,11 +103,8 @@ def other_position(case: MatrixCase) -> Hypotheses:
 
 
 def _from_other_poses(case: MatrixCase, block: Block, subject: str) -> Hypotheses:
-    """One block of each other pose.
-
-    A constant block, such as a position of zeros, does not show which pose it was taken from.
-    """
     poses, entries = case.other_poses
+    # A constant block, such as a position of zeros, does not show which pose it was taken from.
     varies = np.ptp(entries[:, *block], axis=-1).max(axis=(1, 2)) > EXACT_VALUE
     for i in np.flatnonzero(varies).tolist():
         yield Written(entries[i][block], named(poses[i], subject), block)
@@ -125,34 +122,22 @@ def line_sign(case: MatrixCase) -> Hypotheses:
     by_column = case.mask(*((slice(0, 3), slice(j, j + 1)) for j in columns))
     by_row = case.mask(*((slice(i, i + 1), slice(None)) for i in rows))
     if columns and (by_column & wrong).sum() >= (by_row & wrong).sum():
-        yield Written(-case.expected[by_column], _column_sign(columns), by_column)
+        finding = _line_sign("column", columns, "last")
+        yield Written(-case.expected[by_column], finding, by_column)
     elif rows:
-        yield Written(-case.expected[by_row], _row_sign(rows), by_row)
+        yield Written(-case.expected[by_row], _line_sign("row", rows, "first"), by_row)
 
 
-def _column_sign(columns: list[int]) -> Finding:
-    parts = [f"{'xyz'[j]} axis" if j < 3 else "position" for j in columns]
-    return Finding(
-        "column_sign",
-        f"{_lines('Column', columns)} the wrong sign throughout: check which way the "
-        f"{listed(parts)} of the last frame should point.",
-        "Change the sign of each entry there.",
-    )
-
-
-def _row_sign(rows: list[int]) -> Finding:
-    axes = [f"{'xyz'[i]} axis" for i in rows]
-    return Finding(
-        "row_sign",
-        f"{_lines('Row', rows)} the wrong sign throughout: check which way the {listed(axes)} of "
-        "the first frame should point.",
-        "Change the sign of each entry there.",
-    )
-
-
-def _lines(name: str, indices: list[int]) -> str:
+def _line_sign(line: str, indices: list[int], frame: str) -> Finding:
     numbers = listed([str(i + 1) for i in indices])
-    return f"{name} {numbers} has" if len(indices) == 1 else f"{name}s {numbers} have"
+    have = f" {numbers} has" if len(indices) == 1 else f"s {numbers} have"
+    parts = listed([("x axis", "y axis", "z axis", "position")[i] for i in indices])
+    return Finding(
+        f"{line}_sign",
+        f"{line.capitalize()}{have} the wrong sign throughout: check which way the {parts} of the "
+        f"{frame} frame should point.",
+        "Change the sign of each entry there.",
+    )
 
 
 OF_UPPER_ROWS = (inverse_transform, other_pose, inverse_of_other_pose)

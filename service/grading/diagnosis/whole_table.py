@@ -15,10 +15,7 @@ from numpy.typing import NDArray
 from service.grading.diagnosis.wording import MEASURED, SYMBOLS
 from service.grading.feedback import Finding
 from service.grading.judging.own_frames import written_table
-from service.grading.judging.own_frames.written_table import (
-    RepairedTable,
-    WrittenTable,
-)
+from service.grading.judging.own_frames.written_table import RepairedTable, WrittenTable
 from service.grading.misconception import AnyHypothesis, Repaired, hypotheses_of
 from service.grading.tolerances import INTENDED_POSE
 from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D, Table
@@ -120,7 +117,7 @@ def columns_swapped(table: WrittenTable) -> Iterator[RepairedTable]:
 
 def _exchanged(cells: Table, rows: slice, one: int, other: int) -> Table:
     exchanged = cells.copy()
-    exchanged[rows, one], exchanged[rows, other] = cells[rows, other], cells[rows, one]
+    exchanged[rows, [one, other]] = cells[rows, [other, one]]
     return exchanged
 
 
@@ -137,18 +134,11 @@ def _swapped(one: str, other: str, row: int | None) -> Finding:
 def row_order(table: WrittenTable) -> Iterator[RepairedTable]:
     """Two rows, or all of them, stand in the wrong order."""
     rows = range(len(table.constants))
-    orders = [_with_exchanged(rows, i, j) for i, j in combinations(rows, 2)]
-    if len(rows) > 2:
-        orders.append(list(reversed(rows)))
-    for order in orders:
+    exchanges = [{i: j, j: i} for i, j in combinations(rows, 2)]
+    orders = [[exchange.get(row, row) for row in rows] for exchange in exchanges]
+    for order in [*orders, list(reversed(rows))] if len(rows) > 2 else orders:
         repaired = table.changed(table.constants[order], table.motion[order])
         yield Repaired(repaired, partial(_reordered, order))
-
-
-def _with_exchanged(rows: range, i: int, j: int) -> list[int]:
-    order = list(rows)
-    order[i], order[j] = j, i
-    return order
 
 
 def _reordered(order: list[int]) -> Finding:

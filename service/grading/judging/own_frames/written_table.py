@@ -69,15 +69,14 @@ def written_table(
 def other_convention(table: WrittenTable) -> Iterator[RepairedTable]:
     """The table was set up by the rules of the other convention."""
     names = {Convention.STANDARD: "standard (distal)", Convention.MODIFIED: "modified (proximal)"}
-    used = next(each for each in Convention if each is not table.convention)
-    asked = names[table.convention]
+    used, asked = names[table.convention.other], names[table.convention]
     finding = Finding(
         "other_convention",
-        f"This is a right table in the {names[used]} convention, but it was read in the {asked} "
+        f"This is a right table in the {used} convention, but it was read in the {asked} "
         f"one: look which link's a and α belong in row i.",
         f"In the {asked} convention a and α move by one row.",
     )
-    yield Repaired(replace(table, convention=used), finding)
+    yield Repaired(replace(table, convention=table.convention.other), finding)
 
 
 def degrees_as_radians(table: WrittenTable) -> Iterator[RepairedTable]:
