@@ -33,7 +33,7 @@ def _in_space(exercise: Exercise, algebra: Algebra) -> list[tuple[sympy.Matrix, 
     if isinstance(exercise.reference, ScrewRobot):
         rows = algebra.matrix(exercise.reference.axes).tolist()
         return [(sympy.Matrix(row[:3]), sympy.Matrix(row[3:])) for row in rows]
-    axes = zip(exercise.joints, joint_axes(exercise, algebra), strict=True)
+    axes = zip(exercise.joints, joint_axes(exercise), strict=True)
     return [
         (sympy.zeros(3, 1), direction) if joint.prismatic else (direction, point.cross(direction))
         for joint, (direction, point) in axes
