@@ -181,13 +181,12 @@ def _judged_by(
         cell_matches = np.full((len(judged), len(COLUMNS)), int(Match.EXACT))
     else:
         cell_matches = _matches_of(judged, grading)
-    exercise = grading.exercise
     return Judgement(
         judged,
         cell_matches,
         roles,
         departures=0.0 if right else departures_of(nearest.frames, grading),
-        findings=remarks_on(nearest.frames, exercise.robot.joints, convention, exercise),
+        findings=remarks_on(nearest.frames, convention, grading.exercise),
     )
 
 
