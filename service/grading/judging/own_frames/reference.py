@@ -49,12 +49,7 @@ def _mechanism(exercise: Exercise, samples: Samples) -> Mechanism:
     links = standard_link(*cells.swapaxes(0, 1))
     n = len(reference.joints)
     fixed = list(accumulate(links[n:], np.matmul))
-    return Mechanism(
-        joints=links[:n],
-        offsets=z_links(cells[1 : n + 1]),
-        fixed=fixed[:-1],
-        tool=fixed[-1],
-    )
+    return Mechanism(links[:n], z_links(cells[1 : n + 1]), fixed[:-1], fixed[-1])
 
 
 def reference_values(reference: ReferenceTable, samples: Samples) -> Table:

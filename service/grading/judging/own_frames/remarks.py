@@ -24,9 +24,8 @@ def remarks_on(
     error[:, :3, 3] /= exercise.length_scale
     departs = error.max(axis=(1, 2)) > SAME_POSE
     findings = []
-    for pose, joint in zip(
-        relative_poses[departs], compress(exercise.robot.joints, departs), strict=True
-    ):
+    joints = compress(exercise.robot.joints, departs)
+    for pose, joint in zip(relative_poses[departs], joints, strict=True):
         frame = joint.index - 1 if convention is Convention.STANDARD else joint.index
         departures = _departures(pose, frame, joint, exercise.length_scale)
         if departures:
