@@ -63,7 +63,9 @@ def two_factor_repairs(factors: Factors, pose: Matrices) -> Iterator[CellRepair]
 
     Most pairs of cells fail in the first sample; only the others are solved in all samples.
     """
-    pairs = _all_pairs(len(factors.axes))
+    a, b = np.triu_indices(len(factors.axes), 1)
+    kinds = np.repeat([[SHIFT, SHIFT, TURN, TURN], [SHIFT, TURN, SHIFT, TURN]], len(a), axis=1)
+    pairs = np.concatenate([np.tile([a, b], 4), kinds])
     first = slice(0, 1)
     _, possible = _solved(factors.at(first), pose[first], pairs)
     pairs = pairs[:, possible]
@@ -71,8 +73,9 @@ def two_factor_repairs(factors: Factors, pose: Matrices) -> Iterator[CellRepair]
         return
     values, solved = _solved(factors, pose, pairs)
     for c in np.flatnonzero(solved).tolist():
-        a, b, kind_a, kind_b = pairs[:, c].tolist()
-        yield CellRepair((factors.cell(a, kind_a), factors.cell(b, kind_b)), values[:, c])
+        one, other, kind_one, kind_other = pairs[:, c].tolist()
+        cells = factors.cell(one, kind_one), factors.cell(other, kind_other)
+        yield CellRepair(cells, values[:, c])
 
 
 def repaired_values(factors: Factors, pose: Matrices, cells: Sequence[CellIndex]) -> Numbers | None:
@@ -101,18 +104,11 @@ def _equal(sizes: Numbers, written: Numbers) -> NDArray[np.bool_]:
     return np.asarray(np.abs(error).max(axis=-1) < SAME_POSE)
 
 
-# Pairs of cells ``(4, C)``: the factors A and B, and of each whether its SHIFT or TURN is wrong.
-_Pairs = Integers
+def _solved(factors: Factors, pose: Matrices, pairs: Integers) -> tuple[Numbers, NDArray[np.bool_]]:
+    """The x and y of each pair, ``(2, C, L)``, and whether they are a solution at all samples.
 
-
-def _all_pairs(count: int) -> _Pairs:
-    a, b = np.triu_indices(count, 1)
-    kinds = np.repeat([[SHIFT, SHIFT, TURN, TURN], [SHIFT, TURN, SHIFT, TURN]], len(a), axis=1)
-    return np.concatenate([np.tile([a, b], 4), kinds])
-
-
-def _solved(factors: Factors, pose: Matrices, pairs: _Pairs) -> tuple[Numbers, NDArray[np.bool_]]:
-    """The x and y of each pair, ``(2, C, L)``, and whether they are a solution at all samples."""
+    Pairs ``(4, C)`` are the factors A and B, and of each whether its SHIFT or TURN is wrong.
+    """
     a, b, kind_a, kind_b = pairs
     a_turns, b_turns = (kind_a == TURN)[:, None], (kind_b == TURN)[:, None]
     axis_a, axis_b = factors.axes[a], factors.axes[b]

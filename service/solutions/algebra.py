@@ -45,15 +45,20 @@ _OPERATORS: Mapping[Operator, Callable[[sympy.Expr, sympy.Expr], sympy.Expr]] = 
 
 
 class Algebra:
-    """One exercise's formulas in SymPy; a symbol whose range is positive is positive there."""
+    """One exercise's formulas in SymPy; a symbol whose range is positive is positive there.
 
-    def __init__(self, exercise: Exercise) -> None:
-        self.symbols: Mapping[str, sympy.Symbol] = {
+    ``home`` takes all joint variables as 0.
+    """
+
+    def __init__(self, exercise: Exercise, *, home: bool = False) -> None:
+        self.symbols: dict[str, sympy.Expr] = {
             variable.name: sympy.Symbol(variable.name, positive=True)
             if variable.low > 0
             else sympy.Symbol(variable.name, real=True)
             for variable in exercise.variables
         }
+        if home:
+            self.symbols |= {joint.variable: sympy.S.Zero for joint in exercise.joints}
 
     def of(self, formula: Expression) -> sympy.Expr:
         """The formula as it stands; numbers stay exact."""

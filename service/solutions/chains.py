@@ -28,11 +28,10 @@ def between(
     Frames are "base", "tool" and the numbers of the robot's own table. ``home`` takes all joint
     variables as 0. Raises LookupError where there is no robot.
     """
-    motions = _steps(exercise, algebra)
+    motions = _steps(exercise, Algebra(exercise, home=True) if home else algebra)
     first, last = (_place(exercise, frame, len(motions)) for frame in (start, end))
     steps = list(chain.from_iterable(motions[min(first, last) : max(first, last)]))
-    ordered = steps if first <= last else inverse(steps)
-    return [at_home(motion, exercise, algebra) for motion in ordered] if home else ordered
+    return steps if first <= last else inverse(steps)
 
 
 def _steps(exercise: Exercise, algebra: Algebra) -> list[list[Motion]]:
@@ -68,24 +67,12 @@ def _exponentials(robot: ScrewRobot, algebra: Algebra) -> list[Motion]:
     return [*motions, Shift(home[:3, 3]), Fixed(home[:3, :3])]
 
 
-def at_home(motion: Motion, exercise: Exercise, algebra: Algebra) -> Motion:
-    """The motion with all joint variables 0."""
-    zero = {algebra.symbols[joint.variable]: sympy.S.Zero for joint in exercise.joints}
-    match motion:
-        case Turn(axis, angle):
-            return Turn(axis, angle.subs(zero))
-        case Shift(by):
-            return Shift(by.subs(zero))
-        case Fixed():
-            return motion
-
-
-def joint_axes(exercise: Exercise, algebra: Algebra) -> list[tuple[sympy.Matrix, sympy.Matrix]]:
+def joint_axes(exercise: Exercise) -> list[tuple[sympy.Matrix, sympy.Matrix]]:
     """The direction of each joint's axis and a point on it, at home in the base frame, 3×1 each.
 
     Only for a robot with a table. Raises LookupError where there is none.
     """
-    robot = exercise.robot
+    robot, algebra = exercise.robot, Algebra(exercise, home=True)
     # A standard row begins on its joint's axis; a modified one comes to it by a and α.
     at = 0 if robot.convention is Convention.STANDARD else 2
     rotation, position = sympy.eye(3), sympy.zeros(3, 1)
@@ -94,7 +81,7 @@ def joint_axes(exercise: Exercise, algebra: Algebra) -> list[tuple[sympy.Matrix,
         for i, motion in enumerate(link(row, robot.convention, algebra)):
             if i == at:
                 axes.append((rotation * Z, position))
-            step = multiplied([at_home(motion, exercise, algebra)])
+            step = multiplied([motion])
             position += rotation * step.position
             rotation *= step.rotation
     return axes

@@ -10,8 +10,7 @@ from service.grading.diagnosis.wrong_value import Hypotheses, WrongCell, differs
 from service.grading.feedback import Finding
 from service.grading.formula_text import sum_text
 from service.grading.joint_motion import coefficients
-from service.grading.judging.table import Judgement
-from service.grading.judging.table_matches import column_scales
+from service.grading.judging.table import Judgement, column_scales
 from service.grading.misconception import Repaired, Written, diagnosed
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE

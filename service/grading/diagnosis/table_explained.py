@@ -12,6 +12,7 @@ from service.grading.diagnosis.table_freedom import lost_freedom
 from service.grading.diagnosis.whole_table import WrongTable, explaining
 from service.grading.feedback import Finding
 from service.grading.judging.own_frames.few_cells import frames_from_reference
+from service.grading.judging.own_frames.nearest_table import in_convention
 from service.grading.judging.own_frames.reference import reference_values
 from service.grading.judging.own_frames.row_roles import Role, freedom_of
 from service.grading.judging.own_frames.validity import valid_tables
@@ -20,7 +21,6 @@ from service.grading.judging.own_frames.written_table import (
     WrittenTable,
     written_table,
 )
-from service.grading.judging.own_frames.wrong_convention_or_unit import in_convention
 from service.grading.judging.table import Judgement, departures_of, judged_by_intended
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE, values_of

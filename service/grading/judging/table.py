@@ -2,7 +2,7 @@
 
 Where the frames are given, the rows are paired with the reference's. Where they are free, the rows
 are paired with the joints, and the valid table nearest to them is found (``own_frames``). The cells
-are then compared with those of that table (``table_matches``).
+are then compared with those of that table.
 """
 
 from collections.abc import Sequence
@@ -13,23 +13,23 @@ from numpy.typing import NDArray
 
 from service.catalogue import Joint, ReferenceTable
 from service.catalogue.parts.dh_table import DhTableSpec
-from service.grading.comparison import Match, difference, matches
+from service.grading.comparison import Match, difference, matches, same
 from service.grading.feedback import Finding
+from service.grading.joint_motion import changes
 from service.grading.judging.own_frames.best_roles import best_roles, without_idle_rows
 from service.grading.judging.own_frames.few_cells import NearestTable, frames_from_reference
 from service.grading.judging.own_frames.nearest_table import parallel_neighbours
 from service.grading.judging.own_frames.reference import reference_values
 from service.grading.judging.own_frames.remarks import remarks_on
-from service.grading.judging.own_frames.row_roles import Role, pair_in_order
-from service.grading.judging.table_matches import column_scales, table_matches
+from service.grading.judging.own_frames.row_roles import Role, pair_in_order, variable_column
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE, HandedInRow, values_of
 from service.grading.samples import SAMPLES
-from service.grading.tolerances import PLAINLY_DIFFERENT
+from service.grading.tolerances import HUGE_CELL, HUGE_LENGTH, PLAINLY_DIFFERENT, SAME_MOTION
 from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh import Convention
 from service.kinematics.frame_choice import NO_SUCH_CELL, WRONG_CELL, departure
-from service.kinematics.transforms import Matrices
+from service.kinematics.transforms import Matrices, Numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,13 +181,12 @@ def _judged_by(
         cell_matches = np.full((len(judged), len(COLUMNS)), int(Match.EXACT))
     else:
         cell_matches = _matches_of(judged, grading)
-    exercise = grading.exercise
     return Judgement(
         judged,
         cell_matches,
         roles,
         departures=0.0 if right else departures_of(nearest.frames, grading),
-        findings=remarks_on(nearest.frames, exercise.robot.joints, convention, exercise),
+        findings=remarks_on(nearest.frames, convention, grading.exercise),
     )
 
 
@@ -212,10 +211,44 @@ def _labels(roles: Sequence[Role]) -> list[str]:
 def _matches_of(judged: Sequence[JudgedRow], grading: Grading) -> NDArray[np.int_]:
     """The Match of each cell of each row, ``(rows, 4)``."""
     nothing = np.full((len(COLUMNS), SAMPLES), np.nan)
-    return table_matches(
-        np.array([nothing if row.row is None else row.row.handed_in for row in judged]),
-        np.array([row.expected for row in judged]),
-        [[False] * len(COLUMNS) if row.row is None else row.row.rounded for row in judged],
-        [row.joint for row in judged],
-        grading,
-    )
+    actual = np.array([nothing if row.row is None else row.row.handed_in for row in judged])
+    expected = np.array([row.expected for row in judged])
+    rounded = [[False] * 4 if row.row is None else row.row.rounded for row in judged]
+    angle, scales = IS_ANGLE[:, None], column_scales(grading)
+    found = matches(actual, expected, scales, angle, rounded)
+    for i, column in np.argwhere(found == Match.ROUNDED).tolist():
+        cells = actual[i, column], expected[i, column]
+        if not _is_rounded(*cells, column, judged[i].joint, grading):
+            found[i, column] = Match.DIFFERENT
+    if np.abs(expected[..., 0]).max() > HUGE_LENGTH * grading.exercise.length_scale:
+        # A student's own large offset must not widen what is let through.
+        error = np.abs(difference(actual, expected, angle)).max(axis=-1)
+        too_far = (found == Match.EXACT) & (error > HUGE_CELL * scales)
+        found = np.where(too_far, int(Match.DIFFERENT), found)
+    return found
+
+
+def column_scales(grading: Grading) -> Numbers:
+    """The scale of each column: the unit of its tolerances."""
+    return np.where(IS_ANGLE, 1.0, grading.exercise.length_scale)
+
+
+def _is_rounded(
+    actual: Numbers, expected: Numbers, column: int, joint: Joint | None, grading: Grading
+) -> bool:
+    """Whether a cell that is nearly right has a rounded constant and moves as it should."""
+    angle = bool(IS_ANGLE[column])
+    if not _moves_as(actual, expected, angle):
+        return False
+    if joint is None or column != variable_column(joint):
+        return True
+    variable = grading.samples.values[joint.variable]
+    if not _moves_as(expected, variable, angle):
+        variable = -variable
+    scale = float(column_scales(grading)[column])
+    return same(actual - variable, expected - variable, scale, angle)
+
+
+def _moves_as(one: Numbers, other: Numbers, angle: bool) -> bool:
+    error = np.abs(difference(changes(one), changes(other), angle))
+    return bool(error.max() < SAME_MOTION)

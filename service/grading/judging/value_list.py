@@ -30,11 +30,6 @@ class ComparedValues:
 
     def matches(self, grading: Grading) -> NDArray[np.int_]:
         """The Match of each value, ``(n,)``; angles modulo 2π."""
-        angle = np.array([quantity == "angle" for quantity in self.student.quantities])
-        return matches(
-            self.student.values,
-            self.expected,
-            self.scales(grading),
-            angle=angle[:, None],
-            rounded=self.student.rounded,
-        )
+        student, scales = self.student, self.scales(grading)
+        angle = np.array([[quantity == "angle"] for quantity in student.quantities])
+        return matches(student.values, self.expected, scales, angle, student.rounded)

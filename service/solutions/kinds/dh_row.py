@@ -3,15 +3,13 @@
 import numpy as np
 import sympy
 
-from service.catalogue import Exercise, grid_values
+from service.catalogue import grid_values
 from service.catalogue.formulas import EXACT
 from service.catalogue.parts.dh_row import DhRowSpec
-from service.catalogue.robot import ROW_QUANTITIES
 from service.catalogue.variables import TRIALS, trial_values
 from service.kinematics.dh import Convention
 from service.kinematics.dh_row import dh1_residual, dh2_residual
 from service.solutions import layout
-from service.solutions.algebra import Algebra
 from service.solutions.model_solution import PrintedAnswer
 from service.solutions.orientation import as_angle
 from service.solutions.work import Work
@@ -20,27 +18,17 @@ _MOST_STEPS = 60
 
 
 def answer(part: DhRowSpec, work: Work) -> PrintedAnswer:
-    """The row, or that there is none."""
-    row = _dh_row(part, work.exercise, work.algebra)
-    if row is None:
-        return layout.no_row()
-    write = {"angle": work.writer.angle, "length": work.writer.number}
-    nodes = [write[kind](cell) for kind, cell in zip(ROW_QUANTITIES, row, strict=True)]
-    return layout.row(nodes, part.convention)
-
-
-def _dh_row(part: DhRowSpec, exercise: Exercise, algebra: Algebra) -> list[sympy.Expr] | None:
-    """The row (a, α, d, θ) of the part's transform, or None where it has none.
+    """The row (a, α, d, θ) of the part's transform, or that it has none.
 
     Read off the link transforms' own entries (Spong, Hutchinson, Vidyasagar, *Robot Modeling and
     Control*, eq. 3.10; Craig, *Introduction to Robotics*, eq. 3.6).
     """
-    grid = exercise.formulas[part.id]
-    numbers = np.moveaxis(grid_values(grid, trial_values(exercise.variables), TRIALS), -1, 0)
+    grid = work.exercise.formulas[part.id]
+    numbers = np.moveaxis(grid_values(grid, trial_values(work.exercise.variables), TRIALS), -1, 0)
     broken = [dh1_residual(numbers, part.convention), dh2_residual(numbers, part.convention)]
     if np.abs(broken).max() > EXACT:
-        return None
-    T = algebra.matrix(grid)
+        return layout.no_row()
+    T = work.algebra.matrix(grid)
     x, y, z = T[:3, 3]
     if part.convention is Convention.STANDARD:
         a, d = x * T[0, 0] + y * T[1, 0], z
@@ -48,7 +36,9 @@ def _dh_row(part: DhRowSpec, exercise: Exercise, algebra: Algebra) -> list[sympy
     else:
         a, d = x, y * T[1, 2] + z * T[2, 2]
         alpha, theta = as_angle(-T[1, 2], T[2, 2]), as_angle(-T[0, 1], T[0, 0])
-    return [_simplified(a), alpha, _simplified(d), theta]
+    length, angle = work.writer.number, work.writer.angle
+    nodes = [length(_simplified(a)), angle(alpha), length(_simplified(d)), angle(theta)]
+    return layout.row(nodes, part.convention)
 
 
 def _simplified(length: sympy.Expr) -> sympy.Expr:

@@ -17,32 +17,23 @@ def answer(part: ScrewAxesSpec, work: Work) -> PrintedAnswer:
     given = work.as_written(part)
     if given:
         return layout.matrix(given)
-    return work.matrix(sympy.Matrix(_screw_axes(work.exercise, part.frame, work.algebra)))
-
-
-def _screw_axes(exercise: Exercise, frame: str, algebra: Algebra) -> list[list[sympy.Expr]]:
-    """The screw axis (ω; v) of each joint at home, seen from the "space" or the "body" frame."""
-    axes = _in_space(exercise, algebra)
-    if frame == "body":
-        home = multiplied(between(exercise, "tool", "base", algebra, home=True))
-        axes = [_seen_from(home.rotation, home.position, *axis) for axis in axes]
-    return [[sympy.expand(number) for part in axis for number in part] for axis in axes]
+    axes = _in_space(work.exercise, work.algebra)
+    if part.frame == "body":
+        home = multiplied(between(work.exercise, "tool", "base", work.algebra, home=True))
+        R, p = home.rotation, home.position
+        # Ad_T (ω; v) = (R ω; R v + p × R ω). Source: *Modern Robotics*, definition 3.20.
+        axes = [(R * omega, R * v + p.cross(R * omega)) for omega, v in axes]
+    rows = [[sympy.expand(number) for half in axis for number in half] for axis in axes]
+    return work.matrix(sympy.Matrix(rows))
 
 
 def _in_space(exercise: Exercise, algebra: Algebra) -> list[tuple[sympy.Matrix, sympy.Matrix]]:
+    """The screw axis (ω; v) of each joint at home, seen from the base frame."""
     if isinstance(exercise.reference, ScrewRobot):
         rows = algebra.matrix(exercise.reference.axes).tolist()
         return [(sympy.Matrix(row[:3]), sympy.Matrix(row[3:])) for row in rows]
-    axes = zip(exercise.joints, joint_axes(exercise, algebra), strict=True)
+    axes = zip(exercise.joints, joint_axes(exercise), strict=True)
     return [
         (sympy.zeros(3, 1), direction) if joint.prismatic else (direction, point.cross(direction))
         for joint, (direction, point) in axes
     ]
-
-
-def _seen_from(
-    rotation: sympy.Matrix, position: sympy.Matrix, omega: sympy.Matrix, v: sympy.Matrix
-) -> tuple[sympy.Matrix, sympy.Matrix]:
-    """Ad_T (ω; v) = (R ω; R v + p × R ω). Source: *Modern Robotics*, definition 3.20."""
-    turned = rotation * omega
-    return turned, rotation * v + position.cross(turned)

@@ -8,8 +8,7 @@ In the order in which they are used:
 
   - ``few_cells``: the table as written, or with one or two cells repaired; of several repairs
     ``slip_likelihood`` finds the likeliest
-  - ``wrong_convention_or_unit``: the intended table, if the convention or the unit was mistaken;
-    ``written_table`` holds these misconceptions
+  - ``written_table``: the intended table, if the convention or the unit was mistaken
   - ``kinematics.frame_choice``: a search row by row; ``constants`` takes the table apart for it,
     ``validity`` names the targets of its rows
 

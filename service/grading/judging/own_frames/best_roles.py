@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from service.catalogue import Joint
 from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.judging.own_frames.few_cells import NearestTable
 from service.grading.judging.own_frames.nearest_table import nearest_for_roles
@@ -26,13 +27,13 @@ def best_roles(
     if len(nearest.roles) < len(rows):
         # A row of zeros that was left out may be one in which something is missing.
         other = roles_in(rows, convention, grading, expected_rows=len(rows))
-    elif len(rows) == len(joints) and _lacks_row(len(rows), convention, grading):
+    elif len(rows) == len(joints) and len(rows) < _usual_rows(convention, grading):
         # The row that is missing need not be the last.
         other, price = roles_in(rows, convention, grading, in_order=False), WRONG_CELL
     elif len(rows) > len(joints):
         # A wrong variable may have made a joint's row look like a fixed one.
         other = roles_in(rows, convention, grading, in_order=True)
-    if other is None or _are_alike(other, roles):
+    if other is None or _pairing(other) == _pairing(roles):
         return roles, nearest
     found = nearest_for_roles(other, convention, freedom, grading)
     return (other, found) if found.cost + price < nearest.cost else (roles, nearest)
@@ -51,11 +52,10 @@ def roles_in(
     Without ``expected_rows`` as many are expected as the reference has. ``in_order`` says whether
     the rows are in the order of the joints, where that is known.
     """
-    robot = grading.exercise.robot
-    reference = robot.tables.get(convention)
-    expected_rows = expected_rows or len(robot.joints if reference is None else reference.rows)
+    expected_rows = expected_rows or _usual_rows(convention, grading)
     rows = without_idle_rows(rows, expected_rows)
-    roles = roles_of(rows, robot.joints, grading.samples, expected_rows, in_order=in_order)
+    joints = grading.exercise.robot.joints
+    roles = roles_of(rows, joints, grading.samples, expected_rows, in_order=in_order)
     return with_exact_angles(roles, grading.exercise, grading.samples)
 
 
@@ -64,7 +64,7 @@ def nearest_with_tool_row(
 ) -> NearestTable:
     """The nearest valid table: with the rows as they are, or with the tool row that they lack."""
     nearest = nearest_for_roles(roles, convention, freedom, grading)
-    if nearest.cost < WRONG_CELL or not _lacks_row(len(roles), convention, grading):
+    if nearest.cost < WRONG_CELL or len(roles) >= _usual_rows(convention, grading):
         return nearest
     longer = nearest_for_roles((*roles, Role(None, None)), convention, freedom, grading)
     return longer if longer.cost + WRONG_CELL <= nearest.cost else nearest
@@ -77,13 +77,13 @@ def without_idle_rows(rows: tuple[HandedInRow, ...], expected_rows: int) -> tupl
     return rows
 
 
-def _lacks_row(count: int, convention: Convention, grading: Grading) -> bool:
-    """Whether the reference's table has more rows."""
-    reference = grading.exercise.robot.tables.get(convention)
-    return reference is not None and len(reference.rows) > count
+def _usual_rows(convention: Convention, grading: Grading) -> int:
+    """How many rows the reference's table has, or would have without fixed ones."""
+    robot = grading.exercise.robot
+    reference = robot.tables.get(convention)
+    return len(robot.joints if reference is None else reference.rows)
 
 
-def _are_alike(one: Sequence[Role], other: Sequence[Role]) -> bool:
-    """Whether as many rows are for the same joints, and the same are missing."""
-    first, second = ([(role.joint, role.row is None) for role in roles] for roles in (one, other))
-    return first == second
+def _pairing(roles: Sequence[Role]) -> list[tuple[Joint | None, bool]]:
+    """Which joint each row is for, and which rows are missing."""
+    return [(role.joint, role.row is None) for role in roles]

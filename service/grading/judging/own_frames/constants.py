@@ -49,11 +49,11 @@ def row_constants(
     wrong_regardless = is_gradable & ~(linear & (counts == expected).all(axis=-1))
     rounded = np.array([role.row.rounded if role.row else [False] * 4 for role in roles])
     rows = zip(
-        regrouped(written, convention, 0.0),
-        regrouped(is_gradable, convention, fill=False),
-        regrouped(wrong_regardless, convention, fill=False),
-        regrouped(np.zeros_like(is_gradable), convention, fill=True),
-        regrouped(np.where(rounded, ROUNDED_VALUE, 0.0), convention, fill=0.0),
+        regrouped(written, convention),
+        regrouped(is_gradable, convention),
+        regrouped(wrong_regardless, convention),
+        ~regrouped(np.ones_like(is_gradable), convention),
+        regrouped(ROUNDED_VALUE * rounded, convention),
         [None, *(role.joint and variable_column(role.joint) for role in roles)],
         [0, *joint_signs.tolist()],
         strict=True,

@@ -59,14 +59,12 @@ class _Case:
     """A table to be repaired.
 
     ``table`` is ``(rows, 4, samples)``. Each cell must change with the joints as its joint variable
-    in ``variables`` does (0 for none): by ``motion`` ``(rows, 4, samples / 2)``; ``wrong`` are the
-    cells that do not.
+    in ``variables`` does (0 for none); ``wrong`` are the cells that do not.
     """
 
     roles: tuple[Role, ...]
     table: Table
     variables: Table
-    motion: Numbers
     wrong: frozenset[CellIndex]
     convention: Convention
     grading: Grading
@@ -127,10 +125,9 @@ def _case(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> 
     finite = np.isfinite(table).all(axis=-1)
     table[~finite] = 0.0
     variables = variables_of(roles, grading.samples)
-    motion = changes(variables)
-    right = finite & moves_with(table, motion, IS_ANGLE[:, None])
+    right = finite & moves_with(table, changes(variables), IS_ANGLE[:, None])
     wrong = frozenset((i, column) for i, column in np.argwhere(~right).tolist())
-    return _Case(roles, table, variables, motion, wrong, convention, grading)
+    return _Case(roles, table, variables, wrong, convention, grading)
 
 
 def _repairs(case: _Case) -> list[CellRepair]:
@@ -216,7 +213,7 @@ def _repaired(cells: Sequence[CellIndex], case: _Case) -> Table | None:
 def _moves_rightly(repair: CellRepair, case: _Case, samples: slice) -> bool:
     """Whether each value changes with the joints as its cell should."""
     return all(
-        moves_with(value, case.motion[cell][samples], IS_ANGLE[cell[1]])
+        moves_with(value, changes(case.variables[cell])[samples], IS_ANGLE[cell[1]])
         for cell, value in zip(repair.cells, repair.values, strict=True)
     )
 

@@ -8,12 +8,17 @@ from numpy.typing import NDArray
 
 from service.grading.joint_motion import halves
 from service.grading.judging.own_frames.constants import row_constants, without_variables
-from service.grading.judging.own_frames.few_cells import NearestTable, nearest_by_few_cells
+from service.grading.judging.own_frames.few_cells import (
+    NearestTable,
+    frames_from_reference,
+    nearest_by_few_cells,
+)
 from service.grading.judging.own_frames.reference import (
     Mechanism,
     as_table,
     mechanism_at,
     reference_frames,
+    regrouped,
     tool_pose,
 )
 from service.grading.judging.own_frames.row_roles import (
@@ -22,12 +27,18 @@ from service.grading.judging.own_frames.row_roles import (
     handed_in_values,
     joint_cells,
 )
-from service.grading.judging.own_frames.validity import targets_of
-from service.grading.judging.own_frames.wrong_convention_or_unit import nearest_as_intended
+from service.grading.judging.own_frames.validity import targets_of, valid_tables
+from service.grading.judging.own_frames.written_table import (
+    MISCONCEPTIONS,
+    WrittenTable,
+    written_table,
+)
+from service.grading.misconception import hypotheses_of
 from service.grading.part import Grading
 from service.grading.samples import HALF
+from service.grading.tolerances import INTENDED_POSE, UNCHANGED_CELL
 from service.kinematics.axis_alignment import align_axes
-from service.kinematics.chain import axis_frames, pose, z_links
+from service.kinematics.chain import Table, axis_frames, pose, z_links
 from service.kinematics.chain_match import ChainMatch, match_as_written
 from service.kinematics.dh import Convention
 from service.kinematics.frame_choice import NO_SUCH_CELL, WRONG_CELL
@@ -42,10 +53,45 @@ def nearest_for_roles(
     """The valid table nearest to the one handed in, its rows taken for ``roles``."""
     if freedom == FrameFreedom() and all(role.row is not None for role in roles):
         nearest = nearest_by_few_cells(roles, convention, grading)
-        nearest = nearest or nearest_as_intended(roles, convention, freedom, grading)
+        nearest = nearest or _as_intended(roles, convention, freedom, grading)
         if nearest is not None:
             return nearest
     return _search(roles, convention, freedom, grading)
+
+
+def _as_intended(
+    roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
+) -> NearestTable | None:
+    """The table without a mistake of convention or of the unit of all angles, if that is valid.
+
+    Such a slip makes most cells wrong at once. The intended table is known all the same, and so is
+    the right value of each cell: nothing has to be guessed from the cells that agree with some
+    valid table.
+    """
+    values = handed_in_values(roles)
+    if not np.isfinite(values).all():
+        return None
+    exercise, samples = grading.exercise, grading.samples
+    handed_in = written_table(values, convention, None, exercise.robot.joints, samples)
+    for repaired in hypotheses_of(handed_in, MISCONCEPTIONS):
+        table = repaired.answer
+        [valid] = valid_tables(
+            table.values[None], roles, table.convention, freedom, exercise, samples, INTENDED_POSE
+        )
+        intended = in_convention(table, convention) if valid else None
+        if intended is not None:
+            frames = frames_from_reference(intended, roles, convention, grading)
+            changed = np.abs(intended - values).max(axis=-1) > UNCHANGED_CELL
+            cost = WRONG_CELL * max(1, int(np.count_nonzero(changed)))
+            return NearestTable(roles, intended, frames, cost)
+    return None
+
+
+def in_convention(table: WrittenTable, convention: Convention) -> Table | None:
+    """The same chain in a convention, ``(rows, 4, samples)``; None where that takes other rows."""
+    links = regrouped(table.values, table.convention)
+    left_out = links[0] if convention is Convention.STANDARD else links[-1, :2]
+    return None if left_out.any() else as_table(links, convention)
 
 
 def _search(

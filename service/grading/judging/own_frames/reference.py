@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from itertools import accumulate
-from typing import Any
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,8 @@ from service.grading.samples import Samples
 from service.kinematics.chain import Table, axis_frames, z_links
 from service.kinematics.dh import Convention, standard_link
 from service.kinematics.transforms import Matrices
+
+_Cell = TypeVar("_Cell", bound=np.generic)
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,16 +45,11 @@ def _mechanism(exercise: Exercise, samples: Samples) -> Mechanism:
     values = reference_values(reference, samples).copy()
     for i, joint in enumerate(reference.joints):
         values[i, variable_column(joint)] -= samples.values[joint.variable]
-    cells = regrouped(halves(values)[0], reference.convention, 0.0)
+    cells = regrouped(halves(values)[0], reference.convention)
     links = standard_link(*cells.swapaxes(0, 1))
     n = len(reference.joints)
     fixed = list(accumulate(links[n:], np.matmul))
-    return Mechanism(
-        joints=links[:n],
-        offsets=z_links(cells[1 : n + 1]),
-        fixed=fixed[:-1],
-        tool=fixed[-1],
-    )
+    return Mechanism(links[:n], z_links(cells[1 : n + 1]), fixed[:-1], fixed[-1])
 
 
 def reference_values(reference: ReferenceTable, samples: Samples) -> Table:
@@ -83,12 +80,12 @@ def tool_pose(exercise: Exercise, samples: Samples) -> Matrices:
     return pose
 
 
-def regrouped(cells: NDArray[Any], convention: Convention, fill: object) -> NDArray[Any]:
+def regrouped(cells: NDArray[_Cell], convention: Convention) -> NDArray[_Cell]:
     """Rows of a table as the products Z X that lead from each target to the next.
 
-    ``(rows, 4, ...)`` becomes ``(rows + 1, 4, ...)``, with ``fill`` where the table has no cell.
+    ``(rows, 4, ...)`` becomes ``(rows + 1, 4, ...)``, with zeros where the table has no cell.
     """
-    none = np.full((1, *cells.shape[1:]), fill)
+    none = np.zeros_like(cells[:1])
     z = np.concatenate([none, cells])
     x = z if convention is Convention.STANDARD else np.concatenate([cells, none])
     return np.concatenate([x[:, :2], z[:, 2:]], axis=1)

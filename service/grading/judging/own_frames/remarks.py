@@ -1,6 +1,5 @@
 """Remarks on frames that are valid but not the reference's, so that nobody wonders."""
 
-from collections.abc import Sequence
 from itertools import compress
 
 import numpy as np
@@ -14,7 +13,7 @@ from service.kinematics.transforms import Matrices
 
 
 def remarks_on(
-    relative_poses: Matrices, joints: Sequence[Joint], convention: Convention, exercise: Exercise
+    relative_poses: Matrices, convention: Convention, exercise: Exercise
 ) -> tuple[Finding, ...]:
     """One message for each frame that departs from the reference's.
 
@@ -25,7 +24,8 @@ def remarks_on(
     error[:, :3, 3] /= exercise.length_scale
     departs = error.max(axis=(1, 2)) > SAME_POSE
     findings = []
-    for pose, joint in zip(relative_poses[departs], compress(joints, departs), strict=True):
+    joints = compress(exercise.robot.joints, departs)
+    for pose, joint in zip(relative_poses[departs], joints, strict=True):
         frame = joint.index - 1 if convention is Convention.STANDARD else joint.index
         departures = _departures(pose, frame, joint, exercise.length_scale)
         if departures:

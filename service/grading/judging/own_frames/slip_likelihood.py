@@ -74,5 +74,4 @@ def _count(terms: _Terms | None) -> float:
 
 
 def _sizes(terms: _Terms) -> dict[str, float]:
-    """The terms without their signs."""
     return {letter: round(abs(share), 6) for letter, share in terms.items()}

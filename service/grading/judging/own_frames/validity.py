@@ -42,7 +42,7 @@ def valid_tables(
     if freedom.directions:
         signs = np.zeros_like(signs)
     targets = targets_of(roles, convention, mechanism_at(exercise, samples), freedom)
-    rows = np.moveaxis(regrouped(np.moveaxis(constants, 0, -1), convention, 0.0), -1, 0)
+    rows = np.moveaxis(regrouped(np.moveaxis(constants, 0, -1), convention), -1, 0)
     signs = np.pad(signs, ((0, 0), (1, 0)))
     return match_tables(rows, signs, targets, exercise.length_scale, tolerance)[0]
 
