@@ -34,7 +34,10 @@ def _parse(source: SourceText) -> Grid:
             "separate two values or stand inside one. Put commas between the values.",
             lines[0].whole,
         )
-    return grid("columns", readings[0], source.whole, _notes(readings[0]))
+    first = readings[0][0]
+    message = f"Blanks were read as the ends of columns: {len(first)} values in each line."
+    note = Note("blank_columns", message, first[0].whole)
+    return grid("columns", readings[0], source.whole, [note])
 
 
 def _is_rule(line: str) -> bool:
@@ -50,11 +53,6 @@ def _at_gaps(line: SourceText) -> list[SourceText]:
 
 def _is_table(rows: list[list[SourceText]]) -> bool:
     return len({len(row) for row in rows}) == 1 and len(rows[0]) > 1
-
-
-def _notes(rows: list[list[SourceText]]) -> tuple[Note, ...]:
-    message = f"Blanks were read as the ends of columns: {len(rows[0])} values in each line."
-    return (Note("blank_columns", message, rows[0][0].whole),)
 
 
 def _uneven(lines: list[SourceText], rows: list[list[SourceText]]) -> GridError:

@@ -2,18 +2,9 @@
 
 from typing import Final
 
-from service.grids import (
-    bracketed,
-    columns,
-    csv,
-    drawn_matrix,
-    html,
-    latex,
-    markdown,
-    matlab_rows,
-    semicolons,
-    tsv,
-)
+from service.grids import (  # isort: skip
+    bracketed, columns, csv, drawn_matrix, html, latex, markdown, matlab_rows, semicolons, tsv,
+)  # fmt: skip
 from service.grids.grid import Grid, GridError, GridFormat
 from service.grids.limits import GRID_LIMITS
 from service.grids.source_text import SourceText

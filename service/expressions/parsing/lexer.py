@@ -34,6 +34,7 @@ _FUNCTION_POWER: Final = re.compile(r"\s*(?:\^|\*\*)\s*")
 _EXPONENT: Final = re.compile(
     r"([0-9]+)(?![0-9.eE])|\(\s*([0-9]+)\s*\)|\{\s*([0-9]+)\s*\}|\[\s*([0-9]+)\s*\]"
 )
+_ATTRIBUTE: Final = re.compile(r"\.[^\W\d_]")
 _E_NAME: Final = re.compile(r"([eE])([+-]?)([0-9]+)$")
 _NUMERIC_FRACTION: Final = re.compile(rf"{OPEN}\{{?\s*[0-9]+\s*\}}?/\{{?\s*[0-9]+\s*\}}?{CLOSE}")
 # An operand ends with one of these; it begins with NUMBER, NAME, FUNCTION, ROOT, LEFT or OPEN.
@@ -250,8 +251,7 @@ class Lexer:
 
     def _word(self, run: str, start: int, end: int) -> int:
         """Read a run of letters and digits; return where to go on."""
-        following = self.text[end : end + 2]
-        if run in MODULES and following[:1] == "." and following[1:].isalpha():
+        if run in MODULES and _ATTRIBUTE.match(self.text, end):
             return self._after_module(end + 1)
         pieces = split(run, self.vocabulary)
         if pieces is None:

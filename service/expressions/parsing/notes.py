@@ -39,8 +39,8 @@ class WordNotes:
 
     def shorthand(self, piece: Piece, a: int, b: int) -> None:
         """Note a shorthand that has another reading: sin12, C1."""
-        names = "+".join(symbol.name for symbol in piece.symbols)
         if piece.ambiguous or self.source[a] in "CS":
+            names = "+".join(symbol.name for symbol in piece.symbols)
             self._add("shorthand", f"This was read as {piece.word}({names}).", (a, b))
 
     def pi(self, a: int, b: int) -> None:

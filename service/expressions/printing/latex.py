@@ -38,23 +38,17 @@ def to_latex(node: Node) -> str:
 
 
 def _binary(node: Binary) -> str:
-    match node:
-        case Binary(
-            "^", Call("sin" | "cos" | "tan" as function, (argument,)), Number(literal=power)
-        ) if power.isdigit() and len(power) < 5:
-            return rf"{_FUNCTIONS[function]}^{{{power}}}\left({to_latex(argument)}\right)"
-        case Binary("^", base, exponent):
-            return f"{_at(base, ATOM)}^{{{to_latex(exponent)}}}"
-        case Binary("/", Negation(upper), lower):
-            # The sign of -π/2 stands before the bar, as it was typed.
-            return rf"-\frac{{{to_latex(upper)}}}{{{to_latex(lower)}}}"
-        case Binary("/", upper, lower):
-            return rf"\frac{{{to_latex(upper)}}}{{{to_latex(lower)}}}"
-        case Binary("*", left, right):
-            times = r" \cdot " if begins_with_digit(right) else " "
-            return f"{_at(left, PRODUCT, first=True)}{times}{_at(right, POWER)}"
-        case Binary(operator, left, right):
-            return f"{to_latex(left)} {operator} {_at(right, PRODUCT)}"
+    operator, left, right = node.operator, node.left, node.right
+    if operator == "^":
+        return _power(left, right)
+    if operator == "/":
+        # The sign of -π/2 stands before the bar, as it was typed.
+        sign, upper = ("-", left.operand) if isinstance(left, Negation) else ("", left)
+        return rf"{sign}\frac{{{to_latex(upper)}}}{{{to_latex(right)}}}"
+    if operator == "*":
+        times = r" \cdot " if begins_with_digit(right) else " "
+        return f"{_at(left, PRODUCT, first=True)}{times}{_at(right, POWER)}"
+    return f"{to_latex(left)} {operator} {_at(right, PRODUCT)}"
 
 
 def number(literal: str) -> str:
@@ -69,6 +63,14 @@ def _call(function: str, arguments: list[str]) -> str:
     if function == "abs":
         return rf"\left|{arguments[0]}\right|"
     return rf"{_FUNCTIONS[function]}\left({', '.join(arguments)}\right)"
+
+
+def _power(base: Node, exponent: Node) -> str:
+    match base, exponent:
+        case Call("sin" | "cos" | "tan" as function, (argument,)), Number(literal=power):
+            if power.isdigit() and len(power) < 5:
+                return rf"{_FUNCTIONS[function]}^{{{power}}}\left({to_latex(argument)}\right)"
+    return f"{_at(base, ATOM)}^{{{to_latex(exponent)}}}"
 
 
 def _at(node: Node, place: int, *, first: bool = False) -> str:

@@ -58,19 +58,18 @@ def _row(node: Node) -> str:
 
 
 def _binary(node: Binary) -> str:
-    match node:
-        case Binary("^", base, exponent):
-            return f"<msup>{_at(base, ATOM)}{_row(exponent)}</msup>"
-        case Binary("/", Negation(upper), lower):
+    operator, left, right = node.operator, node.left, node.right
+    if operator == "^":
+        return f"<msup>{_at(left, ATOM)}{_row(right)}</msup>"
+    if operator == "/":
+        if isinstance(left, Negation):
             # The sign of -π/2 stands before the bar, as it was typed.
-            return _mrow(f"<mo>−</mo><mfrac>{_row(upper)}{_row(lower)}</mfrac>")
-        case Binary("/", upper, lower):
-            return f"<mfrac>{_row(upper)}{_row(lower)}</mfrac>"
-        case Binary("*", left, right):
-            times = "<mo>⋅</mo>" if begins_with_digit(right) else _INVISIBLE_TIMES
-            return _mrow(f"{_at(left, PRODUCT, first=True)}{times}{_at(right, POWER)}")
-        case Binary(operator, left, right):
-            return _mrow(f"{_row(left)}{_OPERATORS[operator]}{_at(right, PRODUCT)}")
+            return _mrow(f"<mo>−</mo><mfrac>{_row(left.operand)}{_row(right)}</mfrac>")
+        return f"<mfrac>{_row(left)}{_row(right)}</mfrac>"
+    if operator == "*":
+        times = "<mo>⋅</mo>" if begins_with_digit(right) else _INVISIBLE_TIMES
+        return _mrow(f"{_at(left, PRODUCT, first=True)}{times}{_at(right, POWER)}")
+    return _mrow(f"{_row(left)}{_OPERATORS[operator]}{_at(right, PRODUCT)}")
 
 
 def _mrow(inside: str) -> str:

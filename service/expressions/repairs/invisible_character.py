@@ -21,9 +21,6 @@ def repair(failure: Failure) -> Repair:
         return error(failure, "invisible_character", message)
     else:
         message = f"There is an invisible character here ({name}), perhaps from pasting. Delete it."
-    return error(failure, "invisible_character", message, _visible(failure.source))
-
-
-def _visible(source: str) -> str | None:
-    product = source.replace(_INVISIBLE_TIMES, "*")
-    return "".join(letter for letter in product if letter in "\t\n\r" or not is_invisible(letter))
+    product = failure.source.replace(_INVISIBLE_TIMES, "*")
+    kept = (each for each in product if each in "\t\n\r" or not is_invisible(each))
+    return error(failure, "invisible_character", message, "".join(kept))

@@ -20,7 +20,8 @@ def other_case(run: str, vocabulary: Vocabulary, called: bool) -> str | None:
     if len(run) > _LONGEST_SLIP:
         return None
     plain = normal_form(run)
-    lowered = {name.lower(): name for name in sorted(_known(vocabulary, called), reverse=True)}
+    known = set(SPELLINGS) if called else _names(vocabulary) | {*SPELLINGS, PI[0]}
+    lowered = {name.lower(): name for name in sorted(known, reverse=True)}
     if plain.lower() in lowered:
         return lowered[plain.lower()]
     for other in (plain.lower(), plain.upper()):
@@ -39,18 +40,12 @@ def nearest(run: str, vocabulary: Vocabulary, called: bool) -> str | None:
     # A name of a very different length is not near.
     pool = {name for name in pool if abs(len(name) - len(plain)) <= max(1, len(plain) // 3)}
     close = difflib.get_close_matches(plain, sorted(pool), n=1, cutoff=0.6)
-    return _as_declared(close[0], vocabulary) if close else None
-
-
-def _as_declared(name: str, vocabulary: Vocabulary) -> str:
-    """The canonical name l_base for lbase; an alias, q1, stays as it is."""
-    symbol = vocabulary.by_name.get(name)
-    return symbol.name if symbol is not None and normal_form(symbol.name) == name else name
+    symbol = vocabulary.by_name.get(close[0]) if close else None
+    # The canonical name l_base for lbase; an alias, q1, stays as it is.
+    if symbol is not None and normal_form(symbol.name) == close[0]:
+        return symbol.name
+    return close[0] if close else None
 
 
 def _names(vocabulary: Vocabulary) -> set[str]:
     return {name for name in vocabulary.by_name if name.isascii()}
-
-
-def _known(vocabulary: Vocabulary, called: bool) -> set[str]:
-    return set(SPELLINGS) if called else _names(vocabulary) | {*SPELLINGS, PI[0]}

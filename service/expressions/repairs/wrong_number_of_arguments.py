@@ -27,10 +27,8 @@ def _with_points(failure: Failure) -> str | None:
     places = failure.details["places"]
     source = failure.source
     for left, right in reversed(list(zip(places[::2], places[1::2], strict=True))):
-        digits = source[right[0] : right[1]]
-        if source[left[1] : right[0]] != "," or not source[left[1] - 1].isdigit():
-            return None
-        if not digits[:1].isdigit():
+        around = source[left[1] - 1], source[right[0]]
+        if source[left[1] : right[0]] != "," or not all(map(str.isdigit, around)):
             return None
         source = f"{source[: left[1]]}.{source[right[0] :]}"
     return None if failure.details["name"] == "atan" else source
