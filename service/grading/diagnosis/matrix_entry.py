@@ -54,11 +54,9 @@ def degrees_as_radians(case: WrongEntry) -> Formulas:
 
 def _has_bare_number(node: Node) -> bool:
     """Whether a number other than 0 stands in it without a unit."""
-    if isinstance(node, Unit):
-        return False
     if isinstance(node, Number):
         return node.value != 0
-    return any(map(_has_bare_number, children(node)))
+    return not isinstance(node, Unit) and any(map(_has_bare_number, children(node)))
 
 
 def radians_as_degrees(case: WrongEntry) -> Formulas:

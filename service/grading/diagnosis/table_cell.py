@@ -22,6 +22,9 @@ SUM_COUNTS = (
     "The axis is parallel to its neighbour, so it is the sum of the offsets along it that counts."
 )
 
+# The turn that an angle is off by may itself have been rounded.
+ROUNDED_TURN = ROUNDED_VALUE * np.pi
+
 # --- checks of the joint variables in the cell
 
 
@@ -162,8 +165,8 @@ def quarter_turn(case: WrongCell) -> Hypotheses:
         f"{case.symbol} is off by a quarter turn (90°): compare the two axes that it is measured "
         f"between, in the home configuration.",
     )
-    for turn in (np.pi / 2, -np.pi / 2):
-        yield from _off_by(turn, case, finding)
+    for turn in (np.pi / 2, -np.pi / 2) if case.angle else ():
+        yield Written(case.constants[1] + turn, finding, tolerance=ROUNDED_TURN)
 
 
 def half_turn(case: WrongCell) -> Hypotheses:
@@ -173,13 +176,8 @@ def half_turn(case: WrongCell) -> Hypotheses:
         f"{case.symbol} is off by half a turn (180°): check which way the axes point that it is "
         f"measured between.",
     )
-    yield from _off_by(np.pi, case, finding)
-
-
-def _off_by(turn: float, case: WrongCell, finding: Finding) -> Hypotheses:
-    # The other turn may itself have been rounded.
     if case.angle:
-        yield Written(case.constants[1] + turn, finding, tolerance=ROUNDED_VALUE * np.pi)
+        yield Written(case.constants[1] + np.pi, finding, tolerance=ROUNDED_TURN)
 
 
 CHECKS = (
