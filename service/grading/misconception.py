@@ -107,8 +107,7 @@ def diagnosed(
 ) -> Finding | None:
     """The finding of the first check that fails, else of the first misconception that explains."""
     for check in checks:
-        finding = check(case)
-        if finding is not None:
+        if (finding := check(case)) is not None:
             return finding
     found = explanation(case, misconceptions)
     return found.findings[0] if found else None

@@ -88,41 +88,30 @@ def axes_named(convention: Convention) -> tuple[str, str]:
     return ("x1", "z0") if convention is Convention.STANDARD else ("x0", "z1")
 
 
-def not_perpendicular(transform: Matrices, convention: Convention) -> Finding | None:
-    """The first condition was overlooked."""
-    if np.abs(dh1_residual(transform, convention)).max() < EXACT_VALUE:
-        return None
+def violated(transform: Matrices, convention: Convention, length_scale: float) -> list[Finding]:
+    """The findings on the conditions that a transform does not meet; none where it has a row."""
     x, z = axes_named(convention)
     entry = "third row, first column" if convention is Convention.STANDARD else "first row, third"
-    return Finding(
+    perpendicular = Finding(
         "dh_not_perpendicular",
         f"Check the first DH condition: is {x} perpendicular to {z}? The entry in the {entry} "
         f"tells.",
         f"It is not 0, so that {x} is not perpendicular to {z} and there is no row.",
     )
-
-
-def not_intersecting(
-    transform: Matrices, convention: Convention, length_scale: float
-) -> Finding | None:
-    """The second condition was overlooked."""
-    if np.abs(dh2_residual(transform, convention)).max() < EXACT_VALUE * length_scale:
-        return None
-    x, z = axes_named(convention)
-    return Finding(
+    intersecting = Finding(
         "dh_not_intersecting",
         f"Check the second DH condition: does the line of {x} meet the line of {z}?",
         f"It passes {z} at a distance, so that there is no row.",
     )
-
-
-def violated(transform: Matrices, convention: Convention, length_scale: float) -> list[Finding]:
-    """The findings on the conditions that a transform does not meet; none where it has a row."""
-    findings = (
-        not_perpendicular(transform, convention),
-        not_intersecting(transform, convention, length_scale),
+    conditions = (
+        (perpendicular, dh1_residual, EXACT_VALUE),
+        (intersecting, dh2_residual, EXACT_VALUE * length_scale),
     )
-    return [finding for finding in findings if finding is not None]
+    return [
+        finding
+        for finding, residual, tolerance in conditions
+        if np.abs(residual(transform, convention)).max() >= tolerance
+    ]
 
 
 def has_a_row(convention: Convention) -> Finding:

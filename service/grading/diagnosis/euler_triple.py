@@ -6,12 +6,7 @@ from itertools import combinations
 
 import numpy as np
 
-from service.grading.diagnosis.angle import (
-    ARGUMENTS_SWAPPED,
-    FITS_IN_DEGREES,
-    FITS_IN_RADIANS,
-    WRONG_SIGN,
-)
+from service.grading.diagnosis import angle
 from service.grading.feedback import Finding
 from service.grading.misconception import AnyHypothesis, Repaired, explanation
 from service.grading.tolerances import ROUNDED_VALUE
@@ -52,10 +47,10 @@ def some_angles(case: WrongTriple) -> Iterator[RepairedTriple]:
     """The same slip was made in one, two or all three of the angles."""
     angles = case.angles
     repairs = (
-        (-angles, Finding("sign", WRONG_SIGN, "Change its sign.")),
-        (np.radians(angles), Finding("degrees_as_radians", FITS_IN_DEGREES)),
-        (np.degrees(angles), Finding("radians_as_degrees", FITS_IN_RADIANS)),
-        (np.pi / 2 - angles, Finding("swapped_atan2", ARGUMENTS_SWAPPED, "Exchange them.")),
+        (-angles, Finding("sign", angle.WRONG_SIGN, "Change its sign.")),
+        (np.radians(angles), Finding("degrees_as_radians", angle.FITS_IN_DEGREES)),
+        (np.degrees(angles), Finding("radians_as_degrees", angle.FITS_IN_RADIANS)),
+        (np.pi / 2 - angles, Finding("swapped_atan2", angle.ARGUMENTS_SWAPPED, "Exchange them.")),
     )
     may_be_swapped = (np.ptp(angles, axis=1) > ROUNDED_VALUE) | np.array(case.arctangents)
     for count in (1, 2, 3):

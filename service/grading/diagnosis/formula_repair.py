@@ -110,7 +110,6 @@ class WrongEntry(WrongValue):
 
 
 def _completed(rewritten: Any, sign: int) -> Any:
-    """The hypothesis with its sign and its formula in the finding."""
     [finding] = rewritten.findings
     hint = finding.hint if sign > 0 else f"{finding.hint} Its sign is wrong, too."
     text = to_text(rewritten.answer if sign > 0 else negated(rewritten.answer))

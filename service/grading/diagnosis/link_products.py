@@ -186,8 +186,3 @@ def named(pose: LinkPose, subject: str, *others: Finding) -> Callable[[], tuple[
     """``others``, then the finding on the pose with the subject of its first sentence."""
     [finding] = pose.findings
     return lambda: (*others, replace(finding, hint=f"{subject} {finding.hint}"))
-
-
-def as_entries(poses: Matrices) -> Matrices:
-    """``(..., SAMPLES, 4, 4)`` as ``(..., 4, 4, SAMPLES)``."""
-    return np.moveaxis(poses, -3, -1)

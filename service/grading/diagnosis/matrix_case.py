@@ -5,9 +5,10 @@ from functools import cached_property
 
 import numpy as np
 
-from service.grading.diagnosis.link_products import Chain, LinkPose, as_entries, other_poses
+from service.grading.diagnosis.link_products import Chain, LinkPose, other_poses
 from service.grading.diagnosis.wrong_value import Mask, WrongNumbers
 from service.grading.feedback import Finding
+from service.grading.judging.expected import as_entries
 from service.grading.misconception import Hypothesis, Index
 from service.kinematics.transforms import Numbers
 

@@ -6,20 +6,8 @@ from functools import partial
 from service.expressions.parsing.degrees import in_degrees
 from service.expressions.printing.text import to_text
 from service.expressions.tree import Node, Number, Unit, children
+from service.grading.diagnosis import formula_rewriting as rewriting
 from service.grading.diagnosis.formula_repair import Rewritten, WrongEntry
-from service.grading.diagnosis.formula_rewriting import (
-    at_sines_and_cosines,
-    everywhere,
-    exchanged,
-    first_term_negated,
-    joints_multiplied,
-    one_place,
-    other_operator,
-    products_merged,
-    summed_from,
-    sums_merged,
-    without_degrees,
-)
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, differs, undefined
 from service.grading.feedback import Finding
 from service.grading.misconception import Written, diagnosed
@@ -54,11 +42,9 @@ def degrees_as_radians(case: WrongEntry) -> Formulas:
 
 def _has_bare_number(node: Node) -> bool:
     """Whether a number other than 0 stands in it without a unit."""
-    if isinstance(node, Unit):
-        return False
     if isinstance(node, Number):
         return node.value != 0
-    return any(map(_has_bare_number, children(node)))
+    return not isinstance(node, Unit) and any(map(_has_bare_number, children(node)))
 
 
 def radians_as_degrees(case: WrongEntry) -> Formulas:
@@ -68,7 +54,7 @@ def radians_as_degrees(case: WrongEntry) -> Formulas:
         "A number in a sine or cosine was read in degrees, but it fits in radians: write it with "
         "pi, or in degrees.",
     )
-    yield Rewritten(everywhere(case.tree, without_degrees), finding)
+    yield Rewritten(rewriting.everywhere(case.tree, rewriting.without_degrees), finding)
 
 
 def sine_for_cosine(case: WrongEntry) -> Formulas:
@@ -76,9 +62,9 @@ def sine_for_cosine(case: WrongEntry) -> Formulas:
     count = len(case.sines_and_cosines)
     if count > 0:
         finding = Finding("sine_for_cosine", "Sine and cosine are exchanged in this entry.")
-        yield Rewritten(at_sines_and_cosines(case.tree, exchanged), finding)
+        yield Rewritten(rewriting.at_sines_and_cosines(case.tree, rewriting.exchanged), finding)
     if count > 1:
-        for tree, place in one_place(case.tree, exchanged):
+        for tree, place in rewriting.one_place(case.tree, rewriting.exchanged):
             yield Rewritten(tree, partial(_exchanged_at, place))
 
 
@@ -86,7 +72,7 @@ def _exchanged_at(place: Node) -> Finding:
     return Finding(
         "sine_for_cosine",
         "Sine and cosine are exchanged in one place of this entry.",
-        f"{to_text(place)} should be {to_text(exchanged(place))}.",
+        f"{to_text(place)} should be {to_text(rewriting.exchanged(place))}.",
     )
 
 
@@ -98,7 +84,7 @@ def sum_of_cosines(case: WrongEntry) -> Formulas:
         "angles first.",
     )
     if len(case.sines_and_cosines) > 1:
-        yield Rewritten(sums_merged(case.tree), finding)
+        yield Rewritten(rewriting.sums_merged(case.tree), finding)
 
 
 def product_for_sum_angle(case: WrongEntry) -> Formulas:
@@ -109,9 +95,9 @@ def product_for_sum_angle(case: WrongEntry) -> Formulas:
         "cosines; s12 likewise.",
     )
     if len(case.sines_and_cosines) > 1:
-        yield Rewritten(products_merged(case.tree), finding)
-        for joints in joints_multiplied(case.tree, sorted(case.turning))[:MAX_RUNS]:
-            yield Rewritten(products_merged(case.tree, joints), finding)
+        yield Rewritten(rewriting.products_merged(case.tree), finding)
+        for joints in rewriting.joints_multiplied(case.tree, sorted(case.turning))[:MAX_RUNS]:
+            yield Rewritten(rewriting.products_merged(case.tree, joints), finding)
 
 
 def relative_angle(case: WrongEntry) -> Formulas:
@@ -125,15 +111,15 @@ def relative_angle(case: WrongEntry) -> Formulas:
         "the sum of the angles up to it.",
     )
     for first in sorted(case.turning)[:-1] if case.sines_and_cosines else ():
-        summed = summed_from(first, case.turning)
-        yield Rewritten(at_sines_and_cosines(case.tree, summed), finding)
+        summed = rewriting.summed_from(first, case.turning)
+        yield Rewritten(rewriting.at_sines_and_cosines(case.tree, summed), finding)
 
 
 def term_sign(case: WrongEntry) -> Formulas:
     """One term of a sum has the wrong sign."""
     finding = Finding("term_sign", "One term in this entry has the wrong sign.")
-    for change in (other_operator, first_term_negated):
-        for tree, _ in one_place(case.tree, change):
+    for change in (rewriting.other_operator, rewriting.first_term_negated):
+        for tree, _ in rewriting.one_place(case.tree, change):
             yield Rewritten(tree, finding, signed=True)
 
 

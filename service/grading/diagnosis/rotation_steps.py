@@ -8,6 +8,7 @@ import numpy as np
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase, as_explanations
 from service.grading.diagnosis.wrong_value import Hypotheses
 from service.grading.feedback import Finding
+from service.grading.judging.expected import as_entries
 from service.grading.misconception import Written, explanation
 from service.grading.samples import Samples
 from service.kinematics.rotations import composed
@@ -30,7 +31,7 @@ RULE = (
 
 def _made_of(steps: Sequence[Step], finding: Finding) -> Written[Numbers]:
     rotation = composed([(step.rotation, step.fixed) for step in steps])
-    return Written(np.moveaxis(rotation, 0, -1), finding)
+    return Written(as_entries(rotation), finding)
 
 
 def fixed_for_moving(steps: Sequence[Step]) -> Hypotheses:
@@ -40,8 +41,8 @@ def fixed_for_moving(steps: Sequence[Step]) -> Hypotheses:
     yield _made_of(exchanged, Finding("fixed_for_moving_axes", hint))
     for i in range(1, len(steps)):
         hint = f"Turn {i + 1} was multiplied from the wrong side. {RULE}"
-        finding = Finding("fixed_for_moving_axes", hint)
-        yield _made_of([*steps[:i], exchanged[i], *steps[i + 1 :]], finding)
+        turns = [*steps[:i], exchanged[i], *steps[i + 1 :]]
+        yield _made_of(turns, Finding("fixed_for_moving_axes", hint))
 
 
 def turned_back(steps: Sequence[Step]) -> Hypotheses:

@@ -21,6 +21,9 @@ SUM_COUNTS = (
     "The axis is parallel to its neighbour, so it is the sum of the offsets along it that counts."
 )
 
+# The turn that an angle is off by may itself have been rounded.
+ROUNDED_TURN = ROUNDED_VALUE * np.pi
+
 # --- checks of the joint variables in the cell
 
 
@@ -113,8 +116,7 @@ def distance_left_out(case: WrongCell) -> Hypotheses:
         f"A distance is left out of {case.symbol}{_beside(case)}: these two frames are apart "
         f"{case.measured}.",
     )
-    if not case.angle:
-        yield Written(0 * case.actual, finding)
+    yield Written(0 * case.actual, finding)
 
 
 def distance_extra(case: WrongCell) -> Hypotheses:
@@ -124,8 +126,7 @@ def distance_extra(case: WrongCell) -> Hypotheses:
         f"There is no distance {case.measured} here{_beside(case)}: look along which axis of which "
         f"frame it is measured.",
     )
-    if not case.angle:
-        yield Repaired(0 * case.actual, finding)
+    yield Repaired(0 * case.actual, finding)
 
 
 def _beside(case: WrongCell) -> str:
@@ -138,10 +139,9 @@ def degrees_as_radians(case: WrongCell) -> Hypotheses:
         "This number was read in radians, but it fits in degrees: write the unit (90deg or 90°), "
         "or write it with pi."
     )
-    if case.angle:
-        in_degrees = np.radians(case.constants[0])
-        for value, also in ((-in_degrees, " Its sign is wrong, too."), (in_degrees, "")):
-            yield Repaired(value, case.finding("degrees_as_radians", hint + also))
+    in_degrees = np.radians(case.constants[0])
+    for value, also in ((-in_degrees, " Its sign is wrong, too."), (in_degrees, "")):
+        yield Repaired(value, case.finding("degrees_as_radians", hint + also))
 
 
 def radians_as_degrees(case: WrongCell) -> Hypotheses:
@@ -150,8 +150,7 @@ def radians_as_degrees(case: WrongCell) -> Hypotheses:
         "radians_as_degrees",
         "This number was read in degrees, but it fits in radians: write it with pi, or in degrees.",
     )
-    if case.angle:
-        yield Repaired(np.degrees(case.constants[0]), finding)
+    yield Repaired(np.degrees(case.constants[0]), finding)
 
 
 def quarter_turn(case: WrongCell) -> Hypotheses:
@@ -162,7 +161,7 @@ def quarter_turn(case: WrongCell) -> Hypotheses:
         f"between, in the home configuration.",
     )
     for turn in (np.pi / 2, -np.pi / 2):
-        yield from _off_by(turn, case, finding)
+        yield Written(case.constants[1] + turn, finding, tolerance=ROUNDED_TURN)
 
 
 def half_turn(case: WrongCell) -> Hypotheses:
@@ -172,13 +171,7 @@ def half_turn(case: WrongCell) -> Hypotheses:
         f"{case.symbol} is off by half a turn (180°): check which way the axes point that it is "
         f"measured between.",
     )
-    yield from _off_by(np.pi, case, finding)
-
-
-def _off_by(turn: float, case: WrongCell, finding: Finding) -> Hypotheses:
-    # The other turn may itself have been rounded.
-    if case.angle:
-        yield Written(case.constants[1] + turn, finding, tolerance=ROUNDED_VALUE * np.pi)
+    yield Written(case.constants[1] + np.pi, finding, tolerance=ROUNDED_TURN)
 
 
 CHECKS = (
@@ -197,7 +190,8 @@ MISCONCEPTIONS = (sign, *OF_DISTANCE, *OF_ANGLE)
 
 def diagnose(case: WrongCell) -> Finding:
     """The finding on a wrong cell."""
-    finding = diagnosed(case, MISCONCEPTIONS, CHECKS) or differs(
+    misconceptions = (sign, *(OF_ANGLE if case.angle else OF_DISTANCE))
+    finding = diagnosed(case, misconceptions, CHECKS) or differs(
         case,
         f"{case.symbol} is not right here: measure the {'angle' if case.angle else 'distance'} "
         f"{case.measured} again.{_too_large(case)}",
@@ -208,7 +202,6 @@ def diagnose(case: WrongCell) -> Finding:
 
 
 def _too_large(case: WrongCell) -> str:
-    """A hint where a number is far too large for radians."""
     if not case.angle or not case.same_motion or np.abs(case.constants[0]).max() < 3 * np.pi:
         return ""
     return " Its number was read in radians: write the unit (90deg or 90°) if degrees were meant."

@@ -114,7 +114,6 @@ def _lost_rank(written: _Arm, intended: _Arm) -> tuple[Finding, ...]:
 def _one_axis(
     together: list[int], written: _Arm, intended: _Arm, convention: Convention
 ) -> Finding:
-    """Several joints were given one axis."""
     first, last = together[0], together[-1]
     motion = "turn about one and the same line"
     if written.joints[first].prismatic:
@@ -156,7 +155,6 @@ def _rows_between(i: int, j: int, written: _Arm, convention: Convention) -> str:
 
 
 def _without_effect(joints: Sequence[Joint]) -> Finding:
-    """Joints were left out of the table's formulas."""
     names = [str(joint.index) for joint in joints]
     variables = listed([joint.variable for joint in joints])
     is_one = len(names) == 1

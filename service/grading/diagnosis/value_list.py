@@ -15,8 +15,6 @@ def slips_of(
     compared: ComparedValues, wrong: NDArray[np.bool_], grading: Grading
 ) -> dict[tuple[int, int], Finding]:
     """The finding on each wrong value that was read, at (its place, 0)."""
-    if not wrong.any():
-        return {}
     student, scales = compared.student, compared.scales(grading)
     slips: dict[tuple[int, int], Finding] = {}
     for i in np.flatnonzero(wrong).tolist():

@@ -9,11 +9,12 @@ from itertools import permutations
 
 import numpy as np
 
-from service.grading.diagnosis.link_products import as_entries, named
+from service.grading.diagnosis.link_products import named
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase, as_explanations
 from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, Hypotheses, Mask
 from service.grading.feedback import Finding
+from service.grading.judging.expected import as_entries
 from service.grading.misconception import Written, explanation
 from service.grading.report import Severity
 from service.grading.tolerances import EXACT_VALUE, ROUNDED_VALUE

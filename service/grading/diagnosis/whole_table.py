@@ -173,10 +173,7 @@ PAIRS = tuple(
 
 
 def explaining(case: WrongTable, *, combine: bool) -> list[RepairedTable]:
-    """All hypotheses that explain the whole table.
-
-    If none does and ``combine`` allows, the first pair of misconceptions that does.
-    """
+    """All hypotheses that explain the whole table; else the first pair, if ``combine`` allows."""
     found = list(_explaining(case, MISCONCEPTIONS))
     return found or (list(islice(_explaining(case, PAIRS), 1)) if combine else [])
 

@@ -70,5 +70,5 @@ def is_whole_chain(part: PosePartSpec, exercise: Exercise) -> bool:
 
 
 def as_entries(matrices: Matrices) -> Numbers:
-    """``(SAMPLES, rows, columns)`` as ``(rows, columns, SAMPLES)``."""
-    return np.moveaxis(matrices, 0, -1)
+    """``(..., SAMPLES, rows, columns)`` as ``(..., rows, columns, SAMPLES)``."""
+    return np.moveaxis(matrices, -3, -1)

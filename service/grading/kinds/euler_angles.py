@@ -12,13 +12,15 @@ from numpy.typing import NDArray
 from service.catalogue.parts.euler_angles import EulerAnglesSpec
 from service.expressions import Kind
 from service.grading.comparison import Match, difference, matches
-from service.grading.diagnosis.angle import diagnose_angle, has_arctangent
+from service.grading.diagnosis.angle import has_arctangent
 from service.grading.diagnosis.euler_triple import RepairedTriple, WrongTriple, explain_triple
-from service.grading.diagnosis.wrong_value import UNEXPLAINED, WrongValue
+from service.grading.diagnosis.value_list import slips_of
+from service.grading.diagnosis.wrong_value import UNEXPLAINED
 from service.grading.feedback import Finding
 from service.grading.formula_text import formula_text
 from service.grading.judging.expected import asked_pose, formula_values
 from service.grading.judging.report_rows import value_rows
+from service.grading.judging.value_list import ComparedValues
 from service.grading.part import Grading, Judged
 from service.grading.reading.entry import Entry
 from service.grading.reading.value_list import StudentValues, read_list
@@ -152,18 +154,9 @@ def _slips(
     student: StudentValues, expected: Numbers, found: NDArray[np.int_], grading: Grading
 ) -> dict[tuple[int, int], Finding]:
     """The findings on single wrong angles."""
-    return {
-        (i, 0): diagnose_angle(
-            WrongValue(
-                expression=entry.expression,
-                actual=student.values[i],
-                expected=expected[i],
-                expected_text=formula_text(expected[i], True, grading.exercise, grading.samples),
-                samples=grading.samples,
-                scale=1.0,
-                angle=True,
-            )
-        )
-        for i, entry in enumerate(student.entries)
-        if entry.expression is not None and found[i] < Match.ROUNDED
-    }
+    wrong = found < Match.ROUNDED
+    texts = [
+        formula_text(angle, True, grading.exercise, grading.samples) if is_wrong else ""
+        for angle, is_wrong in zip(expected, wrong, strict=True)
+    ]
+    return slips_of(ComparedValues(student, expected, texts), wrong, grading)
