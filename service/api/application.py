@@ -15,7 +15,7 @@ from service.api import solutions as model_solutions
 from service.api.boundary import BoundaryMiddleware
 from service.api.lookup import Catalogue
 from service.api.openapi import any_other_failure, with_problem_schema
-from service.submissions import MAX_BODY_SIZE
+from service.submissions.strict_json import MAX_BODY_SIZE
 
 DESCRIPTION = """
 Grades Denavit-Hartenberg tables, transforms and forward kinematics, row by row, and says why.

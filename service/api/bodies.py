@@ -8,7 +8,7 @@ from fastapi import Request
 from pydantic import BaseModel, ValidationError
 
 from service.api.problems import ProblemError, invalid
-from service.submissions import MalformedError, read_json
+from service.submissions.strict_json import MalformedError, read_json
 
 M = TypeVar("M", bound=BaseModel)
 

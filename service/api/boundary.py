@@ -5,7 +5,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.api.problems import too_large
-from service.submissions import MAX_BODY_SIZE
+from service.submissions.strict_json import MAX_BODY_SIZE
 
 
 class BoundaryMiddleware:

@@ -8,7 +8,6 @@ from pydantic import BaseModel, Field
 
 from service.api.lookup import Catalogue, exercise_or_404
 from service.api.openapi import refusals
-from service.catalogue import Exercise
 from service.catalogue.parts import AnyShape
 from service.expressions import Kind
 
@@ -78,22 +77,6 @@ class ExerciseView(BaseModel):
     parts: list[PartView]
 
 
-def view(exercise: Exercise) -> dict[str, Any]:
-    """All of the exercise but its answers, as ``ExerciseView`` picks it."""
-    return {
-        "id": exercise.id,
-        "version": exercise.version,
-        "title": exercise.title,
-        "source": exercise.source,
-        "structure": exercise.structure,
-        "statement": exercise.statement,
-        "symbols": exercise.variables,
-        "parts": [
-            {**dict(part), "shape": part.shape(exercise.reference)} for part in exercise.parts
-        ],
-    }
-
-
 def routes(catalogue: Catalogue) -> APIRouter:
     """The routes that show the catalogue."""
     router = APIRouter(prefix="/v1/exercises", tags=["exercises"])
@@ -112,6 +95,9 @@ def routes(catalogue: Catalogue) -> APIRouter:
     )
     async def show_exercise(exercise_id: str) -> dict[str, Any]:
         """One exercise: its statement, its symbols, and what each part asks for."""
-        return view(exercise_or_404(catalogue, exercise_id))
+        exercise = exercise_or_404(catalogue, exercise_id)
+        fields = {name: getattr(exercise, name, None) for name in ExerciseView.model_fields}
+        parts = [{**dict(part), "shape": part.shape(exercise.reference)} for part in exercise.parts]
+        return {**fields, "symbols": exercise.variables, "parts": parts}
 
     return router

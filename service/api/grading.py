@@ -6,12 +6,10 @@ from fastapi import APIRouter, Request, Response
 
 from service.api.bodies import body_as
 from service.api.lookup import Catalogue, exercise_or_404, require_parts
-from service.api.openapi import answer, refusals, request_body
+from service.api.openapi import posting
 from service.formats.json import rendered
 from service.grading import Report, grade
-from service.submissions import GradeRequest
-
-JSON = "application/json"
+from service.submissions.body import GradeRequest
 
 
 def routes(catalogue: Catalogue) -> APIRouter:
@@ -23,17 +21,7 @@ def routes(catalogue: Catalogue) -> APIRouter:
     # keep the longest below 50 ms.
     @router.post(
         "/{exercise_id}/grade",
-        openapi_extra=request_body(GradeRequest, "grade-request"),
-        responses={
-            200: answer(Report, "grade-response"),
-            **refusals(
-                HTTPStatus.BAD_REQUEST,
-                HTTPStatus.NOT_FOUND,
-                HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
-                HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
-                HTTPStatus.UNPROCESSABLE_ENTITY,
-            ),
-        },
+        **posting(GradeRequest, Report, "grade", HTTPStatus.NOT_FOUND),
     )
     async def grade_answers(exercise_id: str, request: Request) -> Response:
         """Grade answers, row by row and cell by cell. Nothing is recorded.
@@ -44,6 +32,7 @@ def routes(catalogue: Catalogue) -> APIRouter:
         exercise = exercise_or_404(catalogue, exercise_id)
         body = await body_as(GradeRequest, request)
         require_parts(exercise, {part: ("answers", part) for part in body.answers})
-        return Response(rendered(grade(exercise, body.submission())), media_type=JSON)
+        report = rendered(grade(exercise, body.submission()))
+        return Response(report, media_type="application/json")
 
     return router

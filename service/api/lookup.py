@@ -1,11 +1,12 @@
 """The exercise and the parts that a request names, or a problem that lists the known ones."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
+from dataclasses import replace
 from http import HTTPStatus
 
 from service.api.problems import ProblemError, invalid
 from service.catalogue import Exercise
-from service.submissions import UnknownExerciseError, find_exercise
+from service.submissions.lookup import UnknownExerciseError, find_exercise
 
 Catalogue = Mapping[str, Exercise]
 
@@ -25,9 +26,8 @@ def require_exercise(catalogue: Catalogue, exercise_id: str) -> Exercise:
     try:
         return find_exercise(catalogue, exercise_id)
     except UnknownExerciseError as error:
-        raise invalid(
-            [{"type": "unknown", "loc": ("exercise",), "msg": str(error)[:-1]}]
-        ) from error
+        detail = {"type": "unknown", "loc": ("exercise",), "msg": str(error)[:-1]}
+        raise invalid([detail]) from error
 
 
 def require_parts(exercise: Exercise, locations: Mapping[str, tuple[str, ...]]) -> None:
@@ -35,14 +35,9 @@ def require_parts(exercise: Exercise, locations: Mapping[str, tuple[str, ...]]) 
 
     Raises ProblemError naming those that there are.
     """
-    known = ", ".join(part.id for part in exercise.parts)
-    message = f"{exercise.id} has no such part; its parts are {known}"
     unknown = [place for part, place in locations.items() if exercise.part(part) is None]
     if unknown:
-        raise _unknown_parts(unknown, message)
-
-
-def _unknown_parts(unknown: Iterable[tuple[str, ...]], message: str) -> ProblemError:
-    problem = invalid([{"type": "unknown", "loc": place, "msg": message} for place in unknown])
-    problem.name, problem.title = "unknown-part", "The exercise has no such part"
-    return problem
+        known = ", ".join(part.id for part in exercise.parts)
+        message = f"{exercise.id} has no such part; its parts are {known}"
+        problem = invalid([{"type": "unknown", "loc": place, "msg": message} for place in unknown])
+        raise replace(problem, name="unknown-part", title="The exercise has no such part")

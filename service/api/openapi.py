@@ -22,6 +22,7 @@ _REFUSALS = {
     HTTPStatus.UNSUPPORTED_MEDIA_TYPE: "The body is not JSON and does not claim to be.",
     HTTPStatus.UNPROCESSABLE_ENTITY: "The body has not the right shape, or names an unknown part.",
 }
+_REFUSED_BODIES = _REFUSALS.keys() - {HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND}
 
 
 def example(name: str) -> Any:
@@ -29,15 +30,21 @@ def example(name: str) -> Any:
     return json.loads((EXAMPLES / f"{name}.json").read_text(encoding="utf-8"))
 
 
-def request_body(model: type[BaseModel], name: str) -> dict[str, Any]:
-    """The OpenAPI ``requestBody`` of a route that reads its body by ``body_as``."""
-    content = {"schema": model.model_json_schema(), "example": example(name)}
-    return {"requestBody": {"required": True, "content": {"application/json": content}}}
+def posting(body: type[BaseModel], model: type, name: str, *further: HTTPStatus) -> dict[str, Any]:
+    """Body and responses of a route that reads its body by ``body_as``, as options of the route.
+
+    ``name`` begins the names of its two examples; ``further`` are refusals beside those of a body.
+    """
+    content = {"schema": body.model_json_schema(), "example": example(f"{name}-request")}
+    request = {"required": True, "content": {"application/json": content}}
+    responses = answers(model, f"{name}-response", *sorted([*_REFUSED_BODIES, *further]))
+    return {"openapi_extra": {"requestBody": request}, "responses": responses}
 
 
-def answer(model: type, name: str) -> dict[str, Any]:
-    """The OpenAPI response 200 with its schema and example."""
-    return {"model": model, "content": {"application/json": {"example": example(name)}}}
+def answers(model: type, name: str, *statuses: HTTPStatus) -> dict[int | str, dict[str, Any]]:
+    """The OpenAPI response 200 with its schema and example, and those for the refusals."""
+    success = {"model": model, "content": {"application/json": {"example": example(name)}}}
+    return {200: success, **refusals(*statuses)}
 
 
 def refusals(*statuses: HTTPStatus) -> dict[int | str, dict[str, Any]]:

@@ -1,6 +1,5 @@
 """The route that shows how a text is read, while the student still types."""
 
-from http import HTTPStatus
 from typing import Final, Literal
 
 from fastapi import APIRouter, Request, Response
@@ -8,17 +7,10 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from service.api.bodies import body_as
 from service.api.lookup import Catalogue, require_exercise, require_parts
-from service.api.openapi import answer, refusals, request_body
+from service.api.openapi import posting
 from service.api.problems import invalid
 from service.catalogue import Exercise
-from service.expressions import (
-    ExpressionError,
-    Kind,
-    Symbol,
-    Vocabulary,
-    joint_variable,
-    read,
-)
+from service.expressions import ExpressionError, Kind, Symbol, Vocabulary, joint_variable, read
 from service.grading.reading.preview import preview_pasted
 
 JOINTS: Final = range(1, 10)
@@ -149,19 +141,7 @@ def routes(catalogue: Catalogue) -> APIRouter:
     """The route that previews."""
     router = APIRouter(prefix="/v1", tags=["preview"])
 
-    @router.post(
-        "/preview",
-        openapi_extra=request_body(PreviewRequest, "preview-request"),
-        responses={
-            200: answer(PreviewAnswer, "preview-response"),
-            **refusals(
-                HTTPStatus.BAD_REQUEST,
-                HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
-                HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
-                HTTPStatus.UNPROCESSABLE_ENTITY,
-            ),
-        },
-    )
+    @router.post("/preview", **posting(PreviewRequest, PreviewAnswer, "preview"))
     async def preview_text(request: Request) -> Response:
         """Show how a text is read: normal text, LaTeX, MathML; or why not, and the text repaired.
 

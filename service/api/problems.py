@@ -12,7 +12,7 @@ from pydantic import BaseModel, Field
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
-from service.submissions import MAX_BODY_SIZE
+from service.submissions.strict_json import MAX_BODY_SIZE
 
 MEDIA_TYPE = "application/problem+json"
 MAX_ERRORS = 20
@@ -114,60 +114,55 @@ def _message(detail: Mapping[str, Any], fields: Sequence[str]) -> str:
 
 def install(app: FastAPI) -> None:
     """Have the app answer every failure, its framework's own included, with a problem."""
-    app.add_exception_handler(ProblemError, _on_problem)
-    app.add_exception_handler(HTTPException, _on_http_exception)
-    app.add_exception_handler(RequestValidationError, _on_invalid_request)
-    app.add_exception_handler(ClientDisconnect, _on_disconnect)
-    app.add_exception_handler(Exception, _on_exception)
+    for failure in (
+        ProblemError,
+        HTTPException,
+        RequestValidationError,
+        ClientDisconnect,
+        Exception,
+    ):
+        app.add_exception_handler(failure, _answer)
 
 
-async def _on_problem(request: Request, error: Exception) -> Response:
-    assert isinstance(error, ProblemError)
-    return error.response(request.url.path)
+async def _answer(request: Request, error: Exception) -> Response:
+    problem = _problem(request, error)
+    if request.method == "OPTIONS" and problem.status is HTTPStatus.METHOD_NOT_ALLOWED:
+        return Response(status_code=HTTPStatus.NO_CONTENT, headers=problem.headers)
+    return problem.response(request.url.path)
 
 
-async def _on_http_exception(request: Request, error: Exception) -> Response:
-    assert isinstance(error, HTTPException)
-    if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
-        return _on_other_method(request, error)
-    if error.status_code == HTTPStatus.REQUEST_ENTITY_TOO_LARGE:
-        return too_large().response(request.url.path)
-    status = HTTPStatus(error.status_code)
-    detail = str(error.detail)
-    if status is HTTPStatus.NOT_FOUND and detail == status.phrase:
-        detail = "Nothing is at this address; GET /v1/exercises lists the exercises."
-    return ProblemError(status, detail, headers=error.headers).response(request.url.path)
+def _problem(request: Request, error: Exception) -> ProblemError:
+    match error:
+        case ProblemError():
+            return error
+        case RequestValidationError():
+            return invalid([{**detail, "loc": detail["loc"][1:]} for detail in error.errors()])
+        case ClientDisconnect():
+            # The client reads no answer; this only keeps it from counting as our failure.
+            detail = "The request ended before its body was complete."
+            return ProblemError(HTTPStatus.BAD_REQUEST, detail)
+        case HTTPException(status_code=HTTPStatus.METHOD_NOT_ALLOWED):
+            return _other_method(request, error)
+        case HTTPException(status_code=HTTPStatus.REQUEST_ENTITY_TOO_LARGE):
+            return too_large()
+        case HTTPException(status_code=HTTPStatus.NOT_FOUND, detail=HTTPStatus.NOT_FOUND.phrase):
+            detail = "Nothing is at this address; GET /v1/exercises lists the exercises."
+            return ProblemError(HTTPStatus.NOT_FOUND, detail, headers=error.headers)
+        case HTTPException():
+            status = HTTPStatus(error.status_code)
+            return ProblemError(status, str(error.detail), headers=error.headers)
+        case _:  # without details; the server logs the traceback
+            return ProblemError(
+                HTTPStatus.INTERNAL_SERVER_ERROR,
+                "The service failed at this request. Nothing is wrong with the answer itself; "
+                "the failure has been logged.",
+            )
 
 
-def _on_other_method(request: Request, error: HTTPException) -> Response:
-    """Answers OPTIONS, and names the other methods: HEAD goes wherever GET does."""
+def _other_method(request: Request, error: HTTPException) -> ProblemError:
+    """The problem that names the other methods: HEAD goes wherever GET does."""
     methods = set((error.headers or {}).get("Allow", "").replace(" ", "").split(",")) - {""}
     methods |= {"HEAD", "OPTIONS"} if "GET" in methods else {"OPTIONS"}
-    allow = {"Allow": ", ".join(sorted(methods))}
-    if request.method == "OPTIONS":
-        return Response(status_code=HTTPStatus.NO_CONTENT, headers=allow)
-    detail = f"{request.method[:20]} does nothing here; this address takes {allow['Allow']}."
-    problem = ProblemError(HTTPStatus.METHOD_NOT_ALLOWED, detail, headers=allow)
-    return problem.response(request.url.path)
-
-
-async def _on_invalid_request(request: Request, error: Exception) -> Response:
-    assert isinstance(error, RequestValidationError)
-    details = [{**detail, "loc": detail["loc"][1:]} for detail in error.errors()]
-    return invalid(details).response(request.url.path)
-
-
-async def _on_disconnect(request: Request, _: Exception) -> Response:
-    """The client has gone and reads no answer; this only keeps it from counting as our failure."""
-    detail = "The request ended before its body was complete."
-    return ProblemError(HTTPStatus.BAD_REQUEST, detail).response(request.url.path)
-
-
-async def _on_exception(request: Request, _: Exception) -> Response:
-    """Gives no details; the server logs the traceback."""
-    problem = ProblemError(
-        HTTPStatus.INTERNAL_SERVER_ERROR,
-        "The service failed at this request. Nothing is wrong with the answer itself; "
-        "the failure has been logged.",
-    )
-    return problem.response(request.url.path)
+    allow = ", ".join(sorted(methods))
+    detail = f"{request.method[:20]} does nothing here; this address takes {allow}."
+    return ProblemError(HTTPStatus.METHOD_NOT_ALLOWED, detail, headers={"Allow": allow})

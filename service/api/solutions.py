@@ -9,7 +9,7 @@ from fastapi import APIRouter, Response
 from pydantic import TypeAdapter
 
 from service.api.lookup import Catalogue, exercise_or_404
-from service.api.openapi import answer, refusals
+from service.api.openapi import answers
 from service.api.problems import ProblemError
 from service.catalogue import Exercise
 from service.solutions import ModelSolution, solve
@@ -50,10 +50,9 @@ def routes(catalogue: Catalogue, *, shown: bool) -> APIRouter:
 
     @router.get(
         "/{exercise_id}/solution",
-        responses={
-            200: answer(ModelSolution, "solution-response"),
-            **refusals(HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND),
-        },
+        responses=answers(
+            ModelSolution, "solution-response", HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND
+        ),
     )
     async def show_solution(exercise_id: str) -> Response:
         """Show the right answer to each part, each link transform and the pose, for tutors."""
@@ -67,8 +66,6 @@ def routes(catalogue: Catalogue, *, shown: bool) -> APIRouter:
                 "Model solutions are not shown here",
             )
         content = await solutions.of(exercise_or_404(catalogue, exercise_id))
-        return Response(
-            content, media_type="application/json", headers={"Cache-Control": "no-store"}
-        )
+        return Response(content, 200, {"Cache-Control": "no-store"}, "application/json")
 
     return router

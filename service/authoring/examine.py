@@ -2,13 +2,10 @@
 
 from collections.abc import Callable, Iterator
 
-from service.authoring.duplicates import duplicate_parts
-from service.authoring.expectations import failed_checks, missing_checks
+from service.authoring.answers import duplicate_parts, failed_checks, missing_checks, model_answer
 from service.authoring.freedom import lost_freedom
-from service.authoring.model_answer import model_answer
-from service.authoring.ranges import badly_scaled
 from service.authoring.remarks import Remark
-from service.authoring.symbols import ambiguous_symbols, unused_symbols
+from service.authoring.symbols import ambiguous_symbols, badly_scaled, unused_symbols
 from service.authoring.units import bare_degrees
 from service.catalogue import Exercise
 

@@ -6,10 +6,11 @@ import numpy as np
 
 from service.authoring.remarks import Remark, warning
 from service.catalogue import Exercise
+from service.catalogue.screw_robot import Reference
 from service.catalogue.variables import TRIALS, trial_values
 from service.kinematics.jacobian import coincident, rank
 from service.kinematics.screws import exponential, moved
-from service.kinematics.transforms import identity
+from service.kinematics.transforms import Numbers, identity
 
 WAYS = 6
 
@@ -19,8 +20,7 @@ def lost_freedom(exercise: Exercise) -> Iterator[Remark]:
     robot = exercise.reference
     if robot is None:
         return
-    values = trial_values(exercise.variables)
-    jacobian = _jacobian(exercise, np.asarray(robot.screws(values, TRIALS)))
+    jacobian = _jacobian(exercise, robot)
     pairs = np.argwhere(np.triu(coincident(jacobian)))
     for i, j in pairs.tolist():
         one, other = robot.joints[i], robot.joints[j]
@@ -39,7 +39,7 @@ def lost_freedom(exercise: Exercise) -> Iterator[Remark]:
         )
 
 
-def _jacobian(exercise: Exercise, axes: np.ndarray) -> np.ndarray:
+def _jacobian(exercise: Exercise, robot: Reference) -> Numbers:
     """The space Jacobian ``(samples, 6, joints)``, lengths in the exercise's typical length.
 
     Source: Lynch and Park, *Modern Robotics*, eq. 5.11.
@@ -47,7 +47,7 @@ def _jacobian(exercise: Exercise, axes: np.ndarray) -> np.ndarray:
     values = trial_values(exercise.variables)
     reached = identity((TRIALS,))
     columns = []
-    for joint, axis in zip(exercise.joints, axes, strict=True):
+    for joint, axis in zip(robot.joints, robot.screws(values, TRIALS), strict=True):
         column = moved(reached, axis)
         if not joint.prismatic:
             column[:, 3:] /= exercise.length_scale

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import partial
 
 
 class Level(StrEnum):
@@ -20,11 +21,5 @@ class Remark:
     text: str
 
 
-def failed(field: str, text: str) -> Remark:
-    """Something that must be mended."""
-    return Remark(Level.FAILED, field, text)
-
-
-def warning(field: str, text: str) -> Remark:
-    """Something that is worth a look."""
-    return Remark(Level.WARNING, field, text)
+failed = partial(Remark, Level.FAILED)
+warning = partial(Remark, Level.WARNING)

@@ -1,4 +1,4 @@
-"""Symbols that a student, or a reader, may take for something else."""
+"""Symbols that may be taken for something else, or whose ranges hide a mistake."""
 
 import re
 from collections import defaultdict
@@ -22,6 +22,11 @@ _MISLEADING: Final = {
     "c": "a cosine",
     "s": "a sine",
 }
+# Small lengths drown beyond this: a slip in one changes the last digits of a pose.
+MOST_RATIO: Final = 1000.0
+# A constant that is right to a thousandth counts as rounded.
+LEAST_WIDTH: Final = 0.01
+_LOOK_ALIKE: Final = str.maketrans("IlO", "110")
 
 
 def ambiguous_symbols(exercise: Exercise) -> Iterator[Remark]:
@@ -31,7 +36,8 @@ def ambiguous_symbols(exercise: Exercise) -> Iterator[Remark]:
             yield warning(f"symbols.{variable.name}", problem)
     alike = defaultdict(list)
     for variable in exercise.variables:
-        alike[_as_seen(variable.name)].append(variable.name)
+        as_seen = variable.name.translate(_LOOK_ALIKE).lower()
+        alike[as_seen].append(variable.name)
     for names in alike.values():
         if len(names) > 1:
             yield warning(
@@ -55,9 +61,11 @@ def _problems(variable: Variable, exercise: Exercise) -> Iterator[str]:
     name = variable.name
     if name in _MISLEADING:
         yield f"may be read as {_MISLEADING[name]}; give it a longer name, such as {name}1"
-    if _SHORTHAND.fullmatch(name) and _named_joints(name) <= {j.index for j in exercise.joints}:
+    joints = {joint.index for joint in exercise.joints}
+    if _SHORTHAND.fullmatch(name) and set(map(int, name[1:])) <= joints:
+        function = "cosine" if name[0] in "cC" else "sine"
         yield (
-            f"takes the place of the shorthand {name} for a {_function(name)}: whoever writes "
+            f"takes the place of the shorthand {name} for a {function}: whoever writes "
             f"{name} for that is marked wrong; rename it"
         )
     if variable.joint is None:
@@ -70,14 +78,42 @@ def _problems(variable: Variable, exercise: Exercise) -> Iterator[str]:
                 )
 
 
-def _named_joints(shorthand: str) -> set[int]:
-    return set(map(int, shorthand[1:]))
+def badly_scaled(exercise: Exercise) -> Iterator[Remark]:
+    """Ranges that hardly vary, lengths that cross 0, and lengths of very different size."""
+    for variable in exercise.variables:
+        yield from _range(variable)
+    sizes = {v.name: max(abs(v.low), abs(v.high)) for v in exercise.variables if v.kind == "length"}
+    if not sizes:
+        return
+    least, most = min(sizes, key=sizes.__getitem__), max(sizes, key=sizes.__getitem__)
+    if sizes[most] > MOST_RATIO * sizes[least]:
+        yield warning(
+            f"symbols.{least}.range",
+            f"reaches {sizes[least]:g} where {most} reaches {sizes[most]:g}: beside that a slip in "
+            f"{least} is too small to be seen; write lengths of one unit and similar size",
+        )
 
 
-def _function(name: str) -> str:
-    return "cosine" if name[0] in "cC" else "sine"
-
-
-def _as_seen(name: str) -> str:
-    """The name as it looks: without capitals, with one sign for those that look the same."""
-    return name.translate(str.maketrans("IlO", "110")).lower()
+def _range(variable: Variable) -> Iterator[Remark]:
+    field = f"symbols.{variable.name}.range"
+    size = max(abs(variable.low), abs(variable.high))
+    if variable.high - variable.low < LEAST_WIDTH * size:
+        yield warning(
+            field,
+            f"is so narrow that the number {variable.low:g} may pass for {variable.name}; widen "
+            f"it, or write the number in the formulas",
+        )
+    is_constant_length = variable.kind == "length" and variable.joint is None
+    if is_constant_length and variable.low <= 0 <= variable.high:
+        yield warning(
+            field,
+            f"holds 0, where axes that are apart come to meet; begin above 0, as in "
+            f"[{size / 3:.1g}, {size:.1g}]",
+        )
+    ends = sorted((abs(variable.low), abs(variable.high)))
+    if 0 < ends[0] * MOST_RATIO < ends[1]:
+        yield warning(
+            field,
+            f"goes from {variable.low:g} to {variable.high:g}; narrow it, for a mistake that "
+            f"counts at one end is not seen at the other",
+        )

@@ -11,9 +11,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from service.catalogue.checks import check_parts
 from service.catalogue.exercise import Exercise
-from service.catalogue.fields import Formula
+from service.catalogue.fields import Four
 from service.catalogue.formulas import (
     EXACT,
     FieldError,
@@ -30,7 +29,7 @@ from service.catalogue.robot import (
     Robot,
     tables_in_both_conventions,
 )
-from service.catalogue.schema import ExerciseSpec, RobotSpec, ScrewRobotSpec, SymbolSpec
+from service.catalogue.schema import CheckSpec, ExerciseSpec, RobotSpec, ScrewRobotSpec, SymbolSpec
 from service.catalogue.screw_robot import Reference, ScrewRobot
 from service.catalogue.variables import Variable
 from service.expressions import Expression, Kind, Symbol, Vocabulary
@@ -51,7 +50,7 @@ def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
     reader = FormulaReader(vocabulary, variables)
     reference = _reference(spec.robot, joints, reader)
     formulas = _formulas(spec.parts, reference, reader)
-    check_parts(spec.checks, spec.parts)
+    _check_checks(spec.checks, spec.parts)
     return Exercise(
         id=exercise_id,
         version=_version(spec),
@@ -82,6 +81,26 @@ def _formulas(
     return found
 
 
+def _check_checks(checks: Sequence[CheckSpec], parts: Sequence[PartSpec]) -> None:
+    """Check that every check names parts of the exercise. Raises FieldError."""
+    most = {part.id: part.points for part in parts}
+    for i, check in enumerate(checks):
+        for field, named in (("answers", check.answers), ("expect", check.expect)):
+            for name in named:
+                if name not in most:
+                    known = ", ".join(most)
+                    raise FieldError(
+                        f"checks[{i}].{field}.{name}",
+                        f"there is no such part; write one of {known}",
+                    )
+        for name, expected in check.expect.items():
+            if expected.points is not None and expected.points > most[name]:
+                raise FieldError(
+                    f"checks[{i}].expect.{name}.points",
+                    f"is more than the part's {most[name]:g} points; write {most[name]:g} or less",
+                )
+
+
 def _length_scale(variables: tuple[Variable, ...], reference: Reference | None) -> float:
     """The longest length: of the letters, and of the numbers that the reference's table has."""
     lengths = [max(abs(v.low), abs(v.high)) for v in variables if v.kind == "length"]
@@ -105,13 +124,11 @@ def _version(spec: ExerciseSpec) -> str:
 
 def _joints(robot: RobotSpec | ScrewRobotSpec) -> tuple[Joint, ...]:
     """The joints, numbered as their variables are (a wrist's joints may begin at 4)."""
-    first = 1
     digits = "".join(character for character in robot.joints[0] if character.isdigit())
-    if digits:
-        first = int(digits)
+    named = zip(robot.joints, robot.structure, strict=True)
     return tuple(
-        Joint(index=first + i, variable=name, prismatic=letter == "P")
-        for i, (name, letter) in enumerate(zip(robot.joints, robot.structure, strict=True))
+        Joint(index, name, prismatic=letter == "P")
+        for index, (name, letter) in enumerate(named, int(digits or 1))
     )
 
 
@@ -163,15 +180,7 @@ def _range(field: str, symbol: SymbolSpec) -> tuple[float, float]:
 
 def _vocabulary(variables: tuple[Variable, ...]) -> Vocabulary:
     taken = {variable.name for variable in variables}
-    symbols = [
-        Symbol(
-            name=variable.name,
-            kind=variable.kind,
-            aliases=_joint_aliases(variable, taken),
-            joint=variable.joint,
-        )
-        for variable in variables
-    ]
+    symbols = [Symbol(v.name, v.kind, _joint_aliases(v, taken), v.joint) for v in variables]
     try:
         return Vocabulary(symbols)
     except ValueError as error:
@@ -220,18 +229,12 @@ def _screw_robot(
     return ScrewRobot(spec.structure, joints, home, axes)
 
 
-def _row(
-    i: int,
-    cells: tuple[Formula, Formula, Formula, Formula],
-    joints: tuple[Joint, ...],
-    reader: FormulaReader,
-) -> FormulaRow:
+def _row(i: int, cells: Four, joints: tuple[Joint, ...], reader: FormulaReader) -> FormulaRow:
     field = f"robot.table[{i}]"
-    a, alpha, d, theta = (
+    a, alpha, d, theta = row = [
         reader.read(f"{field}.{column}", cell, quantity)
         for column, cell, quantity in zip(COLUMNS, cells, ROW_QUANTITIES, strict=True)
-    )
-    row = (a, alpha, d, theta)
+    ]
     moving = joints[i] if i < len(joints) else None
     variables = {joint.variable for joint in joints}
     for column, formula in zip(COLUMNS, row, strict=True):
@@ -241,7 +244,7 @@ def _row(
             raise FieldError(f"{field}.{column}", f"{wanted}, but reads {formula.text()}")
     if moving is not None:
         _check_moves_once(f"{field}.{moving.column}", row[COLUMNS.index(moving.column)], moving)
-    return row
+    return a, alpha, d, theta
 
 
 def _check_moves_once(field: str, formula: Expression, joint: Joint) -> None:

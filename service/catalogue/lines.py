@@ -15,8 +15,7 @@ _STRINGS: Final = (
     r'"(?:[^"\\\n]|\\.)*"',
     r"'[^'\n]*'",
 )
-_STRING: Final = re.compile("|".join(_STRINGS), re.DOTALL)
-_SCALAR: Final = re.compile(r"[^,\]}#\n]*")
+_SCALAR: Final = re.compile("|".join((*_STRINGS, r"[^,\]}#\n]*")), re.DOTALL)
 
 
 def line_of(field: str, lines: dict[str, int]) -> int | None:
@@ -53,8 +52,8 @@ class _Follower:
             self._skip()
         return self._lines
 
-    def _skip(self) -> None:
-        match = _BLANK.match(self._text, self._at)
+    def _skip(self, pattern: re.Pattern[str] = _BLANK) -> None:
+        match = pattern.match(self._text, self._at)
         assert match is not None
         self._at = match.end()
 
@@ -99,9 +98,7 @@ class _Follower:
         elif self._text.startswith("{", self._at):
             self._inside("}", path)
         else:
-            match = _STRING.match(self._text, self._at) or _SCALAR.match(self._text, self._at)
-            assert match is not None
-            self._at = match.end()
+            self._skip(_SCALAR)
 
     def _inside(self, closing: str, path: str) -> None:
         self._at += 1

@@ -1,7 +1,6 @@
 """Reading the folder of exercise files."""
 
 import tomllib
-from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -87,30 +86,25 @@ def load_catalogue(*folders: Path) -> dict[str, Exercise]:
 
 def load_exercise(file: Path) -> Exercise:
     """The exercise of one file; its id is the file's name. Raises CatalogueError."""
-    text = _text(file)
+    text = ""
     try:
-        content = tomllib.loads(text)
-        return compile_exercise(file.stem, ExerciseSpec.model_validate(content))
-    except ValidationError as error:
-        raise CatalogueError(_with_lines(file, refusals(error), text)) from error
-    except FieldError as error:
-        raise CatalogueError(_with_lines(file, [(error.field, error.reason)], text)) from error
-    except ValueError as error:  # of TOML itself, or of a number with thousands of digits
-        raise CatalogueError([Fault(file, "", f"is not TOML: {error}")]) from error
-    except RecursionError as error:
-        reason = "has tables or lists too deep in each other"
-        raise CatalogueError([Fault(file, "", reason)]) from error
+        text = file.read_text(encoding="utf-8")
+        return compile_exercise(file.stem, ExerciseSpec.model_validate(tomllib.loads(text)))
+    except (ValidationError, FieldError) as error:
+        lines = value_lines(text)
+        faults = [Fault(file, *fault, line_of(fault[0], lines)) for fault in refusals(error)]
+        raise CatalogueError(faults) from error
+    except (OSError, ValueError, RecursionError) as error:
+        raise CatalogueError([Fault(file, "", _reason(error))]) from error
 
 
-def _text(file: Path) -> str:
-    try:
-        return file.read_text(encoding="utf-8")
-    except OSError as error:
-        raise CatalogueError([Fault(file, "", f"cannot be read: {error.strerror}")]) from error
-    except UnicodeDecodeError as error:
-        raise CatalogueError([Fault(file, "", f"is not UTF-8 text: {error.reason}")]) from error
-
-
-def _with_lines(file: Path, found: Iterable[tuple[str, str]], text: str) -> list[Fault]:
-    lines = value_lines(text)
-    return [Fault(file, field, reason, line_of(field, lines)) for field, reason in found]
+def _reason(error: Exception) -> str:
+    match error:
+        case OSError():
+            return f"cannot be read: {error.strerror}"
+        case UnicodeDecodeError():
+            return f"is not UTF-8 text: {error.reason}"
+        case RecursionError():
+            return "has tables or lists too deep in each other"
+        case _:  # of TOML itself, or of a number with thousands of digits
+            return f"is not TOML: {error}"

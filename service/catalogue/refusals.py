@@ -1,16 +1,27 @@
-"""Pydantic's findings in an exercise file -> the field and the reason, as authors name them."""
+"""Faults of an exercise file -> the field and the reason with a repair, as authors name them."""
 
 import difflib
+import inspect
 import re
 import reprlib
-from collections.abc import Mapping, Sequence
-from typing import Any, Final
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final, get_args
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
-from service.catalogue.advice import advised
+from service.catalogue.formulas import FieldError
+from service.catalogue.parts import SPECS
+from service.catalogue.schema import (
+    CheckSpec,
+    ExerciseSpec,
+    ExpectSpec,
+    RobotSpec,
+    ScrewRobotSpec,
+    SymbolSpec,
+)
 
 _Detail = Mapping[str, Any]
+_Location = Sequence[int | str]
 
 # Pydantic puts the form behind a field that may have several, with a finding for each form.
 _FORM: Final = re.compile(r"(?:literal|str-enum)\[.*\]|str|float|constrained-int")
@@ -19,8 +30,10 @@ _CHOICES: Final = {"literal_error": "expected", "enum": "expected",
 _QUOTED: Final = re.compile(r"'([^']*)'")
 
 
-def refusals(error: ValidationError) -> list[tuple[str, str]]:
+def refusals(error: ValidationError | FieldError) -> list[tuple[str, str]]:
     """The field and the reason of each fault; a value that fits none of several forms is one."""
+    if isinstance(error, FieldError):
+        return [(error.field, error.reason)]
     found: list[tuple[str, list[_Detail]]] = []
     for detail in error.errors(include_url=False):
         location = detail["loc"]
@@ -43,7 +56,7 @@ def _reason(details: Sequence[_Detail]) -> str:
         if detail["type"] in _CHOICES
         for choice in _QUOTED.findall(detail["ctx"][_CHOICES[detail["type"]]])
     ]
-    reasons = [advised(detail) for detail in details if detail["type"] not in _CHOICES]
+    reasons = [_advised(detail) for detail in details if detail["type"] not in _CHOICES]
     if known:
         value = details[0]["input"]
         tagged = details[0]["type"] == "union_tag_invalid"
@@ -57,12 +70,16 @@ def _no_choice(value: object, known: Sequence[str]) -> str:
     lowered = {choice.lower(): choice for choice in known}
     near = difflib.get_close_matches(str(value).lower(), lowered, n=1)
     meant = f"; did you mean {lowered[near[0]]!r}? Write" if near else "; write"
-    *others, last = map(repr, known)
-    listed = f"{', '.join(others)} or {last}" if others else last
-    return f"is {reprlib.repr(value)}{meant} {listed}"
+    return f"is {reprlib.repr(value)}{meant} {alternatives(map(repr, known))}"
 
 
-def _path(location: Sequence[int | str]) -> str:
+def alternatives(names: Iterable[str]) -> str:
+    """The names with commas between them and "or" before the last."""
+    *others, last = names
+    return f"{', '.join(others)} or {last}" if others else last
+
+
+def _path(location: _Location) -> str:
     """A field as an author would name it: ``parts[0].points``.
 
     Behind the number of a part pydantic puts the part's kind, and behind the robot the way that it
@@ -73,3 +90,63 @@ def _path(location: Sequence[int | str]) -> str:
     steps = [names.get(str(step), step) for i, step in enumerate(location) if i != inserted]
     path = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps)
     return path.lstrip(".") or "file"
+
+
+def _advised(detail: Mapping[str, Any]) -> str:
+    """One of pydantic's findings, in a sentence with the repair."""
+    reason: str = detail["msg"].removeprefix("Value error, ")
+    location: _Location = detail["loc"]
+    last = location[-1] if location else ""
+    match detail["type"]:
+        case "extra_forbidden":
+            return _no_such_key(str(last), _model(location[:-1]))
+        case "missing" if isinstance(last, int):
+            return f"{reason}: write entry {last + 1} as well"
+        case "missing":
+            return f"{reason}: write {last} = …"
+        case "string_pattern_mismatch":
+            return f"{reason}: {_advice(str(last), _model(location[:-1]))}"
+        case "union_tag_not_found":
+            return f'{reason}: write kind = "…", one of {", ".join(SPECS)}'
+        case _:
+            return reason
+
+
+def _no_such_key(key: str, model: type[BaseModel]) -> str:
+    known = [field.alias or name for name, field in model.model_fields.items()]
+    matches = difflib.get_close_matches(key, known, n=1)
+    meant = f"did you mean {matches[0]!r}? The keys are" if matches else "the keys are"
+    return f"there is no key {key!r} here; {meant} {', '.join(known)}"
+
+
+def _advice(key: str, model: type[BaseModel]) -> str:
+    field = model.model_fields.get(key)
+    extra = field.json_schema_extra if field else None
+    return str(extra["advice"]) if isinstance(extra, dict) else "write it so"
+
+
+def _model(location: _Location) -> type[BaseModel]:
+    """The table of the file that a location lies in."""
+    match list(location):
+        case ["robot", tag, *_]:
+            return ScrewRobotSpec if tag == "screws" else RobotSpec
+        case ["symbols", *_]:
+            return SymbolSpec
+        case ["parts", int(), str(kind), str(key), int(), *_]:
+            field = SPECS[kind].model_fields.get(key)
+            return table_in(field.annotation if field else None) or SPECS[kind]
+        case ["parts", int(), str(kind), *_]:
+            return SPECS[kind]
+        case ["checks", int(), "expect", *_]:
+            return ExpectSpec
+        case ["checks", *_]:
+            return CheckSpec
+        case _:
+            return ExerciseSpec
+
+
+def table_in(annotation: object) -> type[BaseModel] | None:
+    """The table that a list of tables holds, such as ``list[StepSpec] | None``."""
+    if inspect.isclass(annotation) and issubclass(annotation, BaseModel):
+        return annotation
+    return next(filter(None, map(table_in, get_args(annotation))), None)

@@ -1,7 +1,7 @@
 """`dh-grader exercises check`: faults in exercise files, for their authors."""
 
+from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -12,27 +12,12 @@ from rich.text import Text
 from service.authoring import Level, Remark, examine
 from service.catalogue import CatalogueError, Exercise, exercise_files, load_exercise
 from service.catalogue.lines import line_of, value_lines
-from service.cli.terminal import UNUSABLE, complain, give_up, settings_or_exit, stdout
+from service.cli.terminal import UNUSABLE, complain, stdout
+from service.settings import load_settings
 
 FAILED = 1
 
 STYLES = {Level.FAILED: "red", Level.WARNING: "yellow"}
-
-
-@dataclass(slots=True)
-class Tally:
-    """The number of files of each sort."""
-
-    usable: int = 0
-    unusable: int = 0
-    failed: int = 0
-    warned: int = 0
-
-    def exit_code(self, *, strict: bool) -> int:
-        """2 where a file cannot be used, 1 where a check failed (or, strictly, a warning is)."""
-        if self.unusable:
-            return UNUSABLE
-        return FAILED if self.failed or (strict and self.warned) else 0
 
 
 def command(
@@ -50,39 +35,33 @@ def command(
 
     Exit code 2: a file cannot be used; other files are checked all the same.
     """
-    console, tally = stdout(), Tally()
-    files = _files(path)
-    for file in files:
-        _check(file, tally, console)
+    console = stdout()
+    if path is None:
+        files = exercise_files(*load_settings().exercises_dir)
+    else:
+        files = exercise_files(path) if path.is_dir() else [path]
+    levels = [_check(file, console) for file in files]
+    unusable = levels.count(None)
+    found = Counter(level for remarked in levels for level in remarked or ())
     if len(files) > 1:
-        console.print(Text(_summary(tally), "bold"))
-    raise SystemExit(tally.exit_code(strict=strict))
+        console.print(Text(_summary(len(files), unusable, found), "bold"))
+    if unusable:
+        raise SystemExit(UNUSABLE)
+    raise SystemExit(FAILED if found[Level.FAILED] or (strict and found[Level.WARNING]) else 0)
 
 
-def _files(path: Path | None) -> list[Path]:
-    try:
-        if path is None:
-            return exercise_files(*settings_or_exit().exercises_dir)
-        return exercise_files(path) if path.is_dir() else [path]
-    except CatalogueError as error:
-        give_up(str(error))
-
-
-def _check(file: Path, tally: Tally, console: Console) -> None:
+def _check(file: Path, console: Console) -> set[Level] | None:
+    """The levels of the remarks on a file, which are printed; None for a file that is unusable."""
     try:
         exercise = load_exercise(file)
     except CatalogueError as error:
         complain(str(error))
-        tally.unusable += 1
-        return
+        return None
     remarks = examine(exercise)
-    levels = {remark.level for remark in remarks}
-    tally.usable += 1
-    tally.failed += Level.FAILED in levels
-    tally.warned += Level.WARNING in levels
     for line in _lines(exercise, remarks, file):
         # A line of its own for each remark, however long: other programs read this, too.
         console.print(line, soft_wrap=True)
+    return {remark.level for remark in remarks}
 
 
 def _lines(exercise: Exercise, remarks: list[Remark], file: Path) -> Iterator[Text]:
@@ -100,14 +79,11 @@ def _lines(exercise: Exercise, remarks: list[Remark], file: Path) -> Iterator[Te
         )
 
 
-def _summary(tally: Tally) -> str:
-    counts = [
-        f"{_count(tally.usable + tally.unusable, 'exercise')}: {tally.usable - tally.failed} ok",
-        *([f"{tally.failed} failed"] if tally.failed else []),
-        *([f"{tally.unusable} cannot be used"] if tally.unusable else []),
-        *([f"{tally.warned} with warnings"] if tally.warned else []),
-    ]
-    return ", ".join(counts)
+def _summary(files: int, unusable: int, found: Counter[Level]) -> str:
+    failed = found[Level.FAILED]
+    ok = f"{_count(files, 'exercise')}: {files - unusable - failed} ok"
+    others = {"failed": failed, "cannot be used": unusable, "with warnings": found[Level.WARNING]}
+    return ", ".join([ok, *(f"{number} {sort}" for sort, number in others.items() if number)])
 
 
 def _count(number: int, noun: str) -> str:

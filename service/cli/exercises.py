@@ -12,8 +12,10 @@ from rich.text import Text
 from service.catalogue import Exercise
 from service.cli import check, new
 from service.cli.solution import write_solution
-from service.cli.terminal import catalogue_or_exit, give_up, stdout
-from service.submissions import UnknownExerciseError, find_exercise
+from service.cli.terminal import installed, stdout
+from service.submissions.lookup import find_exercise
+
+_NARROWEST = 24
 
 commands = typer.Typer(help="The catalogue of exercises.", no_args_is_help=True)
 
@@ -21,9 +23,8 @@ commands = typer.Typer(help="The catalogue of exercises.", no_args_is_help=True)
 @commands.command("list")
 def list_exercises() -> None:
     """List the exercises."""
-    exercises = catalogue_or_exit().values()
     console = stdout()
-    for line in _list(list(exercises), console.width):
+    for line in _list(list(installed().values()), console.width):
         console.print(line, soft_wrap=True)
 
 
@@ -38,10 +39,7 @@ def show_exercise(
     ] = False,
 ) -> None:
     """Show one exercise: its statement, symbols and parts. No answer, unless it is asked for."""
-    try:
-        exercise = find_exercise(catalogue_or_exit(), exercise_id)
-    except UnknownExerciseError as error:
-        give_up(f"{error} Known are: {', '.join(error.known)}.")
+    exercise = find_exercise(installed(), exercise_id)
     console = stdout()
     if solution or latex:
         write_solution(exercise, console, latex=latex)
@@ -49,19 +47,21 @@ def show_exercise(
     console.print(Text(exercise.title, "bold"))
     name = ", ".join(filter(None, (exercise.id, exercise.structure)))
     console.print(Text(f"{name}. {exercise.source}", "dim"))
-    console.print()
-    console.print(Text(_paragraphs(exercise.statement)))
-    console.print()
+    # Line breaks within a paragraph are left to the terminal.
+    paragraphs = (" ".join(block.split()) for block in exercise.statement.split("\n\n"))
+    console.print(Text("\n" + "\n\n".join(paragraphs) + "\n"))
     console.print(Text("Symbols", "bold"))
-    console.print(Padding(_symbols(exercise), (0, 0, 0, 2), expand=False))
+    symbols = Table.grid(padding=(0, 2, 0, 0))
+    for variable in exercise.variables:
+        symbols.add_row(variable.name, variable.unit, variable.description)
+    console.print(Padding(symbols, (0, 0, 0, 2), expand=False))
     console.print()
     console.print(Text("Parts", "bold"))
     for part in exercise.parts:
         heading = f"{part.id}: {part.title} ({part.kind}, {part.points:g} points)"
         console.print(Padding(Text(heading), (0, 0, 0, 2), expand=False))
-        for text in filter(
-            None, (part.prompt, f"Answer: {part.shape(exercise.reference).in_words()}.")
-        ):
+        answer = f"Answer: {part.shape(exercise.reference).in_words()}."
+        for text in filter(None, (part.prompt, answer)):
             console.print(Padding(Text(text, "dim"), (0, 0, 0, 4), expand=False))
 
 
@@ -82,21 +82,6 @@ def _list(exercises: Sequence[Exercise], width: int) -> Iterator[Text]:
         below = textwrap.wrap(parts, room, break_on_hyphens=False)
         yield from (Text(indent + line) for line in more)
         yield from (Text(indent + line.replace("\N{NO-BREAK SPACE}", " "), "dim") for line in below)
-
-
-_NARROWEST = 24
-
-
-def _paragraphs(statement: str) -> str:
-    """The statement with its line breaks left to the terminal."""
-    return "\n\n".join(" ".join(block.split()) for block in statement.split("\n\n"))
-
-
-def _symbols(exercise: Exercise) -> Table:
-    table = Table.grid(padding=(0, 2, 0, 0))
-    for variable in exercise.variables:
-        table.add_row(variable.name, variable.unit, variable.description)
-    return table
 
 
 commands.command("check")(check.command)

@@ -10,12 +10,12 @@ from rich.console import Console
 
 from service.catalogue import Exercise
 from service.cli.submission_files import UnusableFileError, read_submission
-from service.cli.terminal import UNUSABLE, catalogue_or_exit, complain, give_up, stdout
+from service.cli.terminal import UNUSABLE, complain, give_up, installed, stdout
 from service.formats import FORMATS
 from service.formats.graded_file import GradedFile
 from service.formats.text import visible
 from service.grading import FeedbackLevel, UnknownPartError, grade
-from service.submissions import UnknownExerciseError, find_exercise, nearest
+from service.submissions.lookup import find_exercise, nearest
 
 BELOW_PASS_MARK = 1
 
@@ -69,7 +69,7 @@ def command(
 
     Exit code 2: a file, exercise or part is unusable; other files are graded all the same.
     """
-    chosen = _restricted(_exercise(exercise), part)
+    chosen = _restricted(find_exercise(installed(), exercise), part)
     graded = [_graded(file, chosen, part, feedback) for file in files]
     for result in graded:
         if result.error:
@@ -80,13 +80,6 @@ def command(
         console = Console(file=page, width=80, highlight=False, markup=False)
     _deliver(FORMATS[output_format].document(graded, console), output)
     raise SystemExit(max(_exit_code(result, pass_mark) for result in graded))
-
-
-def _exercise(exercise_id: str) -> Exercise:
-    try:
-        return find_exercise(catalogue_or_exit(), exercise_id)
-    except UnknownExerciseError as error:
-        give_up(f"{error} Known are: {', '.join(error.known)}.")
 
 
 def _restricted(exercise: Exercise, part_id: str | None) -> Exercise:

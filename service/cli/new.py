@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from service.authoring.template import UnusableIdError, template
+from service.authoring import template
 from service.cli.terminal import give_up, stdout
 
 
@@ -18,10 +18,7 @@ def command(
     ] = Path(),
 ) -> None:
     """Write a commented exercise file to start from. It passes `exercises check` as it is."""
-    try:
-        text = template(exercise_id)
-    except UnusableIdError as error:
-        give_up(str(error))
+    text = template(exercise_id)
     file = output / f"{exercise_id}.toml"
     try:
         output.mkdir(parents=True, exist_ok=True)

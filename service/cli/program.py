@@ -2,14 +2,34 @@
 
 import sys
 from importlib.metadata import version
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
+from service.authoring import UnusableIdError
+from service.catalogue import CatalogueError
 from service.cli import exercises, grade, serve
+from service.cli.terminal import give_up
 from service.kinds_check import check_kinds
+from service.settings import SettingsError
+from service.submissions.lookup import UnknownExerciseError
+
+
+class _Commands(TyperGroup):
+    """The commands; each ends with the reason where something that it was given is unusable."""
+
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            return super().invoke(ctx)
+        except UnknownExerciseError as error:
+            give_up(f"{error} Known are: {', '.join(error.known)}.")
+        except (SettingsError, CatalogueError, UnusableIdError) as error:
+            give_up(str(error))
+
 
 program = typer.Typer(
+    cls=_Commands,
     name="dh-grader",
     help="Grades Denavit-Hartenberg tables, transforms and forward kinematics, and says why.",
     no_args_is_help=True,

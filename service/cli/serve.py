@@ -4,8 +4,8 @@ from typing import Annotated
 
 import typer
 
-from service.catalogue import CatalogueError, open_catalogue
-from service.cli.terminal import give_up, settings_or_exit
+from service.catalogue import open_catalogue
+from service.settings import load_settings
 
 
 def command(
@@ -17,11 +17,8 @@ def command(
     ] = None,
 ) -> None:
     """Start the service; the environment variables DH_GRADER_… set it up."""
-    settings = settings_or_exit()
-    try:
-        catalogue = open_catalogue(settings.exercises_dir, reload=settings.reload_exercises)
-    except CatalogueError as error:
-        give_up(str(error))
+    settings = load_settings()
+    catalogue = open_catalogue(settings.exercises_dir, reload=settings.reload_exercises)
     # Only here: the web framework is half of the program's weight, and grading needs none of it.
     import uvicorn
 

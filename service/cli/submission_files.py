@@ -7,10 +7,10 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from service.submissions import (
+from service.submissions.body import GradeRequest
+from service.submissions.strict_json import (
     MAX_BODY_SIZE,
     MAX_DEPTH,
-    GradeRequest,
     MalformedError,
     nested_deeper,
     read_json,

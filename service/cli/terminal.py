@@ -7,8 +7,8 @@ from typing import NoReturn
 
 from rich.console import Console
 
-from service.catalogue import CatalogueError, Exercise, load_catalogue
-from service.settings import Settings, SettingsError, load_settings
+from service.catalogue import Exercise, load_catalogue
+from service.settings import load_settings
 
 UNUSABLE = 2
 
@@ -30,17 +30,6 @@ def give_up(message: str) -> NoReturn:
     raise SystemExit(UNUSABLE)
 
 
-def settings_or_exit() -> Settings:
-    """The settings of this process; ends it where one is unusable."""
-    try:
-        return load_settings()
-    except SettingsError as error:
-        give_up(str(error))
-
-
-def catalogue_or_exit() -> Mapping[str, Exercise]:
-    """The exercises of this installation; ends the process where a file is unusable."""
-    try:
-        return load_catalogue(*settings_or_exit().exercises_dir)
-    except CatalogueError as error:
-        give_up(str(error))
+def installed() -> Mapping[str, Exercise]:
+    """The exercises of this installation. Raises SettingsError or CatalogueError."""
+    return load_catalogue(*load_settings().exercises_dir)

@@ -10,7 +10,7 @@ from fastapi import FastAPI
 
 from service.api.application import application
 from service.catalogue import Exercise
-from service.submissions import MAX_BODY_SIZE
+from service.submissions.strict_json import MAX_BODY_SIZE
 
 GRADE = "/v1/exercises/planar-rrr/grade"
 ClientOf = Callable[[FastAPI], httpx.Client]

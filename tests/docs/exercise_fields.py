@@ -7,15 +7,15 @@ import inspect
 import json
 import re
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from service.catalogue.advice import table_in
 from service.catalogue.part import PartSpec, PosePartSpec
 from service.catalogue.parts import SPECS
+from service.catalogue.refusals import alternatives, table_in
 from service.catalogue.schema import (
     CheckSpec,
     ExerciseSpec,
@@ -170,11 +170,14 @@ def _type(schema: Schema, defs: Mapping[str, Schema], ending: str = "") -> str:
         case {"$ref": str(reference)}:
             return _type(defs[reference.rpartition("/")[2]], defs, ending)
         case {"enum": choices} | {"const": choices}:
-            return _either(f"`{json.dumps(each)}`" for each in _as_list(choices))
+            listed = choices if isinstance(choices, list) else [choices]
+            return alternatives(f"`{json.dumps(each)}`" for each in listed)
         case {"anyOf": forms}:
             names = [_type(form, defs, ending) for form in forms if form != _NULL]
             # A formula may be given as a number.
-            return _either(names).replace(f"text{ending} or number{ending}", f"formula{ending}")
+            return alternatives(names).replace(
+                f"text{ending} or number{ending}", f"formula{ending}"
+            )
         case {"type": "array", "prefixItems": [first, *more]}:
             return f"list{ending} of {len(more) + 1} {_type(first, defs, 's')}"
         case {"type": "array", "items": entry}:
@@ -182,15 +185,6 @@ def _type(schema: Schema, defs: Mapping[str, Schema], ending: str = "") -> str:
         case _:
             name = _SIMPLE.get(schema.get("type", "object"), "table")
             return f"{name}{'' if name.startswith('`') else ending}{_bounds(schema)}"
-
-
-def _as_list(value: object) -> list[object]:
-    return value if isinstance(value, list) else [value]
-
-
-def _either(names: Iterable[str]) -> str:
-    *others, last = names
-    return f"{', '.join(others)} or {last}" if others else last
 
 
 def _bounds(schema: Schema) -> str:

@@ -1,7 +1,7 @@
 import pytest
 
 from service.catalogue import load_catalogue, shipped_folder
-from service.submissions import UnknownExerciseError, find_exercise, nearest
+from service.submissions.lookup import UnknownExerciseError, find_exercise, nearest
 
 
 def test_a_known_exercise_is_found() -> None:

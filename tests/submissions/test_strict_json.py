@@ -5,8 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.submissions import MAX_DEPTH, MalformedError, nested_deeper, read_json
-from service.submissions.strict_json import MAX_BRACKETS
+from service.submissions.strict_json import (
+    MAX_BRACKETS,
+    MAX_DEPTH,
+    MalformedError,
+    nested_deeper,
+    read_json,
+)
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False)

@@ -1,0 +1,160 @@
+"""Answers that are graded for the author's sake: the model's, those of the checks, duplicates."""
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from itertools import combinations
+from typing import Final
+
+import numpy as np
+
+from service.authoring.remarks import Remark, failed, warning
+from service.catalogue import CheckSpec, Exercise, PartSpec, PosePartSpec, grid_values
+from service.catalogue.schema import ExpectSpec
+from service.catalogue.variables import TRIALS, trial_values
+from service.expressions import LIMITS, AngleUnit
+from service.grading import FeedbackLevel, PartReport, Submission, Verdict, grade
+from service.grading.report import messages_of
+from service.solutions import solve
+
+UNITS: Final[tuple[AngleUnit, ...]] = ("radians", "degrees")
+# So many checks of each kind make a mistake in the exercise unlikely.
+WANTED: Final = {"right": 1, "equivalent": 1, "wrong": 2}
+# Points are rounded to six digits.
+_SAME_POINTS: Final = 1e-5
+_SAME_NUMBER: Final = 1e-9
+
+
+def model_answer(exercise: Exercise) -> Iterator[Remark]:
+    """Parts in which the model solution does not get full marks, in radians or in degrees."""
+    answers = solve(exercise).answers
+    fields = {part.id: f"parts[{i}]" for i, part in enumerate(exercise.parts)}
+    too_long = [part for part, answer in answers.items() if _longest(answer) > LIMITS.characters]
+    for part in too_long:
+        yield failed(
+            fields[part],
+            f"the right answer to {part} has an entry of more than the {LIMITS.characters} "
+            f"characters that are read, so nobody can hand it in; ask for less, such as the pose "
+            f"of a frame in between",
+        )
+    for unit in UNITS:
+        reports = _graded(exercise, answers, unit)
+        short = [report for report in reports.values() if report.points < report.max_points]
+        for report in short:
+            if report.part not in too_long:
+                yield failed(
+                    fields[report.part],
+                    f"the model answer to {report.part} is not right with angles in {unit}: "
+                    f"{_in_words(report)}",
+                )
+        if short:
+            return
+
+
+def _longest(answer: object) -> float:
+    """The number of characters of the longest entry of an answer."""
+    match answer:
+        case None:
+            return math.inf
+        case str():
+            return len(answer)
+        case dict():
+            answer = list(answer.values())
+    return max(map(_longest, answer), default=0) if isinstance(answer, list) else 0
+
+
+def failed_checks(exercise: Exercise) -> Iterator[Remark]:
+    """Checks whose answer does not get the result that the file expects."""
+    for i, check in enumerate(exercise.checks):
+        reports = _graded(exercise, check.answers, check.angle_unit)
+        for part, problem in _problems(check, reports):
+            yield failed(f"checks[{i}]", f"{check.title!r}: {part} {problem}")
+
+
+def missing_checks(exercise: Exercise) -> Iterator[Remark]:
+    """A warning where the file has too few checks of a kind."""
+    kinds = Counter[str](check.kind for check in exercise.checks)
+    short = [kind for kind, wanted in WANTED.items() if kinds[kind] < wanted]
+    if short:
+        have = ", ".join(f"{kinds[kind]} {kind}" for kind in WANTED)
+        wanted = ", ".join(f"{number} {kind}" for kind, number in WANTED.items())
+        yield warning(
+            "checks",
+            f"{have}; write {wanted} or more, so that no later change goes wrong unseen",
+        )
+
+
+def _problems(check: CheckSpec, reports: dict[str, PartReport]) -> Iterator[tuple[str, str]]:
+    for part, expected in check.expect.items():
+        for problem in _differences(expected, reports[part]):
+            yield part, f"{problem}; it got {_in_words(reports[part])}"
+    answered = [reports[part] for part in check.answers]
+    full = [report for report in answered if report.verdict is Verdict.CORRECT]
+    if check.kind == "wrong" and len(full) == len(answered):
+        yield full[0].part, "should lose points, for it is of kind 'wrong'; it got full marks"
+    if check.kind != "wrong":
+        for report in answered:
+            if report.part not in check.expect and report not in full:
+                yield report.part, f"should get full marks; it got {_in_words(report)}"
+
+
+def _differences(expected: ExpectSpec, report: PartReport) -> Iterator[str]:
+    if expected.verdict is not None and expected.verdict != report.verdict:
+        yield f"should be {expected.verdict}"
+    if expected.points is not None and abs(expected.points - report.points) > _SAME_POINTS:
+        yield f"should get {expected.points:g} points"
+    codes = sorted({message.code for message, _ in messages_of(report)})
+    missing = [code for code in expected.codes or () if code not in codes]
+    if missing:
+        had = f"the codes {', '.join(codes)}" if codes else "no code at all"
+        yield f"should be told {', '.join(missing)}, but was told {had}"
+    if expected.follow_through not in (None, report.follow_through):
+        what = "count" if expected.follow_through else "not count"
+        yield f"should {what} as following from the earlier answer"
+
+
+def duplicate_parts(exercise: Exercise) -> Iterator[Remark]:
+    """Parts whose right answers are the same for all values of the symbols."""
+    candidates = [
+        (one, other) for one, other in combinations(exercise.parts, 2) if _task(one) == _task(other)
+    ]
+    if not candidates:
+        return
+    answers = solve(exercise).answers
+    for one, other in candidates:
+        if _equal(one, other, answers, exercise):
+            place = exercise.parts.index(other)
+            yield warning(
+                f"parts[{place}]",
+                f"{other.id} has the same answer as {one.id}: whoever has one copies the other; "
+                f"ask for something else, or take one of them out",
+            )
+
+
+def _task(part: PartSpec) -> dict[str, object]:
+    """The task without its formulas and frames, which are compared by value, and its terms."""
+    return part.model_dump(exclude={*PosePartSpec.model_fields, *part.answer_fields})
+
+
+def _equal(one: PartSpec, other: PartSpec, answers: dict[str, object], exercise: Exercise) -> bool:
+    if not one.compared_by_formulas:
+        report = _graded(exercise, {other.id: answers[one.id]})[other.id]
+        return report.verdict is Verdict.CORRECT
+    values, formulas = trial_values(exercise.variables), exercise.formulas
+    first, second = (grid_values(formulas[part.id], values, TRIALS) for part in (one, other))
+    return first.shape == second.shape and bool(np.abs(first - second).max() < _SAME_NUMBER)
+
+
+def _graded(
+    exercise: Exercise, answers: Mapping[str, object], angle_unit: AngleUnit = "radians"
+) -> dict[str, PartReport]:
+    """The report on each part, by its id."""
+    submission = Submission(answers, angle_unit, FeedbackLevel.FULL)
+    return {part.part: part for part in grade(exercise, submission).parts}
+
+
+def _in_words(report: PartReport) -> str:
+    """Verdict, points and the first message of a part, for a remark."""
+    # A message on a single cell tells more than one on the whole part.
+    message = next((f": {each.message}" for each, _ in reversed([*messages_of(report)])), "")
+    return f"{report.verdict.value}, {report.points:g} of {report.max_points:g} points{message}"
