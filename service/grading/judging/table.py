@@ -23,7 +23,7 @@ from service.grading.judging.own_frames.reference import reference_values
 from service.grading.judging.own_frames.remarks import remarks_on
 from service.grading.judging.own_frames.row_roles import Role, pair_in_order, variable_column
 from service.grading.part import Grading
-from service.grading.reading.table import IS_ANGLE, HandedInRow, values_of
+from service.grading.reading.table import IS_ANGLE, StudentRow, values_of
 from service.grading.samples import SAMPLES
 from service.grading.tolerances import HUGE_CELL, HUGE_LENGTH, PLAINLY_DIFFERENT, SAME_MOTION
 from service.kinematics.chain import COLUMNS, Table
@@ -41,7 +41,7 @@ class JudgedRow:
 
     label: str
     joint: Joint | None
-    row: HandedInRow | None
+    row: StudentRow | None
     expected: Table
     shared: bool = False
 
@@ -76,7 +76,7 @@ class Judgement:
 
 
 def judged_table(
-    part: DhTableSpec, rows: tuple[HandedInRow, ...], convention: Convention, grading: Grading
+    part: DhTableSpec, rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
 ) -> Judgement:
     """The table judged by the reference, or by the valid table nearest to it."""
     reference = grading.exercise.robot.tables.get(convention)
@@ -95,7 +95,7 @@ def judged_table(
 
 
 def _plainly_differs(
-    rows: tuple[HandedInRow, ...], reference: ReferenceTable, grading: Grading
+    rows: tuple[StudentRow, ...], reference: ReferenceTable, grading: Grading
 ) -> bool:
     """Whether the first sample already shows that the table is not the reference's own."""
     expected = reference_values(reference, grading.samples)
@@ -107,7 +107,7 @@ def _plainly_differs(
 
 
 def _judged_by_reference(
-    rows: tuple[HandedInRow, ...], reference: ReferenceTable, grading: Grading
+    rows: tuple[StudentRow, ...], reference: ReferenceTable, grading: Grading
 ) -> Judgement:
     """The table judged by the reference's own rows."""
     expected = reference_values(reference, grading.samples)
@@ -124,7 +124,7 @@ def _judged_by_reference(
 
 
 def _paired(
-    rows: tuple[HandedInRow, ...], expected: Table, grading: Grading
+    rows: tuple[StudentRow, ...], expected: Table, grading: Grading
 ) -> list[tuple[int | None, int | None]]:
     """Which handed-in row stands for which expected row; in order where the numbers agree."""
     if len(rows) == len(expected):
@@ -135,7 +135,7 @@ def _paired(
 
 
 def _judged_by_nearest(
-    part: DhTableSpec, rows: tuple[HandedInRow, ...], convention: Convention, grading: Grading
+    part: DhTableSpec, rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
 ) -> Judgement:
     """The table judged by the valid table nearest to it."""
     roles, nearest = best_roles(part, rows, convention, grading)

@@ -20,7 +20,7 @@ from service.grading.judging.expected import given_values
 from service.grading.judging.report_rows import cell_report
 from service.grading.part import Grading, Judged
 from service.grading.reading.entry import MISSING
-from service.grading.reading.table import IS_ANGLE, HandedInRow, read_table
+from service.grading.reading.table import IS_ANGLE, StudentRow, read_table
 from service.grading.reading.table_json import canonical_table
 from service.grading.report import CellReport, Verdict, row_report
 from service.kinematics.chain import COLUMNS
@@ -32,7 +32,7 @@ NONE = "none"
 
 
 # A row, or the answer that there is none.
-RowOrNone = HandedInRow | Literal["none"]
+RowOrNone = StudentRow | Literal["none"]
 
 
 def read(part: DhRowSpec, answer: object, grading: Grading) -> RowOrNone:
@@ -58,7 +58,7 @@ def judge(part: DhRowSpec, answer: RowOrNone, grading: Grading) -> Judged:
 
 
 def _cells(
-    written: HandedInRow, found: NDArray[np.int_], slips: Mapping[int, Finding], grading: Grading
+    written: StudentRow, found: NDArray[np.int_], slips: Mapping[int, Finding], grading: Grading
 ) -> tuple[CellReport, ...]:
     """The four cells; ``found`` is the Match of each."""
     return tuple(
@@ -68,7 +68,7 @@ def _cells(
 
 
 def _against_the_row(
-    written: HandedInRow, transform: Matrices, part: DhRowSpec, grading: Grading
+    written: StudentRow, transform: Matrices, part: DhRowSpec, grading: Grading
 ) -> tuple[tuple[CellReport, ...], list[Finding]]:
     """The cells held against the row that the transform has, and what explains all of them."""
     expected = row(transform, part.convention)
@@ -137,7 +137,7 @@ def _is_written(value: object) -> bool:
     return bool(value.strip()) if isinstance(value, str) else value is not None and value != []
 
 
-def _read_row(answer: object, grading: Grading) -> HandedInRow:
+def _read_row(answer: object, grading: Grading) -> StudentRow:
     """The one row that was handed in. Raises UnreadableAnswerError."""
     if not isinstance(answer, str):
         answer = canonical_table(answer if _has_rows(answer) else [answer])
@@ -153,7 +153,7 @@ def _read_row(answer: object, grading: Grading) -> HandedInRow:
     if len(table.rows) > 1:
         raise UnreadableAnswerError(_WRONG_SHAPE)
     if not table.rows:
-        return HandedInRow((MISSING,) * len(COLUMNS), np.full((len(COLUMNS), 1), np.nan))
+        return StudentRow((MISSING,) * len(COLUMNS), np.full((len(COLUMNS), 1), np.nan))
     return table.rows[0]
 
 

@@ -14,7 +14,7 @@ from service.grading.judging.own_frames.best_roles import roles_in
 from service.grading.judging.report_rows import cell_report
 from service.grading.judging.table import JudgedRow, Judgement, judged_table
 from service.grading.part import Grading, Judged, StudentChain
-from service.grading.reading.table import HandedInRow, HandedInTable, read_table, values_of
+from service.grading.reading.table import StudentRow, StudentTable, read_table, values_of
 from service.grading.report import CellReport, RowReport, Severity, Verdict, row_report
 from service.grading.samples import Samples
 from service.kinematics.chain import COLUMNS, frames, links
@@ -25,13 +25,13 @@ from service.kinematics.transforms import Matrices
 WRONG_THROUGHOUT = 3
 
 
-def read(part: DhTableSpec, answer: object, grading: Grading) -> HandedInTable | None:
+def read(part: DhTableSpec, answer: object, grading: Grading) -> StudentTable | None:
     """The rows of a table; None where there are none."""
     table = read_table(answer, grading.reader)
     return table if table.rows else None
 
 
-def judge(part: DhTableSpec, answer: HandedInTable, grading: Grading) -> Judged:
+def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     """The table row by row and cell by cell."""
     convention, findings = _convention(part, answer, grading.exercise)
     first = judged_table(part, answer.rows, convention, grading)
@@ -55,7 +55,7 @@ def judge(part: DhTableSpec, answer: HandedInTable, grading: Grading) -> Judged:
 
 def _of_the_whole(
     part: DhTableSpec,
-    rows: tuple[HandedInRow, ...],
+    rows: tuple[StudentRow, ...],
     judgement: Judgement,
     convention: Convention,
     grading: Grading,
@@ -76,7 +76,7 @@ def _of_the_whole(
 
 
 def _convention(
-    part: DhTableSpec, table: HandedInTable, exercise: Exercise
+    part: DhTableSpec, table: StudentTable, exercise: Exercise
 ) -> tuple[Convention, tuple[Finding, ...]]:
     """The convention that the table is read in, and the finding where the answer names another."""
     if part.convention == "either":
@@ -94,7 +94,7 @@ def _convention(
 
 
 def _chain(
-    rows: tuple[HandedInRow, ...], judgement: Judgement, convention: Convention
+    rows: tuple[StudentRow, ...], judgement: Judgement, convention: Convention
 ) -> StudentChain | None:
     """A table as a chain; None where not all of it has a value."""
     values = values_of(rows)

@@ -18,7 +18,7 @@ from service.grading.kinds.matrix_rows import matrix_rows
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.entry import Entry
 from service.grading.reading.matrix import StudentMatrix, read_matrix
-from service.grading.reading.table import HandedInRow
+from service.grading.reading.table import StudentRow
 from service.grading.report import Feedback, RowReport
 from service.grading.samples import SAMPLES, Samples
 from service.grading.tolerances import LINK_TRANSFORM
@@ -125,13 +125,13 @@ def _nearest_links(part: LinkTransformsSpec, answer: StudentLinks, grading: Grad
     return links(reading.expected, part.convention)
 
 
-def _row(matrix: Matrices, part: LinkTransformsSpec) -> HandedInRow | None:
+def _row(matrix: Matrices, part: LinkTransformsSpec) -> StudentRow | None:
     if np.isnan(matrix).any():
         return None
     row = dh_row(matrix, part.convention)
     if np.abs(link_transforms(part.convention, *row) - matrix).max() > LINK_TRANSFORM:
         return None
-    return HandedInRow((_WORKED_OUT,) * 4, row)
+    return StudentRow((_WORKED_OUT,) * 4, row)
 
 
 def _wrong_shape(labels: tuple[str, ...]) -> Finding:

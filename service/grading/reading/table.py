@@ -31,7 +31,7 @@ CONVENTION_NAMES: Mapping[str, Convention] = {
 
 
 @dataclass(frozen=True, slots=True)
-class HandedInRow:
+class StudentRow:
     """One row as read: an entry for each of a, α, d, θ, and their numbers ``(4, SAMPLES)``.
 
     A number is NaN where a cell could not be read. Where ``values`` are what rounded angles stand
@@ -68,15 +68,15 @@ class HandedInRow:
 
 
 @dataclass(frozen=True, slots=True)
-class HandedInTable:
+class StudentTable:
     """A table as read. ``convention`` is what the answer itself says, if it says so."""
 
-    rows: tuple[HandedInRow, ...]
+    rows: tuple[StudentRow, ...]
     convention: Convention | None
     findings: tuple[Finding, ...] = ()
 
 
-def read_table(answer: object, reader: Reader) -> HandedInTable:
+def read_table(answer: object, reader: Reader) -> StudentTable:
     """The table in a JSON answer ``{"rows": [{"a", "alpha", "d", "theta"} …], "convention"?}``.
 
     It may have other shapes that mean the same (``table_json``), and it, or its rows, may be
@@ -104,10 +104,10 @@ def read_table(answer: object, reader: Reader) -> HandedInTable:
     return _table([_entries(row, reader) for row in rows], convention, findings, reader)
 
 
-def _pasted(text: str, stated: object, reader: Reader) -> HandedInTable:
+def _pasted(text: str, stated: object, reader: Reader) -> StudentTable:
     convention, findings = _convention(stated)
     if not text.strip():
-        return HandedInTable((), convention, findings)
+        return StudentTable((), convention, findings)
     try:
         pasted = read_pasted_table(text, reader)
     except GridError as error:
@@ -123,11 +123,11 @@ def _table(
     convention: Convention | None,
     findings: tuple[Finding, ...],
     reader: Reader,
-) -> HandedInTable:
+) -> StudentTable:
     if not read:
-        return HandedInTable((), convention, findings)
+        return StudentTable((), convention, findings)
     values = _values(read, reader.samples)
-    return HandedInTable(tuple(map(HandedInRow, read, values)), convention, findings)
+    return StudentTable(tuple(map(StudentRow, read, values)), convention, findings)
 
 
 def _values(rows: Sequence[tuple[Entry, ...]], samples: Samples) -> Table:
@@ -175,6 +175,6 @@ def _entries(row: object, reader: Reader) -> tuple[Entry, ...]:
 _NO_ROW = reading_error("wrong_shape", 'A row is written {"a": …, "alpha": …, "d": …, "theta": …}.')
 
 
-def values_of(rows: Sequence[HandedInRow]) -> Table:
+def values_of(rows: Sequence[StudentRow]) -> Table:
     """The numbers of the rows, ``(rows, 4, SAMPLES)``; NaN where a cell could not be read."""
     return np.array([row.values for row in rows])

@@ -9,7 +9,7 @@ from service.expressions import AngleUnit
 from service.grading import Verdict
 from service.grading.feedback import UnreadableAnswerError
 from service.grading.reading.entry import Reader
-from service.grading.reading.table import HandedInTable, read_table
+from service.grading.reading.table import StudentTable, read_table
 from service.grading.samples import draw
 from tests.grading.support.submitting import full_marks, handed_in, part
 
@@ -43,7 +43,7 @@ def arm(make_exercise: Maker) -> Exercise:
     return make_exercise(ARM.replace("UNIT", "m"))
 
 
-def read(exercise: Exercise, text: str, angle_unit: AngleUnit = "radians") -> HandedInTable:
+def read(exercise: Exercise, text: str, angle_unit: AngleUnit = "radians") -> StudentTable:
     return read_table(text, Reader.of(exercise, draw(exercise, text), angle_unit))
 
 

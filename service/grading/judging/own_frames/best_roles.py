@@ -9,13 +9,13 @@ from service.grading.judging.own_frames.nearest_table import nearest_for_roles
 from service.grading.judging.own_frames.rounded_angles import with_exact_angles
 from service.grading.judging.own_frames.row_roles import FrameFreedom, Role, freedom_of, roles_of
 from service.grading.part import Grading
-from service.grading.reading.table import HandedInRow
+from service.grading.reading.table import StudentRow
 from service.kinematics.dh import Convention
 from service.kinematics.frame_choice import WRONG_CELL
 
 
 def best_roles(
-    part: DhTableSpec, rows: tuple[HandedInRow, ...], convention: Convention, grading: Grading
+    part: DhTableSpec, rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
 ) -> tuple[tuple[Role, ...], NearestTable]:
     """The roles of the rows, and the valid table nearest to them."""
     joints, freedom = grading.exercise.robot.joints, freedom_of(part)
@@ -40,7 +40,7 @@ def best_roles(
 
 
 def roles_in(
-    rows: tuple[HandedInRow, ...],
+    rows: tuple[StudentRow, ...],
     convention: Convention,
     grading: Grading,
     expected_rows: int | None = None,
@@ -70,7 +70,7 @@ def nearest_with_tool_row(
     return longer if longer.cost + WRONG_CELL <= nearest.cost else nearest
 
 
-def without_idle_rows(rows: tuple[HandedInRow, ...], expected_rows: int) -> tuple[HandedInRow, ...]:
+def without_idle_rows(rows: tuple[StudentRow, ...], expected_rows: int) -> tuple[StudentRow, ...]:
     """The rows without those at the end that are too many and move nothing."""
     while len(rows) > expected_rows and rows[-1].is_zero:
         rows = rows[:-1]

@@ -9,7 +9,7 @@ import numpy as np
 from service.catalogue import Joint
 from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.joint_motion import joint_counts
-from service.grading.reading.table import IS_ANGLE, HandedInRow, values_of
+from service.grading.reading.table import IS_ANGLE, StudentRow, values_of
 from service.grading.samples import SAMPLES, Samples
 from service.kinematics.chain import COLUMNS, THETA, D, Table
 from service.kinematics.factors import CellIndex
@@ -34,7 +34,7 @@ def freedom_of(part: DhTableSpec) -> FrameFreedom:
 class Role:
     """A row and the joint it is for; a row without joint is fixed, a joint without row missing."""
 
-    row: HandedInRow | None
+    row: StudentRow | None
     joint: Joint | None
 
 
@@ -65,7 +65,7 @@ def variables_of(roles: Sequence[Role], samples: Samples) -> Table:
 
 
 def roles_of(
-    rows: Sequence[HandedInRow],
+    rows: Sequence[StudentRow],
     joints: tuple[Joint, ...],
     samples: Samples,
     expected_rows: int,
