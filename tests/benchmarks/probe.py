@@ -2,8 +2,8 @@
 
 ``paired.py`` runs this file with the Python and in the folder of the checkout to be measured, which
 may be an older one. So it uses nothing but that checkout's own ``tests.benchmarks``, and puts
-other timers in the place of its own: they time the floor in turn with each call, so that a machine
-that is slow for a while is slow for both.
+other timers in the place of its own: they take processor time, and that of the floor in turn with
+each call, so that a machine that is slow for a while is slow for both.
 """
 
 import json
@@ -22,10 +22,10 @@ SECONDS_OF_POSTS = 1.0
 
 
 def seconds(action: Callable[[], object]) -> float:
-    """The time of one call."""
-    start = time.perf_counter()
+    """The processor time of one call, in which other programs have no part."""
+    start = time.process_time()
     action()
-    return time.perf_counter() - start
+    return time.process_time() - start
 
 
 def floor() -> object:
