@@ -22,7 +22,6 @@ from service.kinematics.transforms import Numbers, inverse
 
 Block = tuple[slice, slice]
 
-WHOLE_MATRIX: Block = (slice(None), slice(None))
 ROTATION_BLOCK: Block = (slice(0, 3), slice(0, 3))
 POSITION_BLOCK: Block = (slice(0, 3), slice(3, 4))
 UPPER_ROWS: Block = (slice(0, 3), slice(None))
@@ -34,7 +33,7 @@ def transposed_matrix(case: MatrixCase) -> Hypotheses:
     code = "transposed_rotation" if case.rigid and not case.is_transform else "transposed_matrix"
     finding = Finding(code, "This matrix is transposed.", "Write its rows as columns.")
     if case.expected.shape[0] == case.expected.shape[1]:
-        yield Written(np.swapaxes(case.expected, 0, 1), finding, WHOLE_MATRIX)
+        yield Written(np.swapaxes(case.expected, 0, 1), finding)
 
 
 def inverse_transform(case: MatrixCase) -> Hypotheses:

@@ -56,14 +56,13 @@ def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
     rows = list(range(len(table.constants)))
     up, down = [*rows[1:], rows[0]], [rows[-1], *rows[:-1]]
     for columns in (slice(A, ALPHA + 1), slice(A, A + 1), slice(ALPHA, ALPHA + 1)):
-        for late in (True, False):
+        for late, order, end in ((True, up, -1), (False, down, 0)):
             finding = partial(_shifted, " and ".join(SYMBOLS[columns]), late)
             constants = table.constants.copy()
-            constants[:, columns] = table.constants[up if late else down, columns]
+            constants[:, columns] = table.constants[order, columns]
             yield Repaired(table.changed(constants), finding)
             if table.reference is not None:
                 # The row that fell off the end is not in the student's table.
-                end = -1 if late else 0
                 completed = constants.copy()
                 completed[end, columns] = table.reference[end, columns]
                 yield Repaired(table.changed(completed), finding)
