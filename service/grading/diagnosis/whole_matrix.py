@@ -223,11 +223,8 @@ def _of_blocks(case: MatrixCase) -> list[Explanation]:
 
 
 def unexplained(case: MatrixCase, explained: Sequence[Explanation]) -> Mask:
-    """The wrong entries that none of the as_explanations covers."""
-    rest = case.wrong.copy()
-    for each in explained:
-        rest &= ~each.entries
-    return rest
+    """The wrong entries that none of the explanations covers."""
+    return case.wrong & ~np.any([each.entries for each in explained], axis=0)
 
 
 def check_yourself(case: MatrixCase, slips: Mapping[tuple[int, int], Finding]) -> Finding | None:

@@ -22,7 +22,6 @@ from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D, Table
 from service.kinematics.dh import Convention
 
 Misconception = Callable[[WrittenTable], Iterator[RepairedTable]]
-Validity = Callable[[NDArray[np.float64], Convention], NDArray[np.bool_]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +33,7 @@ class WrongTable:
 
     written: WrittenTable
     subset: WrittenTable
-    valid: Validity
+    valid: Callable[[Table, Convention], NDArray[np.bool_]]
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> list[AnyHypothesis]:
         """Those hypotheses, at the subset, that change the table to a valid one; all at once."""

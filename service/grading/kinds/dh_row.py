@@ -64,10 +64,7 @@ def _none_cell(*, right: bool) -> CellReport:
 
 
 def _cells(
-    written: HandedInRow,
-    found: NDArray[np.int_],
-    slips: Mapping[int, Finding],
-    grading: Grading,
+    written: HandedInRow, found: NDArray[np.int_], slips: Mapping[int, Finding], grading: Grading
 ) -> tuple[CellReport, ...]:
     """The four cells; ``found`` is the Match of each."""
     return tuple(
