@@ -224,7 +224,7 @@ def _of_blocks(case: MatrixCase) -> list[Explanation]:
 
 def unexplained(case: MatrixCase, explained: Sequence[Explanation]) -> Mask:
     """The wrong entries that none of the explanations covers."""
-    return case.wrong & ~np.any([each.entries for each in explained], axis=0)
+    return np.asarray(case.wrong & ~np.any([each.entries for each in explained], axis=0))
 
 
 def check_yourself(case: MatrixCase, slips: Mapping[tuple[int, int], Finding]) -> Finding | None:
