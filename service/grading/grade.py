@@ -82,10 +82,7 @@ class _Graded:
 
 
 def _graded(
-    part: PartSpec,
-    answers: Mapping[str, object],
-    earlier: Mapping[str, _Graded],
-    grading: Grading,
+    part: PartSpec, answers: Mapping[str, object], earlier: Mapping[str, _Graded], grading: Grading
 ) -> _Graded:
     """A part judged by the reference, or by the student's own answer to the part it follows."""
     answer = answers.get(part.id)

@@ -94,10 +94,8 @@ def explanation(
     matrix is the product of, for example. Each is tried only if those before it explain nothing.
     """
     start = case if source is None else source
-    for misconception in misconceptions:
-        for found in case.explained_by(misconception(start)):
-            return found
-    return None
+    explains = (case.explained_by(misconception(start)) for misconception in misconceptions)
+    return next(chain.from_iterable(explains), None)
 
 
 def diagnosed(

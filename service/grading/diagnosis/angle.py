@@ -74,9 +74,8 @@ def swapped_atan2(case: WrongValue) -> Hypotheses:
 
 def has_arctangent(tree: Node) -> bool:
     """Whether an arctangent was written."""
-    return any(
-        isinstance(node, Call) and node.function in ("atan2", "atan") for node in nodes(tree)
-    )
+    calls = (node for node in nodes(tree) if isinstance(node, Call))
+    return any(call.function in ("atan2", "atan") for call in calls)
 
 
 def quarter_turn(case: WrongValue) -> Hypotheses:

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from service.grading.diagnosis.wrong_value import Hypotheses, WrongNumbers
 from service.grading.feedback import Finding
-from service.grading.misconception import Written, diagnosed
+from service.grading.misconception import Written
 from service.grading.reading.table import IS_ANGLE
 from service.grading.tolerances import EXACT_VALUE
 from service.kinematics.chain import A
@@ -73,11 +73,6 @@ def inverse_row(case: WrongRow) -> Hypotheses:
 
 
 MISCONCEPTIONS = (exchanged_parameters, other_convention, inverse_row)
-
-
-def explain_row(case: WrongRow) -> Finding | None:
-    """The finding that explains the whole of a wrong row."""
-    return diagnosed(case, MISCONCEPTIONS)
 
 
 # --- the conditions that a transform with a row meets

@@ -202,9 +202,8 @@ def _merged_factors(
     if len(chosen) < (2 if joints is None else len(joints)):
         return factors
     merged = Call(function, (joined([(1, call.arguments[0]) for call in chosen]),))
-    place = next(i for i, factor in enumerate(factors) if factor is chosen[0])
-    rest = [factor for factor in factors if not any(factor is call for call in chosen)]
-    return [*rest[:place], merged, *rest[place:]]
+    rest = [factor for factor in factors if not any(factor is call for call in chosen[1:])]
+    return [merged if factor is chosen[0] else factor for factor in rest]
 
 
 def joints_multiplied(tree: Node, turning: Sequence[int]) -> list[frozenset[int]]:

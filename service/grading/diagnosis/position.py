@@ -8,7 +8,7 @@ import numpy as np
 from service.grading.diagnosis.link_products import Chain, named, other_poses
 from service.grading.diagnosis.wrong_value import Hypotheses, WrongNumbers
 from service.grading.feedback import Finding
-from service.grading.misconception import Written, diagnosed
+from service.grading.misconception import Written
 from service.grading.tolerances import EXACT_VALUE
 
 
@@ -56,8 +56,3 @@ def other_pose(case: WrongPosition) -> Hypotheses:
 
 
 MISCONCEPTIONS = (exchanged_coordinates, reversed_position, other_pose)
-
-
-def explain_position(case: WrongPosition) -> Finding | None:
-    """The finding that explains the coordinates together."""
-    return diagnosed(case, MISCONCEPTIONS)

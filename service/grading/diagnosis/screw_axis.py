@@ -149,10 +149,9 @@ def pitch(case: WrongScrew) -> Hypotheses:
     """The advance along the axis was left out, added, or is another."""
     if not case.turns:
         return
+    hint = "Of v the part along ω is not right: it is the pitch h times ω."
     if np.abs(case.pitch).max() < EXACT_VALUE:
         hint = "This axis has pitch 0, it only turns: v has no part along ω."
-    else:
-        hint = "Of v the part along ω is not right: it is the pitch h times ω."
     along = ((case.actual[3:] - case.moment) * case.direction).sum(axis=0)
     if np.abs(along - case.pitch).max() >= ROUNDED_VALUE * case.length_scale:
         velocity = case.moment + along * case.direction

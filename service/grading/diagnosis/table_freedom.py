@@ -144,11 +144,8 @@ def _lie(one: NDArray[np.float64], other: NDArray[np.float64]) -> tuple[bool, st
 
 
 def _rows_between(i: int, j: int, written: _Arm, convention: Convention) -> str:
-    """The rows whose a and α lead from the axis of joint ``i`` to that of joint ``j``.
-
-    They begin with the row of joint ``i`` in a standard table, and end with the row of joint ``j``
-    in a modified one.
-    """
+    """The rows whose a and α lead from the axis of joint ``i`` to that of joint ``j``."""
+    # A row holds a and α behind its joint in a standard table, before it in a modified one.
     shift = int(convention is Convention.MODIFIED)
     labels = [str(joint.index) for joint in written.joints[i + shift : j + shift]]
     return f"row {labels[0]}" if len(labels) == 1 else f"rows {listed(labels)}"

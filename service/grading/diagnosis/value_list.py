@@ -18,8 +18,7 @@ def slips_of(
     student, scales = compared.student, compared.scales(grading)
     slips: dict[tuple[int, int], Finding] = {}
     for i in np.flatnonzero(wrong).tolist():
-        expression = student.entries[i].expression
-        if expression is None:
+        if (expression := student.entries[i].expression) is None:
             continue
         angle = student.quantities[i] == "angle"
         case = WrongEntry(

@@ -22,7 +22,6 @@ from service.kinematics.transforms import Numbers, inverse
 
 Block = tuple[slice, slice]
 
-WHOLE_MATRIX: Block = (slice(None), slice(None))
 ROTATION_BLOCK: Block = (slice(0, 3), slice(0, 3))
 POSITION_BLOCK: Block = (slice(0, 3), slice(3, 4))
 UPPER_ROWS: Block = (slice(0, 3), slice(None))
@@ -34,7 +33,7 @@ def transposed_matrix(case: MatrixCase) -> Hypotheses:
     code = "transposed_rotation" if case.rigid and not case.is_transform else "transposed_matrix"
     finding = Finding(code, "This matrix is transposed.", "Write its rows as columns.")
     if case.expected.shape[0] == case.expected.shape[1]:
-        yield Written(np.swapaxes(case.expected, 0, 1), finding, WHOLE_MATRIX)
+        yield Written(np.swapaxes(case.expected, 0, 1), finding)
 
 
 def inverse_transform(case: MatrixCase) -> Hypotheses:
@@ -123,19 +122,20 @@ def line_sign(case: MatrixCase) -> Hypotheses:
     by_column = case.mask(*((slice(0, 3), slice(j, j + 1)) for j in columns))
     by_row = case.mask(*((slice(i, i + 1), slice(None)) for i in rows))
     if columns and (by_column & wrong).sum() >= (by_row & wrong).sum():
-        finding = _line_sign("column", columns, "last")
+        finding = _line_sign("column_sign", columns, "last")
         yield Written(-case.expected[by_column], finding, by_column)
     elif rows:
-        yield Written(-case.expected[by_row], _line_sign("row", rows, "first"), by_row)
+        yield Written(-case.expected[by_row], _line_sign("row_sign", rows, "first"), by_row)
 
 
-def _line_sign(line: str, indices: list[int], frame: str) -> Finding:
+def _line_sign(code: str, indices: list[int], frame: str) -> Finding:
+    line = code.removesuffix("_sign").capitalize()
     numbers = listed([str(i + 1) for i in indices])
     have = f" {numbers} has" if len(indices) == 1 else f"s {numbers} have"
     parts = listed([("x axis", "y axis", "z axis", "position")[i] for i in indices])
     return Finding(
-        f"{line}_sign",
-        f"{line.capitalize()}{have} the wrong sign throughout: check which way the {parts} of the "
+        code,
+        f"{line}{have} the wrong sign throughout: check which way the {parts} of the "
         f"{frame} frame should point.",
         "Change the sign of each entry there.",
     )
@@ -224,11 +224,8 @@ def _of_blocks(case: MatrixCase) -> list[Explanation]:
 
 
 def unexplained(case: MatrixCase, explained: Sequence[Explanation]) -> Mask:
-    """The wrong entries that none of the as_explanations covers."""
-    rest = case.wrong.copy()
-    for each in explained:
-        rest &= ~each.entries
-    return rest
+    """The wrong entries that none of the explanations covers."""
+    return np.asarray(case.wrong & ~np.any([each.entries for each in explained], axis=0))
 
 
 def check_yourself(case: MatrixCase, slips: Mapping[tuple[int, int], Finding]) -> Finding | None:

@@ -22,7 +22,6 @@ from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D, Table
 from service.kinematics.dh import Convention
 
 Misconception = Callable[[WrittenTable], Iterator[RepairedTable]]
-Validity = Callable[[NDArray[np.float64], Convention], NDArray[np.bool_]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +33,7 @@ class WrongTable:
 
     written: WrittenTable
     subset: WrittenTable
-    valid: Validity
+    valid: Callable[[Table, Convention], NDArray[np.bool_]]
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> list[AnyHypothesis]:
         """Those hypotheses, at the subset, that change the table to a valid one; all at once."""
@@ -56,14 +55,13 @@ def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
     rows = list(range(len(table.constants)))
     up, down = [*rows[1:], rows[0]], [rows[-1], *rows[:-1]]
     for columns in (slice(A, ALPHA + 1), slice(A, A + 1), slice(ALPHA, ALPHA + 1)):
-        for late in (True, False):
+        for late, order, end in ((True, up, -1), (False, down, 0)):
             finding = partial(_shifted, " and ".join(SYMBOLS[columns]), late)
             constants = table.constants.copy()
-            constants[:, columns] = table.constants[up if late else down, columns]
+            constants[:, columns] = table.constants[order, columns]
             yield Repaired(table.changed(constants), finding)
             if table.reference is not None:
                 # The row that fell off the end is not in the student's table.
-                end = -1 if late else 0
                 completed = constants.copy()
                 completed[end, columns] = table.reference[end, columns]
                 yield Repaired(table.changed(completed), finding)

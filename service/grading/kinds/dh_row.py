@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 from service.catalogue.parts.dh_row import DhRowSpec
 from service.expressions import Expression
 from service.grading.comparison import Match, matches
-from service.grading.diagnosis.dh_row import WrongRow, explain_row, has_a_row, violated
+from service.grading.diagnosis.dh_row import MISCONCEPTIONS, WrongRow, has_a_row, violated
 from service.grading.diagnosis.table_cell import diagnose
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, WrongCell
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.formula_text import formula_text
 from service.grading.judging.expected import given_values
 from service.grading.judging.report_rows import cell_report
+from service.grading.misconception import diagnosed
 from service.grading.part import Grading, Judged
 from service.grading.reading.entry import MISSING
 from service.grading.reading.table import IS_ANGLE, StudentRow, read_table
@@ -78,7 +79,7 @@ def _against_the_row(
     explained: Finding | None = None
     if (found < Match.ROUNDED).any() and np.isfinite(written.values).all():
         case = WrongRow(written.values, expected, scale, transform, part.convention)
-        explained = explain_row(case)
+        explained = diagnosed(case, MISCONCEPTIONS)
     slips = {
         i: _slip(i, expression, written.values[i], expected[i], grading)
         for i in np.flatnonzero(found < Match.ROUNDED).tolist()

@@ -7,13 +7,14 @@ from service.catalogue.parts.position import PositionSpec
 from service.expressions import Kind
 from service.grading.comparison import Match
 from service.grading.diagnosis.link_products import chains_of
-from service.grading.diagnosis.position import WrongPosition, explain_position
+from service.grading.diagnosis.position import MISCONCEPTIONS, WrongPosition
 from service.grading.diagnosis.value_list import slips_of
 from service.grading.feedback import Finding
 from service.grading.judging.expected import as_entries, asked_pose, formula_values, is_whole_chain
 from service.grading.judging.matrix import constant_text
 from service.grading.judging.report_rows import value_rows
 from service.grading.judging.value_list import ComparedValues
+from service.grading.misconception import diagnosed
 from service.grading.part import Grading, Judged
 from service.grading.reading.value_list import StudentValues, read_list
 from service.kinematics.transforms import Numbers
@@ -54,12 +55,11 @@ def _axes(part: PositionSpec) -> list[int]:
 def _explained(part: PositionSpec, compared: ComparedValues, grading: Grading) -> Finding | None:
     exercise = grading.exercise
     linked = is_whole_chain(part, exercise) and isinstance(exercise.reference, Robot)
-    return explain_position(
-        WrongPosition(
-            actual=compared.student.values,
-            expected=compared.expected,
-            axes=tuple(_axes(part)),
-            scale=exercise.length_scale,
-            chains=chains_of(exercise, grading.samples) if linked else (),
-        )
+    case = WrongPosition(
+        compared.student.values,
+        compared.expected,
+        scale=exercise.length_scale,
+        axes=tuple(_axes(part)),
+        chains=chains_of(exercise, grading.samples) if linked else (),
     )
+    return diagnosed(case, MISCONCEPTIONS)

@@ -107,11 +107,7 @@ def _matrix(text: str, quantity: Kind, reader: Reader) -> PastedPreview:
     grid = read_grid(text)
     rows = tuple(
         tuple(
-            _cell(
-                placed(reader.read(cell.text, quantity), cell),
-                cell,
-                (str(i + 1), str(j + 1)),
-            )
+            _cell(placed(reader.read(cell.text, quantity), cell), cell, (str(i + 1), str(j + 1)))
             for j, cell in enumerate(row)
         )
         for i, row in enumerate(grid.rows)

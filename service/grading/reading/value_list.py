@@ -5,12 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from service.expressions import Kind
-from service.grading.feedback import (
-    Finding,
-    UnreadableAnswerError,
-    reading_error,
-    reading_note,
-)
+from service.grading.feedback import Finding, UnreadableAnswerError, reading_error, reading_note
 from service.grading.reading.entry import MISSING, Entry, Reader, entry_values
 from service.grading.reading.pasted import from_grid_error, placed
 from service.grids import GridCell, GridError, read_grid

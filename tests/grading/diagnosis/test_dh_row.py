@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from service.grading.diagnosis import dh_row
-from service.grading.diagnosis.dh_row import WrongRow, explain_row, violated
+from service.grading.diagnosis.dh_row import WrongRow, violated
+from service.grading.misconception import diagnosed
 from service.grading.samples import SAMPLES
 from service.kinematics.dh import Convention, link_transforms
 from service.kinematics.dh_row import row
@@ -63,7 +64,7 @@ def test_a_misconception(pair: Pair) -> None:
 
 
 def test_a_right_row_is_left_alone() -> None:
-    assert explain_row(case(list(ROW), FULL)) is None
+    assert diagnosed(case(list(ROW), FULL), dh_row.MISCONCEPTIONS) is None
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,8 @@ import numpy as np
 
 from service.grading.diagnosis import position
 from service.grading.diagnosis.link_products import Chain
-from service.grading.diagnosis.position import WrongPosition, explain_position
+from service.grading.diagnosis.position import WrongPosition
+from service.grading.misconception import diagnosed
 from service.grading.samples import SAMPLES
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers
@@ -41,4 +42,4 @@ def test_a_misconception(pair: Pair) -> None:
 
 
 def test_a_right_position_is_left_alone() -> None:
-    assert explain_position(case(TIP)) is None
+    assert diagnosed(case(TIP), position.MISCONCEPTIONS) is None
