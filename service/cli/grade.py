@@ -11,8 +11,7 @@ from rich.console import Console
 from service.catalogue import Exercise
 from service.cli.submission_files import UnusableFileError, read_submission
 from service.cli.terminal import UNUSABLE, complain, give_up, installed, stdout
-from service.formats import FORMATS
-from service.formats.graded_file import GradedFile
+from service.formats import FORMATS, GradedFile
 from service.formats.text import visible
 from service.grading import FeedbackLevel, UnknownPartError, grade
 from service.submissions.lookup import find_exercise, nearest
