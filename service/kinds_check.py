@@ -7,34 +7,30 @@ from typing import Final
 from service.catalogue.parts import SPECS, KindError
 from service.grading.kinds import KINDS
 
-# By its files: SymPy, which the model answers need, takes half a second to import.
 _SOLUTIONS: Final = Path(__file__).parent / "solutions" / "kinds"
 
 
 def check_kinds() -> None:
     """Check that catalogue, grading and solutions know the same kinds. Raises KindError."""
-    refuse_half_made(
-        {
-            "service/catalogue/parts": SPECS.keys(),
-            "service/grading/kinds": KINDS.keys(),
-            "service/solutions/kinds": _solved_kinds(),
-        }
-    )
-
-
-def _solved_kinds() -> set[str]:
-    return {
+    # By their text: SymPy, which the model answers need, takes half a second to import.
+    solved = {
         file.stem
         for file in _SOLUTIONS.glob("*.py")
         if "\ndef answer(" in file.read_text(encoding="utf-8")
     }
+    refuse_half_made(
+        {
+            "service/catalogue/parts": SPECS.keys(),
+            "service/grading/kinds": KINDS.keys(),
+            "service/solutions/kinds": solved,
+        }
+    )
 
 
 def refuse_half_made(kinds: Mapping[str, Set[str]]) -> None:
     """Check that each folder has the same kinds. Raises KindError naming the files that lack."""
-    every = sorted(frozenset[str]().union(*kinds.values()))
     problems = []
-    for kind in every:
+    for kind in sorted(frozenset[str]().union(*kinds.values())):
         lacking = [f"{folder}/{kind}.py" for folder, known in kinds.items() if kind not in known]
         if lacking:
             problems.append(f"The answer kind {kind!r} is half made: write {', '.join(lacking)}.")

@@ -29,15 +29,11 @@ class BoundaryMiddleware:
                 MutableHeaders(scope=message)["X-Content-Type-Options"] = "nosniff"
             await send(message)
 
-        if _declared_size(scope) > MAX_BODY_SIZE:
+        declared = Headers(scope=scope).get("content-length", "")
+        if declared.isascii() and declared.isdigit() and int(declared) > MAX_BODY_SIZE:
             answer = too_large().response(Request(scope).url.path)
             await answer(scope, receive, hardened)
             return
         # The server still knows that it was HEAD, and sends the headers alone.
         inner = {**scope, "method": "GET"} if scope["method"] == "HEAD" else scope
         await self.app(inner, receive, hardened)
-
-
-def _declared_size(scope: Scope) -> int:
-    declared = Headers(scope=scope).get("content-length", "")
-    return int(declared) if declared.isascii() and declared.isdigit() else 0

@@ -148,9 +148,9 @@ def routes(catalogue: Catalogue) -> APIRouter:
         With `exercise` and `part` the text may also be a whole pasted table or matrix.
         """
         body = await body_as(PreviewRequest, request)
-        shown = preview(body, _vocabulary(catalogue, body))
-        if not shown.ok and body.exercise and body.part and _BETWEEN_CELLS & set(body.text):
-            exercise = require_exercise(catalogue, body.exercise)
+        exercise = _exercise(catalogue, body)
+        shown = preview(body, exercise.vocabulary if exercise else GENERIC)
+        if not shown.ok and exercise and body.part and _BETWEEN_CELLS & set(body.text):
             grid = preview_grid(body, exercise, body.part)
             # A text that is no grid either is better explained as the one entry that it may be.
             shown = grid if grid.rows or "\n" in body.text else shown
@@ -160,13 +160,11 @@ def routes(catalogue: Catalogue) -> APIRouter:
     return router
 
 
-def _vocabulary(catalogue: Catalogue, body: PreviewRequest) -> Vocabulary:
-    if body.exercise is None:
-        if body.part is not None:
-            message = "A part belongs to an exercise; name the exercise as well"
-            raise invalid([{"type": "alone", "loc": ("part",), "msg": message}])
-        return GENERIC
-    exercise = require_exercise(catalogue, body.exercise)
-    if body.part is not None:
+def _exercise(catalogue: Catalogue, body: PreviewRequest) -> Exercise | None:
+    if body.exercise is None and body.part is not None:
+        message = "A part belongs to an exercise; name the exercise as well"
+        raise invalid([{"type": "alone", "loc": ("part",), "msg": message}])
+    exercise = None if body.exercise is None else require_exercise(catalogue, body.exercise)
+    if exercise is not None and body.part is not None:
         require_parts(exercise, {body.part: ("part",)})
-    return exercise.vocabulary
+    return exercise

@@ -5,8 +5,7 @@ from collections.abc import Callable, Iterator
 from service.authoring.answers import duplicate_parts, failed_checks, missing_checks, model_answer
 from service.authoring.freedom import lost_freedom
 from service.authoring.remarks import Remark
-from service.authoring.symbols import ambiguous_symbols, badly_scaled, unused_symbols
-from service.authoring.units import bare_degrees
+from service.authoring.symbols import ambiguous_symbols, badly_scaled, bare_degrees, unused_symbols
 from service.catalogue import Exercise
 
 EXAMINATIONS: tuple[Callable[[Exercise], Iterator[Remark]], ...] = (

@@ -1,5 +1,6 @@
-"""Symbols that may be taken for something else, or whose ranges hide a mistake."""
+"""Symbols and numbers that may be taken for something else, or whose ranges hide a mistake."""
 
+import math
 import re
 from collections import defaultdict
 from collections.abc import Iterator
@@ -7,6 +8,9 @@ from typing import Final
 
 from service.authoring.remarks import Remark, warning
 from service.catalogue import Exercise, Variable
+from service.expressions import Expression
+from service.expressions.parsing.degrees import in_degrees
+from service.expressions.tree import Node, Number, Unit, children
 
 _SHORTHAND: Final = re.compile(r"[cCsS][0-9]+")
 # The reading that each is mistaken for.
@@ -26,6 +30,8 @@ _MISLEADING: Final = {
 MOST_RATIO: Final = 1000.0
 # A constant that is right to a thousandth counts as rounded.
 LEAST_WIDTH: Final = 0.01
+# Nobody writes more than a full turn in radians without π.
+FULL_TURN: Final = 2 * math.pi
 _LOOK_ALIKE: Final = str.maketrans("IlO", "110")
 
 
@@ -117,3 +123,31 @@ def _range(variable: Variable) -> Iterator[Remark]:
             f"goes from {variable.low:g} to {variable.high:g}; narrow it, for a mistake that "
             f"counts at one end is not seen at the other",
         )
+
+
+def bare_degrees(exercise: Exercise) -> Iterator[Remark]:
+    """Constants without a unit of more than a full turn, where an angle is asked for."""
+    for field, formula, quantity in exercise.fields():
+        for term in _bare_terms(formula.tree, is_angle=quantity == "angle"):
+            constant = Expression(formula.source, term, (), frozenset())
+            value = float(constant.evaluate({}))
+            if abs(value) > FULL_TURN:
+                text = f"{value:.12g}" if isinstance(term, Number) else f"({constant.text()})"
+                yield warning(
+                    field, f"{text} has no unit and is read in radians; did you mean {text}deg?"
+                )
+
+
+def _bare_terms(tree: Node, *, is_angle: bool) -> Iterator[Node]:
+    """Terms that would be in degrees if the file's numbers were, by the rule for students."""
+    written = {(unit.start, unit.end) for unit in _units(tree)}
+    for unit in _units(in_degrees(tree, is_angle=is_angle, notes=[])):
+        if (unit.start, unit.end) not in written:
+            yield unit.operand
+
+
+def _units(node: Node) -> Iterator[Unit]:
+    if isinstance(node, Unit):
+        yield node
+    for child in children(node):
+        yield from _units(child)

@@ -48,7 +48,11 @@ def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
     variables = _variables(joints, spec.symbols)
     vocabulary = _vocabulary(variables)
     reader = FormulaReader(vocabulary, variables)
-    reference = _reference(spec.robot, joints, reader)
+    reference: Reference | None = None
+    if isinstance(spec.robot, RobotSpec):
+        reference = _robot(spec.robot, joints, reader)
+    elif spec.robot is not None:
+        reference = _screw_robot(spec.robot, joints, reader)
     formulas = _formulas(spec.parts, reference, reader)
     _check_checks(spec.checks, spec.parts)
     return Exercise(
@@ -194,14 +198,6 @@ def _joint_aliases(variable: Variable, taken: set[str]) -> tuple[str, ...]:
     letters = ("q", "d") if variable.kind == "length" else ("q", "theta", "th")
     names = (f"{letter}{variable.joint}" for letter in letters)
     return tuple(name for name in names if name not in taken)
-
-
-def _reference(
-    spec: RobotSpec | ScrewRobotSpec | None, joints: tuple[Joint, ...], reader: FormulaReader
-) -> Reference | None:
-    if isinstance(spec, RobotSpec):
-        return _robot(spec, joints, reader)
-    return None if spec is None else _screw_robot(spec, joints, reader)
 
 
 def _robot(spec: RobotSpec, joints: tuple[Joint, ...], reader: FormulaReader) -> Robot:

@@ -55,10 +55,6 @@ class WrittenFormulas:
     quantities: Sequence[Sequence[Kind]]
     check: Callable[[str, Numbers], None] | None = None
 
-    def field(self, i: int, j: int) -> str:
-        """The field of the formula in row i and column j."""
-        return self.path.format(i=i, j=j)
-
 
 def matrix_of(
     field: str,
@@ -120,16 +116,16 @@ class FormulaReader:
 
     def grid(self, written: WrittenFormulas, prefix: str = "") -> FormulaGrid:
         """All formulas, tried; ``prefix`` stands before each field. Raises FieldError."""
+        path = prefix + written.path
+        rows = enumerate(zip(written.rows, written.quantities, strict=True))
         grid = tuple(
             tuple(
-                self.read(prefix + written.field(i, j), source, quantity)
+                self.read(path.format(i=i, j=j), source, quantity)
                 for j, (source, quantity) in enumerate(zip(row, quantities, strict=True))
             )
-            for i, (row, quantities) in enumerate(
-                zip(written.rows, written.quantities, strict=True)
-            )
+            for i, (row, quantities) in rows
         )
-        numbers = self.tried(grid, lambda i, j: prefix + written.field(i, j))
+        numbers = self.tried(grid, lambda i, j: path.format(i=i, j=j))
         if written.check is not None:
             written.check(prefix + written.path.partition("[")[0], numbers)
         return grid

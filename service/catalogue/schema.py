@@ -175,15 +175,11 @@ class ExerciseSpec(StrictModel):
     """Answers to try whenever the file is checked, one ``[[checks]]`` for each."""
 
     @model_validator(mode="after")
-    def _part_ids_are_unique(self) -> "ExerciseSpec":
+    def _parts_fit_together(self) -> "ExerciseSpec":
         ids = [part.id for part in self.parts]
         repeated = sorted({part_id for part_id in ids if ids.count(part_id) > 1})
         if repeated:
             raise ValueError(f"two parts share the id {repeated[0]!r}; give each its own")
-        return self
-
-    @model_validator(mode="after")
-    def _parts_follow_earlier_ones(self) -> "ExerciseSpec":
         earlier: set[str] = set()
         for part in self.parts:
             if part.follows is not None and part.follows not in earlier:

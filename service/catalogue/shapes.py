@@ -1,7 +1,7 @@
 """The shape of an answer, as a student sees it before answering."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import ClassVar, Literal
 
 from pydantic import BaseModel, Field
@@ -14,9 +14,12 @@ class AnswerShape(BaseModel, ABC):
 
     posted: ClassVar[str]
 
-    @abstractmethod
     def in_words(self) -> str:
         """The shape in one sentence: "a matrix of 4 rows and 4 columns"."""
+        return "; ".join(self._clauses())
+
+    @abstractmethod
+    def _clauses(self) -> Iterator[str]: ...
 
 
 class MatrixShape(AnswerShape):
@@ -27,9 +30,8 @@ class MatrixShape(AnswerShape):
     columns: list[str]
     rows: list[str]
 
-    def in_words(self) -> str:
-        """The shape in one sentence."""
-        return f"a matrix of {len(self.rows)} rows and {len(self.columns)} columns"
+    def _clauses(self) -> Iterator[str]:
+        yield f"a matrix of {len(self.rows)} rows and {len(self.columns)} columns"
 
 
 class ComponentView(BaseModel):
@@ -49,13 +51,10 @@ class ListShape(AnswerShape):
     sequence: str | None = Field(None, description='Such as "ZYZ"; "RPY" is Rz(α) Ry(β) Rx(γ).')
     axes: Literal["moving", "fixed"] | None = None
 
-    def in_words(self) -> str:
-        """The shape in one sentence."""
-        values = listed(f"{each.name} ({each.quantity})" for each in self.components)
-        return clauses(
-            f"a list: {values}",
-            f"{self.sequence} about {self.axes} axes" if self.sequence else "",
-        )
+    def _clauses(self) -> Iterator[str]:
+        yield f"a list: {', '.join(f'{each.name} ({each.quantity})' for each in self.components)}"
+        if self.sequence:
+            yield f"{self.sequence} about {self.axes} axes"
 
 
 def matrix_shape(rows: int, columns: int) -> MatrixShape:
@@ -74,22 +73,12 @@ def numbered(count: int) -> list[str]:
     return [str(i + 1) for i in range(count)]
 
 
-def choices(**stated: str) -> Iterable[str]:
+def choices(**stated: str) -> Iterator[str]:
     """A clause on the free choices and one on the given ones, by their keys in the file."""
     for choice in ("free", "given"):
         names = [_NAMES.get(name, name) for name, value in stated.items() if value == choice]
         if names:
-            yield f"{listed(names)} {choice}"
+            yield f"{', '.join(names)} {choice}"
 
 
 _NAMES = {"base": "base frame", "tool": "tool frame"}
-
-
-def clauses(*texts: str) -> str:
-    """The clauses of a sentence, without those that are empty."""
-    return "; ".join(filter(None, texts))
-
-
-def listed(names: Iterable[str]) -> str:
-    """The names with commas between them."""
-    return ", ".join(names)

@@ -2,17 +2,20 @@
 
 import textwrap
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import Console
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from service.authoring import template
 from service.catalogue import Exercise
-from service.cli import check, new
-from service.cli.solution import write_solution
-from service.cli.terminal import installed, stdout
+from service.cli import check
+from service.cli.terminal import give_up, installed, stdout
+from service.solutions import ModelSolution, Shown, solve
 from service.submissions.lookup import find_exercise
 
 _NARROWEST = 24
@@ -42,7 +45,7 @@ def show_exercise(
     exercise = find_exercise(installed(), exercise_id)
     console = stdout()
     if solution or latex:
-        write_solution(exercise, console, latex=latex)
+        _write_solution(exercise, console, latex=latex)
         return
     console.print(Text(exercise.title, "bold"))
     name = ", ".join(filter(None, (exercise.id, exercise.structure)))
@@ -65,6 +68,34 @@ def show_exercise(
             console.print(Padding(Text(text, "dim"), (0, 0, 0, 4), expand=False))
 
 
+commands.command("check")(check.command)
+
+
+@commands.command("new")
+def new_exercise(
+    exercise_id: Annotated[
+        str, typer.Argument(metavar="ID", help="Becomes the file's name.", show_default=False)
+    ],
+    output: Annotated[
+        Path, typer.Option(metavar="FOLDER", help="Where to write it; made if need be.")
+    ] = Path(),
+) -> None:
+    """Write a commented exercise file to start from. It passes `exercises check` as it is."""
+    text = template(exercise_id)
+    file = output / f"{exercise_id}.toml"
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+        with file.open("x", encoding="utf-8") as new:
+            new.write(text)
+    except FileExistsError:
+        give_up(f"{file} is there already, and stays as it is; choose another id or folder")
+    except OSError as error:
+        give_up(f"{file}: cannot be written: {error.strerror}")
+    stdout().print(
+        f"{file} is written. Edit it, then: dh-grader exercises check {file}", soft_wrap=True
+    )
+
+
 def _list(exercises: Sequence[Exercise], width: int) -> Iterator[Text]:
     """Each exercise's id, joints and title, and its parts below the title."""
     ids = max(len(exercise.id) for exercise in exercises)
@@ -84,5 +115,26 @@ def _list(exercises: Sequence[Exercise], width: int) -> Iterator[Text]:
         yield from (Text(indent + line.replace("\N{NO-BREAK SPACE}", " "), "dim") for line in below)
 
 
-commands.command("check")(check.command)
-commands.command("new")(new.command)
+def _write_solution(exercise: Exercise, console: Console, *, latex: bool) -> None:
+    """Print the answer to each part, each link transform and the pose."""
+    solution = solve(exercise)
+    links = not any(part.holds_links for part in exercise.parts)
+    for heading, shown in _sections(solution, links=links):
+        console.print(Text(heading, "bold"))
+        # Unbroken, so that it can be copied and pasted.
+        console.print(Text(shown.latex if latex else shown.text), soft_wrap=True)
+        console.print()
+    if solution.notation:
+        console.print(Text("Shorthand", "bold"))
+        for name, meaning in solution.notation.items():
+            console.print(Text(f"{name} = {meaning}"))
+
+
+def _sections(solution: ModelSolution, *, links: bool) -> Iterator[tuple[str, Shown]]:
+    for part in solution.parts:
+        yield f"{part.part}: {part.title} ({part.kind})", part
+    if links:
+        yield from ((f"Link transform A{link.label}", link) for link in solution.links)
+    answered = [part.text for part in solution.parts]
+    if solution.pose is not None and solution.pose.text not in answered:
+        yield "Pose of the tool in the base frame", solution.pose

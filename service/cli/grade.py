@@ -11,8 +11,7 @@ from rich.console import Console
 from service.catalogue import Exercise
 from service.cli.submission_files import UnusableFileError, read_submission
 from service.cli.terminal import UNUSABLE, complain, give_up, installed, stdout
-from service.formats import FORMATS
-from service.formats.graded_file import GradedFile
+from service.formats import FORMATS, GradedFile
 from service.formats.text import visible
 from service.grading import FeedbackLevel, UnknownPartError, grade
 from service.submissions.lookup import find_exercise, nearest
@@ -78,7 +77,11 @@ def command(
     if output is not None:
         page = io.TextIOWrapper(io.BytesIO(), encoding="utf-8")
         console = Console(file=page, width=80, highlight=False, markup=False)
-    _deliver(FORMATS[output_format].document(graded, console), output)
+    content = FORMATS[output_format].document(graded, console)
+    if output is None:
+        typer.echo(content, nl=False)
+    else:
+        _write(content, output)
     raise SystemExit(max(_exit_code(result, pass_mark) for result in graded))
 
 
@@ -118,10 +121,7 @@ def _exit_code(result: GradedFile, pass_mark: float) -> int:
     return 0 if result.report.score >= pass_mark - 5e-7 else BELOW_PASS_MARK
 
 
-def _deliver(content: bytes, output: Path | None) -> None:
-    if output is None:
-        typer.echo(content, nl=False)
-        return
+def _write(content: bytes, output: Path) -> None:
     try:
         output.write_bytes(content)
     except OSError as error:

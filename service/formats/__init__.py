@@ -4,13 +4,24 @@ A format ``<name>.py`` has a function ``document``; it is found here by its name
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from importlib import import_module
+from pathlib import Path
 from pkgutil import iter_modules
 from typing import Final, Protocol
 
 from rich.console import Console
 
-from service.formats.graded_file import GradedFile
+from service.grading import Report
+
+
+@dataclass(frozen=True, slots=True)
+class GradedFile:
+    """A file with its report, or with the reason why there is none."""
+
+    file: Path
+    report: Report | None
+    error: str = ""
 
 
 class ReportFormat(Protocol):
@@ -21,9 +32,6 @@ class ReportFormat(Protocol):
         ...
 
 
-def _found() -> dict[str, ReportFormat]:
-    modules = {name: import_module(f"{__name__}.{name}") for _, name, _ in iter_modules(__path__)}
-    return {name: module for name, module in modules.items() if hasattr(module, "document")}
-
-
-FORMATS: Final[Mapping[str, ReportFormat]] = _found()
+FORMATS: Final[Mapping[str, ReportFormat]] = {
+    name: import_module(f"{__name__}.{name}") for _, name, _ in iter_modules(__path__)
+}

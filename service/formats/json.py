@@ -7,7 +7,7 @@ from typing import Final
 from pydantic import TypeAdapter
 from rich.console import Console
 
-from service.formats.graded_file import GradedFile
+from service.formats import GradedFile
 from service.grading import Report
 
 _REPORT: Final = TypeAdapter(Report)

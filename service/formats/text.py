@@ -11,23 +11,17 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from service.formats.graded_file import GradedFile
+from service.formats import GradedFile
 from service.grading import Feedback, PartReport, Report, Severity, Verdict
 from service.grading.report import messages_of
 
-STYLES: Final[Mapping[Verdict, str]] = {
-    Verdict.CORRECT: "green",
-    Verdict.PARTIAL: "yellow",
-    Verdict.INCORRECT: "red",
-    Verdict.UNREADABLE: "magenta",
-    Verdict.MISSING: "bright_black",
-}
-_SIGNS: Final[Mapping[Verdict, str]] = {
-    Verdict.CORRECT: "✓",
-    Verdict.PARTIAL: "~",
-    Verdict.INCORRECT: "✗",
-    Verdict.UNREADABLE: "?",
-    Verdict.MISSING: "–",
+# The mark of each verdict, and its colour.
+_MARKS: Final[Mapping[Verdict, tuple[str, str]]] = {
+    Verdict.CORRECT: ("✓", "green"),
+    Verdict.PARTIAL: ("~", "yellow"),
+    Verdict.INCORRECT: ("✗", "red"),
+    Verdict.UNREADABLE: ("?", "magenta"),
+    Verdict.MISSING: ("–", "bright_black"),
 }
 _ASCII: Final = str.maketrans("✓✗–", "+x-")
 # Longer lines are hard to read however wide the terminal is.
@@ -86,7 +80,7 @@ class _Page:
             self._print(Text("Nothing in this submission could be read."))
         if any(part.rows for part in report.parts):
             signs = [Verdict.CORRECT, Verdict.INCORRECT, Verdict.UNREADABLE, Verdict.MISSING]
-            legend = "   ".join(f"{self._sign(verdict)} {verdict}" for verdict in signs)
+            legend = "   ".join(f"{self._mark(verdict)} {verdict}" for verdict in signs)
             self._print(Text(legend, "dim"))
 
     def _part(self, part: PartReport) -> None:
@@ -94,7 +88,7 @@ class _Page:
             Text.assemble(
                 (visible(part.part), "bold"),
                 f" ({part.kind}): ",
-                (part.verdict.value, STYLES[part.verdict]),
+                (part.verdict.value, _MARKS[part.verdict][1]),
                 f", {points(part.points, part.max_points)} points",
                 ", counted with your own earlier answer" if part.follow_through else "",
             )
@@ -113,7 +107,7 @@ class _Page:
             table.add_column(cell.label, justify="center")
         table.add_column("points", justify="right", no_wrap=True)
         for row in part.rows:
-            marks = [Text(self._sign(cell.verdict), STYLES[cell.verdict]) for cell in row.cells]
+            marks = [self._mark(cell.verdict) for cell in row.cells]
             blanks = [Text()] * (len(widest) - len(marks))
             table.add_row(row.label, *marks, *blanks, points(row.points, row.max_points))
         return table
@@ -121,19 +115,19 @@ class _Page:
     def _message(self, places: str, message: Feedback, verdict: Verdict) -> None:
         """A message, its lines beneath each other to the right of its mark."""
         costs = message.severity is Severity.ERROR
-        mark = self._sign(verdict) if costs else message.severity.value
+        mark = self._mark(verdict) if costs else Text(message.severity.value, "cyan")
         text = Text.assemble((f"{places}: " if places else "", "bold"), visible(message.message))
         if message.values:
             text.append(f" {_counterexample(message.values)}", "dim")
         grid = Table.grid(padding=(0, 1))
         grid.add_column(no_wrap=True)
         grid.add_column()
-        grid.add_row(Text(mark, STYLES[verdict] if costs else "cyan"), text)
+        grid.add_row(mark, text)
         self._print(Padding(grid, (0, 0, 0, 2), expand=False))
 
-    def _sign(self, verdict: Verdict) -> str:
-        sign = _SIGNS[verdict]
-        return sign.translate(_ASCII) if self._ascii else sign
+    def _mark(self, verdict: Verdict) -> Text:
+        sign, style = _MARKS[verdict]
+        return Text(sign.translate(_ASCII) if self._ascii else sign, style)
 
     def _print(self, what: Text | Padding) -> None:
         self._console.print(what, width=self._width)

@@ -9,6 +9,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterable
+from dataclasses import dataclass
 from itertools import chain
 from typing import Final
 
@@ -23,14 +24,13 @@ _SURROGATE_ESCAPE: Final = re.compile(r"\\u[dD][89a-fA-F]")
 _LONE_SURROGATE: Final = re.compile(r"[\ud800-\udfff]")
 
 
+@dataclass(eq=False)
 class MalformedError(ValueError):
     """A text that is not the JSON it should be; ``line`` and ``column`` count from 1."""
 
-    def __init__(self, reason: str, line: int | None = None, column: int | None = None) -> None:
-        super().__init__(reason)
-        self.reason = reason
-        self.line = line
-        self.column = column
+    reason: str
+    line: int | None = None
+    column: int | None = None
 
     def __str__(self) -> str:
         """The reason, with its place where there is one."""

@@ -1,5 +1,6 @@
 """Answer kind ``dh_row``: the row of a transform in the DH table, or that it has none."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import ClassVar, Literal
 
@@ -15,7 +16,7 @@ from service.catalogue.formulas import (
 )
 from service.catalogue.part import PartSpec
 from service.catalogue.screw_robot import Reference
-from service.catalogue.shapes import AnswerShape, clauses, listed
+from service.catalogue.shapes import AnswerShape
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention
 from service.kinematics.dh_row import dh1_residual, dh2_residual
@@ -32,11 +33,9 @@ class DhRowShape(AnswerShape):
     columns: list[str]
     convention: Convention
 
-    def in_words(self) -> str:
-        """The shape in one sentence."""
-        return clauses(
-            f"one row with {listed(self.columns)}, or none", f"{self.convention} convention"
-        )
+    def _clauses(self) -> Iterator[str]:
+        yield f"one row with {', '.join(self.columns)}, or none"
+        yield f"{self.convention} convention"
 
 
 class DhRowSpec(PartSpec):

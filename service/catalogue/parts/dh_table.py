@@ -1,5 +1,6 @@
 """Answer kind ``dh_table``: a Denavit-Hartenberg table of the robot."""
 
+from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 from pydantic import Field, model_validator
@@ -8,9 +9,11 @@ from service.catalogue.fields import GivenOrFree
 from service.catalogue.part import TablePartSpec
 from service.catalogue.robot import Robot
 from service.catalogue.screw_robot import Reference
-from service.catalogue.shapes import AnswerShape, choices, clauses, listed
+from service.catalogue.shapes import AnswerShape, choices
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention
+
+_CHOICES = {"frames", "base", "tool", "directions"}
 
 
 class DhTableShape(AnswerShape):
@@ -29,15 +32,11 @@ class DhTableShape(AnswerShape):
     tool: GivenOrFree
     directions: GivenOrFree
 
-    def in_words(self) -> str:
-        """The shape in one sentence."""
-        return clauses(
-            f"a table with the rows {listed(self.rows)} and the columns {listed(self.columns)}",
-            f"{self.convention} convention",
-            *choices(
-                frames=self.frames, base=self.base, tool=self.tool, directions=self.directions
-            ),
-        )
+    def _clauses(self) -> Iterator[str]:
+        rows, columns = ", ".join(self.rows), ", ".join(self.columns)
+        yield f"a table with the rows {rows} and the columns {columns}"
+        yield f"{self.convention} convention"
+        yield from choices(**self.model_dump(include=_CHOICES))
 
 
 class DhTableSpec(TablePartSpec):
@@ -68,14 +67,9 @@ class DhTableSpec(TablePartSpec):
             labels = reference.tables[self.convention].labels
         else:
             labels = max((table.labels for table in reference.tables.values()), key=len)
+        chosen = self.model_dump(include=_CHOICES)
         return DhTableShape(
-            columns=list(COLUMNS),
-            rows=list(labels),
-            convention=self.convention,
-            frames=self.frames,
-            base=self.base,
-            tool=self.tool,
-            directions=self.directions,
+            columns=list(COLUMNS), rows=list(labels), convention=self.convention, **chosen
         )
 
     @model_validator(mode="after")

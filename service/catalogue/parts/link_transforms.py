@@ -1,12 +1,13 @@
 """Answer kind ``link_transforms``: the transforms that the rows of a table stand for."""
 
+from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 from service.catalogue.fields import GivenOrFree
 from service.catalogue.part import TablePartSpec
 from service.catalogue.robot import Robot
 from service.catalogue.screw_robot import Reference
-from service.catalogue.shapes import AnswerShape, choices, clauses, listed, numbered
+from service.catalogue.shapes import AnswerShape, choices, numbered
 from service.kinematics.dh import Convention
 
 
@@ -21,14 +22,11 @@ class LinkTransformsShape(AnswerShape):
     convention: str
     frames: str
 
-    def in_words(self) -> str:
-        """The shape in one sentence."""
-        return clauses(
-            f"a list of the matrices {listed(self.matrices)}, each of {len(self.rows)} rows and "
-            f"{len(self.columns)} columns",
-            f"{self.convention} convention",
-            *choices(frames=self.frames),
-        )
+    def _clauses(self) -> Iterator[str]:
+        size = f"{len(self.rows)} rows and {len(self.columns)} columns"
+        yield f"a list of the matrices {', '.join(self.matrices)}, each of {size}"
+        yield f"{self.convention} convention"
+        yield from choices(frames=self.frames)
 
 
 class LinkTransformsSpec(TablePartSpec):

@@ -1,5 +1,6 @@
 """Answer kind ``screw_axes``: the screw axis of each joint."""
 
+from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
@@ -8,7 +9,7 @@ from service.catalogue.fields import GivenOrFree, Screw
 from service.catalogue.formulas import WrittenFormulas, screws_of
 from service.catalogue.part import PartSpec
 from service.catalogue.screw_robot import Reference
-from service.catalogue.shapes import AnswerShape, choices, clauses, listed, numbered
+from service.catalogue.shapes import AnswerShape, choices, numbered
 
 
 class ScrewAxesShape(AnswerShape):
@@ -21,14 +22,11 @@ class ScrewAxesShape(AnswerShape):
     frame: Literal["space", "body"]
     directions: GivenOrFree
 
-    def in_words(self) -> str:
-        """The shape in one sentence."""
-        return clauses(
-            f"a list of screw axes, {len(self.columns)} numbers (ω; v) for each of "
-            f"{listed(self.rows)}",
-            f"{self.frame} frame",
-            *choices(directions=self.directions),
-        )
+    def _clauses(self) -> Iterator[str]:
+        numbers = f"{len(self.columns)} numbers (ω; v)"
+        yield f"a list of screw axes, {numbers} for each of {', '.join(self.rows)}"
+        yield f"{self.frame} frame"
+        yield from choices(directions=self.directions)
 
 
 class ScrewAxesSpec(PartSpec):
