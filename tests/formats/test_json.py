@@ -5,8 +5,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from service.formats import FORMATS
-from service.formats.graded_file import GradedFile
+from service.formats import FORMATS, GradedFile
 from service.formats.json import rendered
 from service.grading import (
     CellReport,
