@@ -5,7 +5,13 @@ import numpy as np
 from service.expressions.tree import Call, Node
 from service.grading.comparison import difference
 from service.grading.diagnosis.formula_rewriting import nodes
-from service.grading.diagnosis.wrong_value import Hypotheses, WrongValue, differs, undefined
+from service.grading.diagnosis.wrong_value import (
+    Hypotheses,
+    WrongValue,
+    differs,
+    finding_on,
+    undefined,
+)
 from service.grading.feedback import Finding
 from service.grading.misconception import Repaired, Written, diagnosed
 from service.grading.tolerances import ROUNDED_VALUE
@@ -28,24 +34,25 @@ ARGUMENTS_SWAPPED = (
 
 def sign(case: WrongValue) -> Hypotheses:
     """The size is right, the direction is not."""
-    yield Written(-case.expected, case.finding("sign", WRONG_SIGN))
+    yield Written(-case.expected, finding_on(case, "sign", WRONG_SIGN))
 
 
 def degrees_as_radians(case: WrongValue) -> Hypotheses:
     """A number in degrees was handed in where radians are read."""
-    yield Repaired(np.radians(case.actual), case.finding("degrees_as_radians", FITS_IN_DEGREES))
+    yield Repaired(np.radians(case.actual), finding_on(case, "degrees_as_radians", FITS_IN_DEGREES))
 
 
 def radians_as_degrees(case: WrongValue) -> Hypotheses:
     """A number in radians was handed in where degrees are read."""
-    yield Repaired(np.degrees(case.actual), case.finding("radians_as_degrees", FITS_IN_RADIANS))
+    yield Repaired(np.degrees(case.actual), finding_on(case, "radians_as_degrees", FITS_IN_RADIANS))
 
 
 def lost_quadrant(case: WrongValue) -> Hypotheses:
     """atan(y/x) was taken for atan2(y, x), which differs by half a turn where x is negative."""
     opposite = np.abs(difference(case.actual, case.expected, angle=True)) > np.pi / 2
     if opposite.any() and not opposite.all():
-        finding = case.finding(
+        finding = finding_on(
+            case,
             "lost_quadrant",
             "This angle is right for some joint values and half a turn off for others: atan(y/x) "
             "cannot tell opposite directions apart, atan2(y, x) can.",
@@ -55,7 +62,8 @@ def lost_quadrant(case: WrongValue) -> Hypotheses:
 
 def half_turn(case: WrongValue) -> Hypotheses:
     """A direction was taken for its opposite."""
-    finding = case.finding(
+    finding = finding_on(
+        case,
         "half_turn",
         "This angle is off by half a turn (180°): the direction that it is measured to is the "
         "opposite one.",
@@ -69,7 +77,9 @@ def swapped_atan2(case: WrongValue) -> Hypotheses:
     Without an arctangent, a constant is more likely to lack a quarter turn.
     """
     if np.ptp(case.expected) > ROUNDED_VALUE or has_arctangent(case.expression.tree):
-        yield Written(np.pi / 2 - case.expected, case.finding("swapped_atan2", ARGUMENTS_SWAPPED))
+        yield Written(
+            np.pi / 2 - case.expected, finding_on(case, "swapped_atan2", ARGUMENTS_SWAPPED)
+        )
 
 
 def has_arctangent(tree: Node) -> bool:
@@ -80,7 +90,7 @@ def has_arctangent(tree: Node) -> bool:
 
 def quarter_turn(case: WrongValue) -> Hypotheses:
     """A turn by 90° was left out or added."""
-    finding = case.finding("quarter_turn", "This angle is off by a quarter turn (90°).")
+    finding = finding_on(case, "quarter_turn", "This angle is off by a quarter turn (90°).")
     error = difference(case.actual, case.expected, angle=True)
     yield Written(case.expected + np.copysign(np.pi / 2, error), finding, tolerance=ROUNDED_VALUE)
 

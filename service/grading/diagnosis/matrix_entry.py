@@ -8,7 +8,7 @@ from service.expressions.printing.text import to_text
 from service.expressions.tree import Node, Number, Unit, children
 from service.grading.diagnosis import formula_rewriting as rewriting
 from service.grading.diagnosis.formula_repair import Rewritten, WrongEntry
-from service.grading.diagnosis.wrong_value import UNEXPLAINED, differs, undefined
+from service.grading.diagnosis.wrong_value import UNEXPLAINED, differs, finding_on, undefined
 from service.grading.feedback import Finding
 from service.grading.misconception import Written, diagnosed
 from service.kinematics.transforms import Numbers
@@ -26,7 +26,7 @@ Formulas = Iterator[Rewritten]
 
 def sign(case: WrongEntry) -> Iterator[Written[Numbers]]:
     """The size is right, the direction is not."""
-    yield Written(-case.expected, case.finding("sign", "The sign of this entry is wrong."))
+    yield Written(-case.expected, finding_on(case, "sign", "The sign of this entry is wrong."))
 
 
 def degrees_as_radians(case: WrongEntry) -> Formulas:

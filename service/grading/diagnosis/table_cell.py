@@ -6,7 +6,13 @@ import numpy as np
 
 from service.catalogue import Joint
 from service.grading.comparison import Match
-from service.grading.diagnosis.wrong_value import Hypotheses, WrongCell, differs, undefined
+from service.grading.diagnosis.wrong_value import (
+    Hypotheses,
+    WrongCell,
+    differs,
+    finding_on,
+    undefined,
+)
 from service.grading.feedback import Finding
 from service.grading.formula_text import sum_text
 from service.grading.joint_motion import coefficients
@@ -32,7 +38,8 @@ def joint_variable_missing(case: WrongCell) -> Finding | None:
     if case.joint is None or not case.required or case.contained != {}:
         return None
     motion = "slides along z" if case.joint.prismatic else "turns about z"
-    return case.finding(
+    return finding_on(
+        case,
         "joint_variable_missing",
         f"Joint {case.joint.index} {motion}, so this cell must contain its variable.",
     )
@@ -43,7 +50,8 @@ def joint_variable_sign(case: WrongCell) -> Finding | None:
     opposite = {joint: -count for joint, count in case.required.items()}
     if not opposite or case.contained != opposite:
         return None
-    return case.finding(
+    return finding_on(
+        case,
         "joint_variable_sign",
         f"The joint variable has the wrong sign: look which way z points on this joint's axis, and "
         f"turn or slide {case.measured} by the right-hand rule.",
@@ -55,7 +63,8 @@ def joint_variable_index(case: WrongCell) -> Finding | None:
     other, count = case.contained_alone
     if not (case.joint and other and case.required) or other == case.joint or abs(count) != 1:
         return None
-    return case.finding(
+    return finding_on(
+        case,
         "joint_variable_index",
         f"This is the row of joint {case.joint.index}, but the cell contains {other.variable}, the "
         f"variable of joint {other.index}.",
@@ -67,7 +76,8 @@ def joint_variable_doubled(case: WrongCell) -> Finding | None:
     joint, count = case.contained_alone
     if joint is None or joint != case.joint or joint not in case.required or abs(count) < 2:
         return None
-    return case.finding(
+    return finding_on(
+        case,
         "joint_variable_doubled",
         f"{joint.variable} is contained {abs(count)} times; it belongs here once.",
     )
@@ -79,8 +89,10 @@ def joint_variable_column(case: WrongCell) -> Finding | None:
     if joint is None or joint != case.joint or case.required:
         return None
     kind = "slides, so its variable is d" if joint.prismatic else "turns, so its variable is θ"
-    return case.finding(
-        "joint_variable_column", f"Joint {joint.index} {kind}; {case.symbol} is constant here."
+    return finding_on(
+        case,
+        "joint_variable_column",
+        f"Joint {joint.index} {kind}; {case.symbol} is constant here.",
     )
 
 
@@ -89,7 +101,8 @@ def joint_variable_extra(case: WrongCell) -> Finding | None:
     extra = [joint.variable for joint in case.contained or () if joint not in case.required]
     if not extra:
         return None
-    return case.finding(
+    return finding_on(
+        case,
         "joint_variable_extra",
         f"{' and '.join(extra)} must not be in this cell: it does not change {case.symbol} of this "
         "row.",
@@ -101,7 +114,8 @@ def joint_variable_extra(case: WrongCell) -> Finding | None:
 
 def sign(case: WrongCell) -> Hypotheses:
     """The size is right, the direction is not."""
-    finding = case.finding(
+    finding = finding_on(
+        case,
         "sign",
         f"The sign of {case.symbol} is wrong: measure the {'turn' if case.angle else 'distance'} "
         f"{case.measured}, positive in the direction of that axis.",
@@ -111,7 +125,8 @@ def sign(case: WrongCell) -> Hypotheses:
 
 def distance_left_out(case: WrongCell) -> Hypotheses:
     """A distance between the frames was overlooked."""
-    finding = case.finding(
+    finding = finding_on(
+        case,
         "distance_left_out",
         f"A distance is left out of {case.symbol}{_beside(case)}: these two frames are apart "
         f"{case.measured}.",
@@ -121,7 +136,8 @@ def distance_left_out(case: WrongCell) -> Hypotheses:
 
 def distance_extra(case: WrongCell) -> Hypotheses:
     """A distance was put where there is none: into the wrong cell, or counted twice."""
-    finding = case.finding(
+    finding = finding_on(
+        case,
         "distance_extra",
         f"There is no distance {case.measured} here{_beside(case)}: look along which axis of which "
         f"frame it is measured.",
@@ -141,12 +157,13 @@ def degrees_as_radians(case: WrongCell) -> Hypotheses:
     )
     in_degrees = np.radians(case.constants[0])
     for value, also in ((-in_degrees, " Its sign is wrong, too."), (in_degrees, "")):
-        yield Repaired(value, case.finding("degrees_as_radians", hint + also))
+        yield Repaired(value, finding_on(case, "degrees_as_radians", hint + also))
 
 
 def radians_as_degrees(case: WrongCell) -> Hypotheses:
     """A number in radians was handed in where degrees are read."""
-    finding = case.finding(
+    finding = finding_on(
+        case,
         "radians_as_degrees",
         "This number was read in degrees, but it fits in radians: write it with pi, or in degrees.",
     )
@@ -155,7 +172,8 @@ def radians_as_degrees(case: WrongCell) -> Hypotheses:
 
 def quarter_turn(case: WrongCell) -> Hypotheses:
     """A turn by 90° was left out, added, or made the wrong way from a quarter to three quarters."""
-    finding = case.finding(
+    finding = finding_on(
+        case,
         "quarter_turn",
         f"{case.symbol} is off by a quarter turn (90°): compare the two axes that it is measured "
         f"between, in the home configuration.",
@@ -166,7 +184,8 @@ def quarter_turn(case: WrongCell) -> Hypotheses:
 
 def half_turn(case: WrongCell) -> Hypotheses:
     """An axis was taken to point the opposite way."""
-    finding = case.finding(
+    finding = finding_on(
+        case,
         "half_turn",
         f"{case.symbol} is off by half a turn (180°): check which way the axes point that it is "
         f"measured between.",

@@ -37,13 +37,6 @@ class WrongValue:
     scale: float
     angle: bool
 
-    def finding(
-        self, code: str, hint: str, values: dict[str, float | str] | None = None
-    ) -> Finding:
-        """A finding with the sentence that gives the answer away."""
-        correction = f"It should be {self.expected_text}." if self.expected_text else ""
-        return Finding(code, hint, correction, values=values)
-
     @property
     def constants(self) -> tuple[Numbers, Numbers]:
         """The actual and the expected value, as hypotheses are compared with them."""
@@ -67,6 +60,14 @@ class WrongValue:
             return bool(np.abs(error).max() <= hypothesis.tolerance)
         # As plain numbers: of −180° for 180° the sign is said to be wrong.
         return self.equal(actual, answer) and not same(expected, answer, self.scale)
+
+
+def finding_on(
+    case: WrongValue, code: str, hint: str, values: dict[str, float | str] | None = None
+) -> Finding:
+    """A finding with the correction of the wrong value."""
+    correction = f"It should be {case.expected_text}." if case.expected_text else ""
+    return Finding(code, hint, correction, values=values)
 
 
 @dataclass(frozen=True)
@@ -163,7 +164,8 @@ def undefined(case: WrongValue) -> Finding | None:
         return None
     at = case.samples.at(int(bad[0]), case.expression.symbols)
     where = ", ".join(f"{name} = {number:g}" for name, number in at.items())
-    return case.finding(
+    return finding_on(
+        case,
         "undefined",
         f"{case.expression.text()} has no value{' at ' if where else ''}{where}: it divides by "
         f"zero, takes the root of a negative number, or grows beyond all bounds.",
@@ -174,4 +176,4 @@ def undefined(case: WrongValue) -> Finding | None:
 def differs(case: WrongValue, hint: str) -> Finding:
     """``hint`` and one counterexample, for a value that no known misconception explains."""
     at = case.samples.at(0, case.expression.symbols)
-    return case.finding(UNEXPLAINED, hint, {**at, "yours": float(f"{case.actual[0]:.4g}")})
+    return finding_on(case, UNEXPLAINED, hint, {**at, "yours": float(f"{case.actual[0]:.4g}")})
