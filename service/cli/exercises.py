@@ -12,8 +12,7 @@ from rich.text import Text
 from service.catalogue import Exercise
 from service.cli import check, new
 from service.cli.solution import write_solution
-from service.cli.terminal import catalogue_or_exit, give_up, stdout
-from service.submissions import UnknownExerciseError, find_exercise
+from service.cli.terminal import catalogue_or_exit, exercise_or_exit, stdout
 
 commands = typer.Typer(help="The catalogue of exercises.", no_args_is_help=True)
 
@@ -38,10 +37,7 @@ def show_exercise(
     ] = False,
 ) -> None:
     """Show one exercise: its statement, symbols and parts. No answer, unless it is asked for."""
-    try:
-        exercise = find_exercise(catalogue_or_exit(), exercise_id)
-    except UnknownExerciseError as error:
-        give_up(f"{error} Known are: {', '.join(error.known)}.")
+    exercise = exercise_or_exit(exercise_id)
     console = stdout()
     if solution or latex:
         write_solution(exercise, console, latex=latex)

@@ -1,7 +1,7 @@
 """`dh-grader grade`: submissions in files, graded here and now."""
 
 import io
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final
@@ -11,11 +11,11 @@ from rich.console import Console
 
 from service.catalogue import Exercise
 from service.cli.submission_files import UnusableFileError, read_submission
-from service.cli.terminal import UNUSABLE, catalogue_or_exit, complain, give_up, stdout
+from service.cli.terminal import UNUSABLE, complain, exercise_or_exit, give_up, stdout
 from service.formats import FORMATS
 from service.formats.text import visible
 from service.grading import FeedbackLevel, Report, UnknownPartError, grade
-from service.submissions import UnknownExerciseError, find_exercise, nearest
+from service.submissions import nearest
 
 BELOW_PASS_MARK = 1
 
@@ -28,15 +28,6 @@ else:
         "ReportFormat", {name: name for name in sorted(FORMATS, key=lambda name: name != "text")}
     )
 _TEXT: Final = next(iter(ReportFormat))
-
-
-@dataclass(frozen=True, slots=True)
-class Graded:
-    """The result for one file: a report, or the reason why there is none."""
-
-    file: Path
-    report: Report | None
-    error: str = ""
 
 
 def command(
@@ -76,28 +67,18 @@ def command(
 
     Exit code 2: a file, exercise or part is unusable; other files are graded all the same.
     """
-    chosen = _restricted(_exercise(exercise), part)
-    graded = [_graded(file, chosen, part, feedback) for file in files]
-    for result in graded:
-        if result.error:
-            complain(f"{result.file}: {result.error}")
+    chosen = _restricted(exercise_or_exit(exercise), part)
+    results = [(str(file), _graded(file, chosen, part, feedback)) for file in files]
+    for name, result in results:
+        if isinstance(result, str):
+            complain(f"{name}: {result}")
     page = FORMATS[output_format.value]
-    results = [(str(each.file), each.report or each.error) for each in graded]
     if output is None:
         typer.echo(page(results, stdout()), nl=False)
     else:
-        _save(
-            page(results, Console(file=io.StringIO(), width=80, highlight=False, markup=False)),
-            output,
-        )
-    raise SystemExit(max(_exit_code(result, pass_mark) for result in graded))
-
-
-def _exercise(exercise_id: str) -> Exercise:
-    try:
-        return find_exercise(catalogue_or_exit(), exercise_id)
-    except UnknownExerciseError as error:
-        give_up(f"{error} Known are: {', '.join(error.known)}.")
+        console = Console(file=io.StringIO(), width=80, highlight=False, markup=False)
+        _save(page(results, console), output)
+    raise SystemExit(max(_exit_code(result, pass_mark) for _, result in results))
 
 
 def _restricted(exercise: Exercise, part_id: str | None) -> Exercise:
@@ -115,25 +96,26 @@ def _restricted(exercise: Exercise, part_id: str | None) -> Exercise:
 
 def _graded(
     file: Path, exercise: Exercise, part: str | None, feedback: FeedbackLevel | None
-) -> Graded:
+) -> Report | str:
+    """The report on a file, or the reason why there is none."""
     try:
         submission = read_submission(file, part).submission()
         if feedback is not None:
             submission = replace(submission, feedback=feedback)
-        return Graded(file, grade(exercise, submission))
+        return grade(exercise, submission)
     except UnusableFileError as error:
-        return Graded(file, None, str(error))
+        return str(error)
     except UnknownPartError as error:
         known = ", ".join(error.known)
         name = visible(error.unknown[:60])
-        return Graded(file, None, f"answers {name!r}, but {exercise.id} has only {known}")
+        return f"answers {name!r}, but {exercise.id} has only {known}"
 
 
-def _exit_code(result: Graded, pass_mark: float) -> int:
-    if result.report is None:
+def _exit_code(result: Report | str, pass_mark: float) -> int:
+    if isinstance(result, str):
         return UNUSABLE
     # Scores are rounded to six digits, so 1/3 passes a pass mark of 0.33333333.
-    return 0 if result.report.score >= pass_mark - 5e-7 else BELOW_PASS_MARK
+    return 0 if result.score >= pass_mark - 5e-7 else BELOW_PASS_MARK
 
 
 def _save(content: bytes, output: Path) -> None:

@@ -9,6 +9,7 @@ from rich.console import Console
 
 from service.catalogue import CatalogueError, Exercise, load_catalogue
 from service.settings import Settings, SettingsError, load_settings
+from service.submissions import UnknownExerciseError, find_exercise
 
 UNUSABLE = 2
 
@@ -44,3 +45,11 @@ def catalogue_or_exit() -> Mapping[str, Exercise]:
         return load_catalogue(*settings_or_exit().exercises_dir)
     except CatalogueError as error:
         give_up(str(error))
+
+
+def exercise_or_exit(exercise_id: str) -> Exercise:
+    """The exercise with this id; ends the process where there is none."""
+    try:
+        return find_exercise(catalogue_or_exit(), exercise_id)
+    except UnknownExerciseError as error:
+        give_up(f"{error} Known are: {', '.join(error.known)}.")
