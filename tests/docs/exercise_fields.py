@@ -3,11 +3,14 @@
 ``python -m tests.docs.exercise_fields > docs/exercise-fields.md`` writes it anew.
 """
 
+import ast
 import inspect
 import json
 import re
 import sys
+import textwrap
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import pairwise
 from typing import Any, Final
 
 from pydantic import BaseModel
@@ -124,7 +127,7 @@ def _section(heading: str, model: type[BaseModel], text: str = "", first: str = 
     }
     blocks = [heading, text or _markdown(inspect.getdoc(model) or "")]
     if fields:
-        blocks.append("\n".join(_rows(fields, schema)))
+        blocks.append("\n".join(_rows(fields, schema, meanings(model))))
     examples = [
         f"{field.alias or name} = {_EXAMPLES[f'{model.__name__}.{name}']}"
         for name, field in model.model_fields.items()
@@ -135,13 +138,27 @@ def _section(heading: str, model: type[BaseModel], text: str = "", first: str = 
     return "\n\n".join(blocks)
 
 
-def _rows(fields: Mapping[str, FieldInfo], schema: Schema) -> Iterator[str]:
+def meanings(model: type[BaseModel]) -> dict[str, str]:
+    """The text below each key of a model, by the key."""
+    [tree] = ast.parse(textwrap.dedent(inspect.getsource(model))).body
+    assert isinstance(tree, ast.ClassDef)
+    found = {}
+    for field, text in pairwise(tree.body):
+        match field, text:
+            case ast.AnnAssign(target=ast.Name(name)), ast.Expr(ast.Constant(str(meaning))):
+                found[model.model_fields[name].alias or name] = inspect.cleandoc(meaning)
+    return found
+
+
+def _rows(
+    fields: Mapping[str, FieldInfo], schema: Schema, meaning: Mapping[str, str]
+) -> Iterator[str]:
     yield "| Key | Type | Default | Meaning |"
     yield "|---|---|---|---|"
     for key, field in fields.items():
         type_ = _type(schema["properties"][key], schema.get("$defs", {}))
         default = "required" if field.is_required() else _default(field.default)
-        yield f"| `{key}` | {type_} | {default} | {_markdown(field.description or '')} |"
+        yield f"| `{key}` | {type_} | {default} | {_markdown(meaning[key])} |"
 
 
 def _markdown(text: str) -> str:
