@@ -40,6 +40,9 @@ Screw = tuple[Formula, Formula, Formula, Formula, Formula, Formula]
 
 
 class StrictModel(BaseModel):
-    """A table of the file; an unknown key is a fault. The text below a key is its meaning."""
+    """A table of the file; an unknown key is a fault.
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    The text below a key is its meaning, from which docs/exercise-fields.md is made.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)

@@ -3,11 +3,14 @@
 ``python -m tests.docs.exercise_fields > docs/exercise-fields.md`` writes it anew.
 """
 
+import ast
 import inspect
 import json
 import re
 import sys
-from collections.abc import Iterator, Mapping
+import textwrap
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import pairwise
 from typing import Any, Final
 
 from pydantic import BaseModel
@@ -15,7 +18,7 @@ from pydantic.fields import FieldInfo
 
 from service.catalogue.part import PartSpec, PosePartSpec
 from service.catalogue.parts import SPECS
-from service.catalogue.refusals import alternatives, table_in
+from service.catalogue.refusals import table_in
 from service.catalogue.schema import (
     CheckSpec,
     ExerciseSpec,
@@ -124,7 +127,7 @@ def _section(heading: str, model: type[BaseModel], text: str = "", first: str = 
     }
     blocks = [heading, text or _markdown(inspect.getdoc(model) or "")]
     if fields:
-        blocks.append("\n".join(_rows(fields, schema)))
+        blocks.append("\n".join(_rows(fields, schema, meanings(model))))
     examples = [
         f"{field.alias or name} = {_EXAMPLES[f'{model.__name__}.{name}']}"
         for name, field in model.model_fields.items()
@@ -135,13 +138,27 @@ def _section(heading: str, model: type[BaseModel], text: str = "", first: str = 
     return "\n\n".join(blocks)
 
 
-def _rows(fields: Mapping[str, FieldInfo], schema: Schema) -> Iterator[str]:
+def meanings(model: type[BaseModel]) -> dict[str, str]:
+    """The text below each key of a model, by the key."""
+    [tree] = ast.parse(textwrap.dedent(inspect.getsource(model))).body
+    assert isinstance(tree, ast.ClassDef)
+    found = {}
+    for field, text in pairwise(tree.body):
+        match field, text:
+            case ast.AnnAssign(target=ast.Name(name)), ast.Expr(ast.Constant(str(meaning))):
+                found[model.model_fields[name].alias or name] = inspect.cleandoc(meaning)
+    return found
+
+
+def _rows(
+    fields: Mapping[str, FieldInfo], schema: Schema, meaning: Mapping[str, str]
+) -> Iterator[str]:
     yield "| Key | Type | Default | Meaning |"
     yield "|---|---|---|---|"
     for key, field in fields.items():
         type_ = _type(schema["properties"][key], schema.get("$defs", {}))
         default = "required" if field.is_required() else _default(field.default)
-        yield f"| `{key}` | {type_} | {default} | {_markdown(field.description or '')} |"
+        yield f"| `{key}` | {type_} | {default} | {_markdown(meaning[key])} |"
 
 
 def _markdown(text: str) -> str:
@@ -170,14 +187,11 @@ def _type(schema: Schema, defs: Mapping[str, Schema], ending: str = "") -> str:
         case {"$ref": str(reference)}:
             return _type(defs[reference.rpartition("/")[2]], defs, ending)
         case {"enum": choices} | {"const": choices}:
-            listed = choices if isinstance(choices, list) else [choices]
-            return alternatives(f"`{json.dumps(each)}`" for each in listed)
+            return _either(f"`{json.dumps(each)}`" for each in _as_list(choices))
         case {"anyOf": forms}:
             names = [_type(form, defs, ending) for form in forms if form != _NULL]
             # A formula may be given as a number.
-            return alternatives(names).replace(
-                f"text{ending} or number{ending}", f"formula{ending}"
-            )
+            return _either(names).replace(f"text{ending} or number{ending}", f"formula{ending}")
         case {"type": "array", "prefixItems": [first, *more]}:
             return f"list{ending} of {len(more) + 1} {_type(first, defs, 's')}"
         case {"type": "array", "items": entry}:
@@ -185,6 +199,15 @@ def _type(schema: Schema, defs: Mapping[str, Schema], ending: str = "") -> str:
         case _:
             name = _SIMPLE.get(schema.get("type", "object"), "table")
             return f"{name}{'' if name.startswith('`') else ending}{_bounds(schema)}"
+
+
+def _as_list(value: object) -> list[object]:
+    return value if isinstance(value, list) else [value]
+
+
+def _either(names: Iterable[str]) -> str:
+    *others, last = names
+    return f"{', '.join(others)} or {last}" if others else last
 
 
 def _bounds(schema: Schema) -> str:
