@@ -70,7 +70,7 @@ def explained(
     found = explaining(case, combine=combine)
     intended = [_intended(repaired, case.written, roles, grading) for repaired in found]
     wrong = judgement.matches < Match.ROUNDED
-    agree = [each for each in intended if each.table is None or (each.changed == wrong).all()]
+    agree = [each for each in intended if each.table is None or np.array_equal(each.changed, wrong)]
     if agree:
         return _findings(agree), judgement
     nearest = min(intended, key=lambda each: each.departures, default=None)

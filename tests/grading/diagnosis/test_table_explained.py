@@ -1,34 +1,46 @@
-"""Each misconception of a table is named in every robot that it changes."""
+"""The explanation of a whole table, beside the judgement of its cells."""
 
 from collections.abc import Callable
 
-import pytest
+from service.catalogue import Exercise
+from service.grading import Verdict
+from tests.grading.support.submitting import handed_in, part, table
 
-from service.grading import Severity
-from tests.frame_choice.misconceptions import (
-    MISCONCEPTIONS,
-    Misconception,
-    named_in_all_robots,
-    report,
-)
-from tests.frame_choice.robots import ROBOTS, Robot
+SKEW_RPR = """
+title = "Skew RPR"
+source = "made for a test"
+statement = "The table of the arm."
+
+[robot]
+structure = "RPR"
+convention = "standard"
+joints = ["q1", "q2", "q3"]
+table = [["l1", "pi/3", "h", "q1"], ["l2", "-pi/4", "q2", "pi/6"], ["l3", "pi/2", "h/2", "q3"]]
+
+[symbols]
+l1 = { kind = "length", description = "length", range = [0.5, 2.5] }
+l2 = { kind = "length", description = "length", range = [0.5, 2.5] }
+l3 = { kind = "length", description = "length", range = [0.5, 2.5] }
+h = { kind = "length", description = "length", range = [0.5, 2.5] }
+
+[[parts]]
+id = "table"
+kind = "dh_table"
+title = "Table"
+convention = "either"
+frames = "free"
+"""
 
 
-@pytest.mark.parametrize(
-    ("misconception", "names"), MISCONCEPTIONS, ids=lambda x: getattr(x, "__name__", "")
-)
-def test_a_misconception_is_named_in_every_robot_that_it_changes(
-    misconception: Misconception, names: set[str], figure: Callable[[str], None]
+def test_an_explanation_of_more_rows_than_were_judged(
+    make_exercise: Callable[[str], Exercise],
 ) -> None:
-    found = named_in_all_robots(misconception, names)
-    figure(f"{misconception.__name__}: named in {found.named} of {found.total}")
-    assert found.total
-    assert found.named >= 0.95 * found.total, found.missed[:6]
-
-
-@pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
-def test_the_reference_draws_no_word_of_an_error(robot: Robot) -> None:
-    part = report(robot, robot.rows)
-    messages = [*part.feedback, *(m for row in part.rows for c in row.cells for m in c.feedback)]
-    assert not [message for message in messages if message.severity is Severity.ERROR]
-    assert part.points == part.max_points
+    # Reversed and with a row too many: mostly wrong, so judged by the reference's three rows.
+    rows = [
+        ("l3", "pi/2", "0", "0"),
+        ("l1", "pi/3", "q2", "pi/6"),
+        ("l2", "-pi/4", "h/2", "q3"),
+        ("0", "0", "h", "q1"),
+    ]
+    report = part(handed_in(make_exercise(SKEW_RPR), {"table": table(rows)}, "degrees"), "table")
+    assert report.verdict is Verdict.PARTIAL
