@@ -4,7 +4,7 @@ The kinds themselves are the modules of ``parts/``.
 """
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
@@ -24,12 +24,14 @@ class PartSpec(StrictModel, ABC):
 
     - ``answer_fields``: the fields that may hold the answer itself, in place of the robot;
     - ``can_be_followed``: whether its answer is a chain that a later part can follow from;
+    - ``pasted_as``: what a pasted answer is, a table or a matrix of numbers or angles;
     - ``holds_links``: whether its answer holds the link transforms;
     - ``compared_by_formulas``: whether two parts may have one answer and still be two tasks.
     """
 
     answer_fields: ClassVar[tuple[str, ...]] = ("expected",)
     can_be_followed: ClassVar[bool] = False
+    pasted_as: ClassVar[Literal["table", "numbers", "angles"]] = "numbers"
     holds_links: ClassVar[bool] = False
     compared_by_formulas: ClassVar[bool] = False
 

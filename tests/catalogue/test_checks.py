@@ -110,7 +110,7 @@ SAID: dict[tuple[str, str], list[str]] = {
     ('"0", "d2 + a1", "0"]', '"0", "d2 + a1"]'): [
         "robot.table[1][3] (line 11): Field required: write entry 4 as well",
     ],
-    ('kind = "transform"\n', ""): ["parts[1] (line 24): *: write kind = *, one of dh_row, *"],
+    ('kind = "transform"\n', ""): ["parts[1] (line 24): *: write kind = *, one of *"],
     ('id = "pose"', 'id = "The Pose"'): ["parts[1].id (line 25): *: write small letters *"],
     ("joints =", "links = 3\njoints ="): ["robot.links (line 8): * here; the keys are *"],
 }

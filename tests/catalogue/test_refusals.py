@@ -5,12 +5,11 @@ from pathlib import Path
 import pytest
 
 from service.catalogue import CatalogueError, load_exercise
+from service.catalogue.parts import SPECS
 from tests.catalogue.test_faults import VALID, write
 
-KINDS = (
-    "'dh_row', 'dh_table', 'euler_angles', 'link_transforms', 'matrix', 'position', 'rotation', "
-    "'screw_axes', 'transform' or 'vector'"
-)
+*_FIRST, _LAST = map(repr, sorted(SPECS))
+KINDS = f"{', '.join(_FIRST)} or {_LAST}"
 CONVENTIONS = "'standard', 'modified' or 'either'"
 FRAMES = "'base' or 'tool', or input should be a valid integer"
 SEQUENCES = (

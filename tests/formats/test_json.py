@@ -67,7 +67,7 @@ def test_a_value_that_json_does_not_have_is_still_json() -> None:
 
 
 def test_the_formats_are_found_by_their_names() -> None:
-    assert set(FORMATS) == {"json", "text"}
+    assert {"json", "text"} <= set(FORMATS)
     console = Console(file=io.StringIO(), width=80)
     graded = [
         GradedFile(Path("a.json"), REPORT),

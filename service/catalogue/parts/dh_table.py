@@ -46,6 +46,8 @@ class DhTableSpec(TablePartSpec):
     positive directions may be, too.
     """
 
+    pasted_as = "table"
+
     kind: Literal["dh_table"]
     convention: Convention | Literal["either"]
     """"standard" (distal) or "modified" (proximal); with "either" the answer says which it

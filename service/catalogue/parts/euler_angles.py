@@ -14,6 +14,8 @@ from service.catalogue.shapes import ListShape, list_shape
 class EulerAnglesSpec(PosePartSpec):
     """Three angles that describe a rotation; every triple of the same rotation is right."""
 
+    pasted_as = "angles"
+
     kind: Literal["euler_angles"]
     sequence: Literal[
         "RPY", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX", "XYX", "XZX", "YXY", "YZY", "ZXZ", "ZYZ"

@@ -67,17 +67,17 @@ def preview_pasted(
 ) -> PastedPreview:
     """The reading of ``text`` as the answer to a part, exactly as grading reads it.
 
-    A part of kind ``dh_table`` takes a table, any other a matrix. A matrix of any size is read:
-    grading checks the size. Raises LookupError for a part that does not exist.
+    The part says whether a table is pasted or a matrix. A matrix of any size is read: grading
+    checks the size. Raises LookupError for a part that does not exist.
     """
     spec = exercise.part(part)
     if spec is None:
         raise LookupError(f"exercise {exercise.id!r} has no part {part!r}")
     reader = Reader.of(exercise, draw(exercise, text), angle_unit)
     try:
-        if spec.kind == "dh_table":
+        if spec.pasted_as == "table":
             return _table(text, reader)
-        return _matrix(text, "angle" if spec.kind == "euler_angles" else "number", reader)
+        return _matrix(text, "angle" if spec.pasted_as == "angles" else "number", reader)
     except GridError as error:
         return PastedPreview(problem=Problem(error.code, error.message, error.span))
 
