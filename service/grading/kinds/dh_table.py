@@ -14,7 +14,7 @@ from service.grading.judging.own_frames.best_roles import roles_in
 from service.grading.judging.report_rows import cell_report
 from service.grading.judging.table import JudgedRow, Judgement, judged_table
 from service.grading.part import Grading, Judged, StudentChain
-from service.grading.reading.table import StudentRow, StudentTable, read_table, values_of
+from service.grading.reading.table import StudentRow, StudentTable, read_table
 from service.grading.report import CellReport, RowReport, Severity, Verdict, row_report
 from service.grading.samples import Samples
 from service.kinematics.chain import COLUMNS, frames, links
@@ -48,8 +48,8 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
         _row_reports(judgement, part.points, grading, found),
         (*messages, *missing, *extra),
         lost=judgement.lost,
-        stands_still=stands_still(values_of(answer.rows)),
-        chain=lambda: _chain(answer.rows, first, convention),
+        stands_still=stands_still(answer.values),
+        chain=lambda: _chain(answer, first, convention),
     )
 
 
@@ -94,19 +94,18 @@ def _convention(
 
 
 def _chain(
-    rows: tuple[StudentRow, ...], judgement: Judgement, convention: Convention
+    answer: StudentTable, judgement: Judgement, convention: Convention
 ) -> StudentChain | None:
     """A table as a chain; None where not all of it has a value."""
-    values = values_of(rows)
-    if np.isnan(values).any():
+    if np.isnan(answer.values).any():
         return None
 
     def tool_at(samples: Samples) -> Matrices:
-        table = np.array([row.values_at(samples) for row in rows])
+        table = np.array([row.values_at(samples) for row in answer.rows])
         return np.asarray(frames(table, convention)[-1])
 
     return StudentChain(
-        frames(values, convention),
+        frames(answer.values, convention),
         tool_at,
         nearest_links=links(np.array([row.expected for row in judgement.rows]), convention),
     )

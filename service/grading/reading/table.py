@@ -69,9 +69,13 @@ class StudentRow:
 
 @dataclass(frozen=True, slots=True)
 class StudentTable:
-    """A table as read. ``convention`` is what the answer itself says, if it says so."""
+    """A table as read: its rows, and the numbers of all of them, ``(rows, 4, SAMPLES)``.
+
+    ``convention`` is what the answer itself says, if it says so.
+    """
 
     rows: tuple[StudentRow, ...]
+    values: Table
     convention: Convention | None
     findings: tuple[Finding, ...] = ()
 
@@ -107,7 +111,7 @@ def read_table(answer: object, reader: Reader) -> StudentTable:
 def _pasted(text: str, stated: object, reader: Reader) -> StudentTable:
     convention, findings = _convention(stated)
     if not text.strip():
-        return StudentTable((), convention, findings)
+        return StudentTable((), _NO_ROWS, convention, findings)
     try:
         pasted = read_pasted_table(text, reader)
     except GridError as error:
@@ -125,9 +129,12 @@ def _table(
     reader: Reader,
 ) -> StudentTable:
     if not read:
-        return StudentTable((), convention, findings)
+        return StudentTable((), _NO_ROWS, convention, findings)
     values = _values(read, reader.samples)
-    return StudentTable(tuple(map(StudentRow, read, values)), convention, findings)
+    return StudentTable(tuple(map(StudentRow, read, values)), values, convention, findings)
+
+
+_NO_ROWS: Table = np.empty((0, len(COLUMNS), 0))
 
 
 def _values(rows: Sequence[tuple[Entry, ...]], samples: Samples) -> Table:
