@@ -17,8 +17,8 @@ def routes(catalogue: Catalogue) -> APIRouter:
     router = APIRouter(prefix="/v1/exercises", tags=["grading"])
 
     # On the event loop and not in a thread: a grading is a millisecond of pure Python, which
-    # threads cannot share, and a hop there and back costs a tenth of that. The limits on a body
-    # keep the longest below 50 ms.
+    # threads cannot share, and a hop there and back costs a tenth of that. A body that was
+    # made to be costly still takes up to a second here.
     @router.post(
         "/{exercise_id}/grade",
         **posting(GradeRequest, Report, "grade", HTTPStatus.NOT_FOUND),
