@@ -8,6 +8,7 @@ from pydantic import BaseModel, Field
 
 from service.api.lookup import Catalogue, exercise_or_404
 from service.api.openapi import refusals
+from service.catalogue.fields import Marking
 from service.catalogue.parts import AnyShape
 from service.expressions import Kind
 
@@ -56,7 +57,7 @@ class PartView(BaseModel):
     prompt: str
     kind: str
     points: float
-    all_or_nothing: bool
+    marking: Marking
     follows: str | None = Field(
         None,
         description="The earlier part that this one follows from; left out where there is none.",

@@ -31,6 +31,7 @@ Identifier = Annotated[
     advice('write small letters and digits, with - or _ between them, such as "link-2"'),
 ]
 GivenOrFree = Literal["given", "free"]
+Marking = Literal["content", "cells", "rows", "whole"]
 FrameName = Literal["base", "tool"] | Annotated[StrictInt, Field(ge=0)]
 
 Triple = tuple[Formula, Formula, Formula]

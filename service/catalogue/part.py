@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from service.catalogue.fields import FrameName, Identifier, NotBool, StrictModel, Text
+from service.catalogue.fields import FrameName, Identifier, Marking, NotBool, StrictModel, Text
 from service.catalogue.formulas import FieldError, WrittenFormulas
 from service.catalogue.robot import Robot
 from service.catalogue.screw_robot import Reference
@@ -43,8 +43,10 @@ class PartSpec(StrictModel, ABC):
     """The task, in one sentence or more."""
     points: Annotated[float, Field(gt=0, le=1000), NotBool] = 1.0
     """The points for a right answer; its rows share them."""
-    all_or_nothing: bool = False
-    """Whether an answer earns its points only when all of it is right."""
+    marking: Marking = "content"
+    """How the points are shared: "content" by what one has to know (a lazy answer earns little),
+    "cells" evenly over the cells, "rows" to rows that are all right, "whole" to an answer that is
+    all right."""
     follows: Identifier | None = None
     """The id of an earlier part that this one builds on. An answer that is wrong for the robot,
     but right for the student's own answer to that part, earns its points."""

@@ -7,9 +7,10 @@ from functools import cached_property
 from service.catalogue import Exercise, PartSpec
 from service.expressions import AngleUnit
 from service.grading.feedback import FeedbackLevel, UnreadableAnswerError
-from service.grading.follow_through import STANDS_STILL, can_follow_through, follows_from
+from service.grading.follow_through import STANDS_STILL, can_carry, follows_from
+from service.grading.judging.marks import part_report, share_by_content, unjudged_report
 from service.grading.kinds import KINDS
-from service.grading.part import Grading, Judged, StudentChain, part_report, unjudged_report
+from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.entry import Reader
 from service.grading.report import PartReport, Report, Verdict, rounded_points
 from service.grading.samples import draw
@@ -69,7 +70,10 @@ def grade(exercise: Exercise, submission: Submission) -> Report:
 
 @dataclass(frozen=True)
 class _Graded:
-    """A part that was graded; ``judged`` is None where there was nothing to judge."""
+    """A part that was graded; ``judged`` is None where there was nothing to judge.
+
+    Where it follows from the student's own earlier answer, it was judged by that one.
+    """
 
     part: PartSpec
     report: PartReport
@@ -79,6 +83,16 @@ class _Graded:
     def chain(self) -> StudentChain | None:
         """The answer as a chain that later parts may follow from."""
         return None if self.judged is None else self.judged.chain()
+
+    def carries(self, share: float, grading: Grading) -> bool:
+        """Whether a later part may follow from the answer.
+
+        It must have earned its share of the points by what one has to know, however the part is
+        marked, and be an arm of the robot's joints.
+        """
+        if self.judged is None or self.chain is None or share_by_content(self.judged) < share:
+            return False
+        return can_carry(self.chain, grading)
 
 
 def _graded(
@@ -100,18 +114,21 @@ def _graded(
     if read is None:
         return _Graded(part, unjudged_report(part, Verdict.MISSING), None)
     judged = kind.judge(part, read, grading)
+    if judged.stands_still:
+        messages = grading.visible((STANDS_STILL,))
+        judged = replace(judged, feedback=(*messages, *judged.feedback))
     report = part_report(part, judged)
-    if report.points and judged.stands_still:
-        return _Graded(part, _without_points(report, grading), judged)
-    if report.verdict is Verdict.CORRECT or followed is None or followed.chain is None:
+    if report.verdict is Verdict.CORRECT or judged.stands_still or followed is None:
         return _Graded(part, report, judged)
-    if can_follow_through(part, followed.report, followed.chain, grading):
-        by_student = part_report(part, kind.judge(part, read, replace(grading, following=True)))
-        if by_student.points > report.points:
+    if followed.carries(part.follows_from, grading):
+        by_student = kind.judge(part, read, replace(grading, following=True))
+        following = part_report(part, by_student)
+        if following.points > report.points:
             messages = grading.visible((follows_from(followed.part),))
             report = replace(
-                by_student, follow_through=True, feedback=(*messages, *by_student.feedback)
+                following, follow_through=True, feedback=(*messages, *following.feedback)
             )
+            judged = replace(by_student, chain=judged.chain)
     return _Graded(part, report, judged)
 
 
@@ -124,16 +141,6 @@ def _followed(
         if answers.get(part.id) is not None:
             return earlier[part.id]
     return None
-
-
-def _without_points(report: PartReport, grading: Grading) -> PartReport:
-    """The report on an answer that no joint moves: what is right in it is right by chance."""
-    rows = tuple(replace(row, points=0.0) for row in report.rows)
-    verdict = Verdict.INCORRECT if report.verdict is Verdict.PARTIAL else report.verdict
-    messages = grading.visible((STANDS_STILL,))
-    return replace(
-        report, rows=rows, points=0.0, verdict=verdict, feedback=(*messages, *report.feedback)
-    )
 
 
 def _without_rows(report: PartReport) -> PartReport:

@@ -1,21 +1,13 @@
 """An answer kind: how answers of it are read and judged. One file of ``kinds`` holds each."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from service.catalogue import Exercise, PartSpec
+from service.catalogue import Exercise
 from service.grading.feedback import FeedbackLevel, Finding, visible_messages
 from service.grading.reading.entry import Reader
-from service.grading.report import (
-    Feedback,
-    PartReport,
-    RowReport,
-    Verdict,
-    combined,
-    rounded_points,
-    total_of,
-)
+from service.grading.report import Feedback, RowReport, Verdict
 from service.grading.samples import Samples
 from service.kinematics.transforms import Matrices, inverse
 
@@ -67,19 +59,53 @@ def _no_chain() -> StudentChain | None:
 
 
 @dataclass(frozen=True, slots=True)
+class Content:
+    """The cells of a right answer that one has to know something for: marks are earned by them.
+
+    Both lists are ``(rows, cells)``, as the rows of the report. ``known`` says which cells these
+    are. ``groups`` numbers the group of each cell: a wrong cell costs no more than its group has.
+    With ``besides`` each group is worth a little besides its cells. With ``equal`` all groups are
+    worth the same, however many cells they have. ``most`` is the number of such cells in the
+    reference's own answer, where frames of a student's choice may have more.
+    """
+
+    known: Sequence[Sequence[bool]]
+    groups: Sequence[Sequence[int]]
+    besides: bool = False
+    equal: bool = False
+    most: int | None = None
+
+    @property
+    def count(self) -> int:
+        """The number of these cells."""
+        return sum(map(sum, self.known))
+
+
+@dataclass(frozen=True, slots=True)
 class Judged:
     """An answer that was judged: its rows, and the messages on the part as a whole.
 
-    ``lost`` is the share of the points that is lost beside those of the rows. ``stands_still``
-    says that no joint moves an answer that must move. ``chain`` gives the answer as a chain, if it
+    The rows have no points yet: ``content`` says what their cells are worth. ``slips`` counts those
+    that no cell shows, such as a row too many. ``whole_cost`` is the share of the points that a
+    slip of the whole answer costs, where one explains all its wrong cells. ``stands_still`` says
+    that no joint moves an answer that must move. ``without_extra`` is the same answer judged
+    without rows too many: it earns no more than that. ``chain`` gives the answer as a chain, if it
     is one; it is asked only where another part follows this one.
     """
 
     rows: tuple[RowReport, ...]
+    content: Content
     feedback: tuple[Feedback, ...] = ()
-    lost: float = 0.0
+    slips: int = 0
+    whole_cost: float | None = None
     stands_still: bool = False
+    without_extra: "Judged | None" = None
     chain: Callable[[], StudentChain | None] = _no_chain
+
+    @property
+    def is_right(self) -> bool:
+        """Whether nothing is wrong, unread or missing."""
+        return not self.slips and all(row.verdict is Verdict.CORRECT for row in self.rows)
 
 
 class AnswerKind(Protocol):
@@ -98,32 +124,3 @@ class AnswerKind(Protocol):
     def judge(self, part: Any, answer: Any, grading: Grading) -> Judged:
         """The judgement on an answer that was read."""
         ...
-
-
-def part_report(part: PartSpec, judged: Judged) -> PartReport:
-    """The report on a part that was judged: the rows share its points."""
-    verdict = combined(row.verdict for row in judged.rows)
-    if judged.lost and verdict is Verdict.CORRECT:
-        verdict = Verdict.PARTIAL
-    earned = total_of(judged.rows) - judged.lost * part.points
-    if verdict is Verdict.CORRECT:
-        earned = part.points
-    elif part.all_or_nothing:
-        earned = 0.0
-    return PartReport(
-        part=part.id,
-        kind=part.kind,
-        verdict=verdict,
-        points=rounded_points(max(0.0, earned)),
-        max_points=part.points,
-        follow_through=False,
-        rows=judged.rows,
-        feedback=judged.feedback,
-    )
-
-
-def unjudged_report(
-    part: PartSpec, verdict: Verdict, feedback: tuple[Feedback, ...] = ()
-) -> PartReport:
-    """The report on a part of which nothing was handed in, or nothing could be read."""
-    return PartReport(part.id, part.kind, verdict, 0.0, part.points, False, (), feedback)

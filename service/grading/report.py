@@ -54,7 +54,7 @@ class CellReport:
 
 @dataclass(frozen=True, slots=True)
 class RowReport:
-    """One row: its cells share its points."""
+    """One row with its cells, and its share of the part's points."""
 
     label: str
     verdict: Verdict
@@ -124,25 +124,8 @@ def rounded_points(points: float) -> float:
     return round(points, 6)
 
 
-def total_of(rows: Iterable[RowReport]) -> float:
-    """The points of all rows. They are rounded to six figures: three thirds of one make one."""
-    return round(sum(row.points for row in rows), 5)
-
-
 def row_report(
-    label: str,
-    max_points: float,
-    cells: tuple[CellReport, ...],
-    feedback: tuple[Feedback, ...] = (),
+    label: str, cells: tuple[CellReport, ...], feedback: tuple[Feedback, ...] = ()
 ) -> RowReport:
-    """A row from its cells, which share its points evenly."""
-    verdicts = [cell.verdict for cell in cells]
-    right = verdicts.count(Verdict.CORRECT)
-    return RowReport(
-        label=label,
-        verdict=combined(verdicts),
-        points=rounded_points(max_points * right / len(cells)) if cells else 0.0,
-        max_points=rounded_points(max_points),
-        cells=cells,
-        feedback=feedback,
-    )
+    """A row from its cells; it has no points yet."""
+    return RowReport(label, combined([cell.verdict for cell in cells]), 0.0, 0.0, cells, feedback)

@@ -12,10 +12,14 @@ EXACT_VALUE: Final = 1e-9
 # A number with three figures: 1.57 for π/2, 0.707 for 1/√2. Relative to its size.
 ROUNDED_VALUE: Final = 1e-3
 
+# A cell of the right answer, and of the lazy one: formulas of the same value.
+SAME_CONTENT: Final = 1e-9
+
 # By how much a value changes with the joints, and by how much it should.
 SAME_MOTION: Final = 1e-6
-# By how much a value must change from sample to sample to depend on the joints at all.
-DEPENDS_ON_JOINTS: Final = 1e-9
+# By how much a value must change from sample to sample to move with the joints at all: joints are
+# drawn from ranges far wider, and 1e-8 q is no motion.
+MOVES: Final = 0.01
 
 # A value, and the same at all samples: then it is a constant.
 CONSTANT: Final = 1e-9
@@ -49,7 +53,9 @@ INTENDED_POSE: Final = 1e-2
 # A matrix, and the link transform of the row that was computed from it.
 LINK_TRANSFORM: Final = 1e-6
 
-# The derivative of a pose by a joint variable: the step of the difference, and the singular value,
-# relative to the largest, that counts as 0 in spite of the error that the step makes.
-JOINT_STEP: Final = 1e-5
-NO_MOTION: Final = 1e-3
+# A student's arm that later parts follow from may hold rounded numbers: its frames and a rigid one,
+# the axis of a joint at two places of the joint, lengths in the exercise's typical length.
+NOT_RIGID: Final = 5e-3
+SAME_AXIS: Final = 2e-2
+# The singular value, relative to the largest, that counts as 0 for such an arm.
+NO_MOTION: Final = 1e-2

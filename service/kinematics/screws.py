@@ -54,6 +54,31 @@ def exponential(screw: Numbers, amount: ArrayLike) -> Matrices:
     return motion
 
 
+def turning_axis(displacement: Matrices, angle: float) -> Numbers:
+    """The screw axis ``(..., 6)`` without pitch about which ``displacement`` turns by ``angle``.
+
+    ``displacement`` is ``(..., 4, 4)``, ``angle`` no multiple of π. What is no such turn gives an
+    axis whose exponential is another motion. Source: *Modern Robotics*, algorithm in 3.3.3.2.
+    """
+    rotation = displacement[..., :3, :3]
+    twice = rotation - np.swapaxes(rotation, -1, -2)
+    omega = np.stack([twice[..., 2, 1], twice[..., 0, 2], twice[..., 1, 0]], axis=-1)
+    omega = omega / (2 * np.sin(angle))
+    squared = skew(omega) @ skew(omega)
+    # The inverse of G(θ), eq. 3.92.
+    inverse = np.eye(3) / angle - skew(omega) / 2
+    inverse = inverse + (1 / angle - 1 / (2 * np.tan(angle / 2))) * squared
+    v = (inverse @ displacement[..., :3, 3:])[..., 0]
+    v = v - omega * (omega * v).sum(axis=-1, keepdims=True)
+    return np.concatenate([omega, v], axis=-1)
+
+
+def sliding_axis(displacement: Matrices, distance: float) -> Numbers:
+    """The screw axis ``(..., 6)`` along which ``displacement`` slides by ``distance``."""
+    v = displacement[..., :3, 3] / distance
+    return np.concatenate([np.zeros_like(v), v], axis=-1)
+
+
 def adjoint(transform: Matrices) -> Matrices:
     """The matrix ``(..., 6, 6)`` that takes a screw axis from the second frame to the first.
 

@@ -56,3 +56,13 @@ def inverse(transform: Matrices) -> Matrices:
     inverted[..., :3, :3] = rotation_transposed
     inverted[..., :3, 3] = -(rotation_transposed @ transform[..., :3, 3:])[..., 0]
     return inverted
+
+
+def is_rigid(transform: Matrices, tolerance: float) -> NDArray[np.bool_]:
+    """Which ``(..., 4, 4)`` are rigid: a right-handed rotation over the last row (0, 0, 0, 1)."""
+    rotation = transform[..., :3, :3]
+    product = rotation @ np.swapaxes(rotation, -1, -2)
+    error = np.abs(product - np.eye(3)).max(axis=(-1, -2))
+    last_row = np.abs(transform[..., 3, :] - [0, 0, 0, 1]).max(axis=-1)
+    right_handed = np.linalg.det(rotation) > 0
+    return np.asarray((np.maximum(error, last_row) < tolerance) & right_handed)

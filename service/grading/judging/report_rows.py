@@ -23,13 +23,12 @@ def entry_rows(
     entries: Sequence[Sequence[Entry]],
     found: NDArray[np.int_],
     slips: Slips,
-    points: float,
     grading: Grading,
     *,
     labels: Sequence[str] | None = None,
     remarks: Mapping[int, Finding] | None = None,
 ) -> tuple[RowReport, ...]:
-    """Rows of entries that share ``points``; ``found`` is the Match of each, ``(rows, columns)``.
+    """Rows of entries; ``found`` is the Match of each, ``(rows, columns)``.
 
     Rows are labelled from "1" on unless ``labels`` says otherwise, columns from "1" on.
     ``remarks`` are findings on whole rows.
@@ -38,7 +37,6 @@ def entry_rows(
     return tuple(
         row_report(
             label,
-            points / len(entries),
             tuple(
                 cell_report(entry, (label, str(j + 1)), match, slips.get((i, j)), grading)
                 for j, (entry, match) in enumerate(zip(row, found[i].tolist(), strict=True))
@@ -50,11 +48,11 @@ def entry_rows(
 
 
 def value_rows(
-    student: StudentValues, found: NDArray[np.int_], slips: Slips, points: float, grading: Grading
+    student: StudentValues, found: NDArray[np.int_], slips: Slips, grading: Grading
 ) -> tuple[RowReport, ...]:
     """Rows of one value each; ``found`` is the Match of each, ``(n,)``."""
     column = [[entry] for entry in student.entries]
-    return entry_rows(column, found[:, None], slips, points, grading)
+    return entry_rows(column, found[:, None], slips, grading)
 
 
 @lru_cache(maxsize=64)

@@ -16,6 +16,7 @@ from service.grading.diagnosis.table_cell import diagnose
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, WrongCell
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.formula_text import formula_text
+from service.grading.judging.content import known_cells, of_one_row
 from service.grading.judging.expected import given_values
 from service.grading.judging.report_rows import cell_report
 from service.grading.misconception import diagnosed
@@ -24,7 +25,7 @@ from service.grading.reading.entry import MISSING
 from service.grading.reading.table import IS_ANGLE, StudentRow, read_table
 from service.grading.reading.table_json import canonical_table
 from service.grading.report import CellReport, Verdict, row_report
-from service.kinematics.chain import COLUMNS
+from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh_row import row
 from service.kinematics.transforms import Matrices, Numbers
 
@@ -45,17 +46,21 @@ def judge(part: DhRowSpec, answer: RowOrNone, grading: Grading) -> Judged:
     """One row, of four cells or of one for "none"."""
     transform = np.moveaxis(given_values(part, grading), -1, 0)
     broken = violated(transform, part.convention, grading.exercise.length_scale)
+    known = np.array([True])
     if isinstance(answer, str):
         verdict = Verdict.CORRECT if broken else Verdict.INCORRECT
         cells: tuple[CellReport, ...] = (CellReport(NONE, verdict),)
         findings = [] if broken else [has_a_row(part.convention)]
     elif broken:
         cells = _cells(answer, np.full(len(COLUMNS), int(Match.DIFFERENT)), {}, grading)
+        known = np.full(len(COLUMNS), True)
         findings = broken
     else:
-        cells, findings = _against_the_row(answer, transform, part, grading)
+        expected = row(transform, part.convention)
+        cells, findings = _against_the_row(answer, expected, transform, part, grading)
+        known = known_cells(expected, 0.0, _scale(grading), IS_ANGLE[:, None])
     messages = grading.visible(tuple(findings), LABEL)
-    return Judged((row_report(LABEL, part.points, cells, messages),))
+    return Judged((row_report(LABEL, cells, messages),), of_one_row(known))
 
 
 def _cells(
@@ -69,12 +74,10 @@ def _cells(
 
 
 def _against_the_row(
-    written: StudentRow, transform: Matrices, part: DhRowSpec, grading: Grading
+    written: StudentRow, expected: Table, transform: Matrices, part: DhRowSpec, grading: Grading
 ) -> tuple[tuple[CellReport, ...], list[Finding]]:
     """The cells held against the row that the transform has, and what explains all of them."""
-    expected = row(transform, part.convention)
-    length_scale = grading.exercise.length_scale
-    scale = np.where(IS_ANGLE, 1.0, length_scale)
+    scale = _scale(grading)
     found = matches(written.values, expected, scale, IS_ANGLE[:, None], rounded=written.rounded)
     explained: Finding | None = None
     if (found < Match.ROUNDED).any() and np.isfinite(written.values).all():
@@ -88,6 +91,11 @@ def _against_the_row(
     if explained is not None:
         slips = {i: slip for i, slip in slips.items() if slip.code != UNEXPLAINED}
     return _cells(written, found, slips, grading), [explained] if explained else []
+
+
+def _scale(grading: Grading) -> Numbers:
+    """The size that each cell is measured against, ``(4,)``."""
+    return np.where(IS_ANGLE, 1.0, grading.exercise.length_scale)
 
 
 def _slip(

@@ -10,17 +10,21 @@ from service.grading.diagnosis.table_cell import diagnose_cells
 from service.grading.diagnosis.table_explained import explained, freedom_lost
 from service.grading.feedback import Finding
 from service.grading.follow_through import stands_still
-from service.grading.judging.own_frames.best_roles import roles_in
+from service.grading.judging.own_frames.best_roles import roles_in, rows_of_mechanism
 from service.grading.judging.report_rows import cell_report
-from service.grading.judging.table import JudgedRow, Judgement, judged_table
+from service.grading.judging.table import JudgedRow, Judgement, judged_table, table_content
 from service.grading.part import Grading, Judged, StudentChain
-from service.grading.reading.table import StudentRow, StudentTable, read_table
+from service.grading.reading.column_headers import QUANTITIES
+from service.grading.reading.table import StudentTable, read_table
 from service.grading.report import CellReport, RowReport, Severity, Verdict, row_report
 from service.grading.samples import Samples
 from service.kinematics.chain import COLUMNS, frames, links
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices
 
+# The share of the points that a slip of the whole table costs: it is charged once.
+COST = 0.25
+COSTS = {"other_convention": 0.5}
 # With so many wrong cells two misconceptions at once are looked for.
 WRONG_THROUGHOUT = 3
 
@@ -32,10 +36,40 @@ def read(part: DhTableSpec, answer: object, grading: Grading) -> StudentTable | 
 
 
 def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
-    """The table row by row and cell by cell."""
+    """The table row by row and cell by cell.
+
+    A wrong table earns no more than it would without the rows too many: the points belong to the
+    rows of the mechanism.
+    """
+    judged = _judged(part, answer, grading)
+    if judged.is_right:
+        return judged
+    convention, _ = _convention(part, answer, grading.exercise)
+    kept = rows_of_mechanism(answer.rows, convention, grading)
+    extra = [i for i, row in enumerate(answer.rows) if i not in kept and not row.is_zero]
+    if not extra:
+        return judged
+    rows = tuple(answer.rows[i] for i in kept)
+    without = _judged(part, replace(answer, rows=rows, values=answer.values[kept]), grading)
+    messages = grading.visible(tuple(map(_row_too_many, extra)))
+    of_mechanism = {row.label for row in without.rows}
+    wrong = [
+        row
+        for row in judged.rows
+        if row.label not in of_mechanism and row.verdict is not Verdict.CORRECT
+    ]
+    return replace(
+        judged,
+        feedback=(*judged.feedback, *messages),
+        slips=judged.slips + len(wrong),
+        without_extra=without,
+    )
+
+
+def _judged(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     convention, findings = _convention(part, answer, grading.exercise)
     first = judged_table(part, answer.rows, convention, grading)
-    judgement, found, lost = _of_the_whole(part, answer.rows, first, convention, grading)
+    judgement, found, lost = _of_the_whole(part, first, convention, grading)
     messages = grading.visible((*answer.findings, *findings, *found, *lost, *judgement.findings))
     missing = tuple(
         message
@@ -45,17 +79,18 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     )
     extra = grading.visible(tuple(_extra_row(i) for i in judgement.extra))
     return Judged(
-        _row_reports(judgement, part.points, grading, found),
+        _row_reports(judgement, grading, found),
+        table_content(judgement, convention, grading),
         (*messages, *missing, *extra),
-        lost=judgement.lost,
-        stands_still=stands_still(answer.values),
+        slips=judgement.slips,
+        whole_cost=_cost_of(found) if found else None,
+        stands_still=stands_still(answer.values, tuple(QUANTITIES.values()), grading),
         chain=lambda: _chain(answer, first, convention),
     )
 
 
 def _of_the_whole(
     part: DhTableSpec,
-    rows: tuple[StudentRow, ...],
     judgement: Judgement,
     convention: Convention,
     grading: Grading,
@@ -66,6 +101,7 @@ def _of_the_whole(
     """
     if not judgement.wrong:
         return judgement, (), ()
+    rows = tuple(judged.row for judged in judgement.rows if judged.row is not None)
     roles = judgement.roles or roles_in(rows, convention, grading)
     found: tuple[Finding, ...] = ()
     if judgement.wrong > 1:
@@ -111,11 +147,15 @@ def _chain(
     )
 
 
+def _cost_of(found: tuple[Finding, ...]) -> float:
+    """The share of the points that slips of the whole table cost."""
+    return sum(COSTS.get(finding.code, COST) for finding in found)
+
+
 def _row_reports(
-    judgement: Judgement, points: float, grading: Grading, of_the_whole: tuple[Finding, ...]
+    judgement: Judgement, grading: Grading, of_the_whole: tuple[Finding, ...]
 ) -> tuple[RowReport, ...]:
     """The rows with their cells, which belong to the slip of the whole table if there is one."""
-    share = points / len(judgement.rows)
     slips = diagnose_cells(judgement, grading)
     if of_the_whole:
         belongs = replace(of_the_whole[0], hint=_PART_OF_IT)
@@ -125,7 +165,6 @@ def _row_reports(
     return tuple(
         row_report(
             judged.label,
-            share,
             tuple(
                 _cell(judged, column, match, slips.get((i, column)), grading)
                 for column, match in enumerate(row)
@@ -155,6 +194,15 @@ def _missing(judged: JudgedRow) -> Finding:
     return Finding(
         "missing_tool_row",
         "The fixed row that leads from the last joint's frame to the end effector is missing.",
+    )
+
+
+def _row_too_many(i: int) -> Finding:
+    return Finding(
+        "row_too_many",
+        f"Row {i + 1} of what was handed in stands for no joint and is not the end effector's. "
+        f"Such a row is allowed in a right table, but it costs points in a wrong one.",
+        severity=Severity.WARNING,
     )
 
 

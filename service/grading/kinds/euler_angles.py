@@ -18,10 +18,11 @@ from service.grading.diagnosis.value_list import slips_of
 from service.grading.diagnosis.wrong_value import UNEXPLAINED
 from service.grading.feedback import Finding
 from service.grading.formula_text import formula_text
+from service.grading.judging.content import known_cells, of_list
 from service.grading.judging.expected import asked_pose, formula_values
 from service.grading.judging.report_rows import value_rows
 from service.grading.judging.value_list import ComparedValues
-from service.grading.part import Grading, Judged
+from service.grading.part import Content, Grading, Judged
 from service.grading.reading.entry import Entry
 from service.grading.reading.value_list import StudentValues, read_list
 from service.grading.report import Severity
@@ -67,8 +68,16 @@ def judge(part: EulerAnglesSpec, answer: StudentValues, grading: Grading) -> Jud
     slips = {**_slips(answer, expected, found, grading), **slips}
     if findings and findings[-1] is not SINGULAR:
         slips = {place: slip for place, slip in slips.items() if slip.code != UNEXPLAINED}
-    rows = value_rows(answer, found, slips, part.points, grading)
-    return Judged(rows, grading.visible(findings))
+    rows = value_rows(answer, found, slips, grading)
+    return Judged(rows, _content(expected, rotation, part), grading.visible(findings))
+
+
+def _content(expected: Numbers, rotation: Matrices, part: EulerAnglesSpec) -> Content:
+    """The angles that are not 0; in a singular orientation a student may choose a second one."""
+    fixed = part.axes == "fixed"
+    simplest = nearest_triple(np.zeros_like(expected), rotation, part.turns, fixed=fixed)
+    known, most = (known_cells(triple, 0.0, angle=True) for triple in (expected, simplest))
+    return of_list(known, most)
 
 
 def _expected_rotation(part: EulerAnglesSpec, grading: Grading) -> Matrices:

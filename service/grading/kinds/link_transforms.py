@@ -11,11 +11,12 @@ from service.expressions import read as read_expression
 from service.grading.diagnosis.matrix_entry import WORK_BUDGET
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.follow_through import stands_still
+from service.grading.judging.content import of_links
 from service.grading.judging.matrix import ExpectedMatrix
 from service.grading.judging.own_frames.best_roles import nearest_with_tool_row
 from service.grading.judging.own_frames.row_roles import FrameFreedom, Role
 from service.grading.kinds.matrix_rows import matrix_rows
-from service.grading.part import Grading, Judged, StudentChain
+from service.grading.part import Content, Grading, Judged, StudentChain
 from service.grading.reading.entry import Entry
 from service.grading.reading.matrix import StudentMatrix, read_matrix
 from service.grading.reading.table import StudentRow
@@ -70,14 +71,14 @@ def read(part: LinkTransformsSpec, answer: object, grading: Grading) -> StudentL
 def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> Judged:
     """The matrices, rows "A1.1" to "An.4"."""
     labels = grading.exercise.robot.tables[part.convention].labels
-    expected = np.moveaxis(_expected(part, answer, grading), 1, -1)
+    right = _expected(part, answer, grading)
     rows: list[RowReport] = []
     messages: list[Feedback] = []
+    expected = np.moveaxis(right, 1, -1)
     for label, matrix, values in zip(labels, answer.matrices, expected, strict=True):
         judged = matrix_rows(
             matrix,
             ExpectedMatrix(values, HOMOGENEOUS, rigid=True),
-            part.points / len(labels),
             grading,
             work_budget=WORK_BUDGET / len(labels),
             name=f"A{label}",
@@ -86,10 +87,19 @@ def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> J
         messages.extend(judged.feedback)
     return Judged(
         tuple(rows),
+        _content(right, part, grading),
         tuple(messages),
-        stands_still=stands_still(answer.values.swapaxes(1, -1)),
+        stands_still=stands_still(np.moveaxis(answer.values, 1, -1), HOMOGENEOUS, grading),
         chain=answer.chain,
     )
+
+
+def _content(right: Matrices, part: LinkTransformsSpec, grading: Grading) -> Content:
+    """The entries that differ from those of the joints' motions alone."""
+    exercise, samples = grading.exercise, grading.samples
+    table = exercise.robot.tables[part.convention]
+    reference = links(table.values(samples.values, SAMPLES), part.convention)
+    return of_links(right, reference, exercise.robot.joints, samples, exercise.length_scale)
 
 
 def _links_of(values: list[Numbers]) -> Matrices:

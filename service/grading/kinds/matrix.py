@@ -1,6 +1,7 @@
 """Answer kind ``matrix``: a matrix of any meaning, entry by entry."""
 
 from service.catalogue.parts.matrix import MatrixSpec
+from service.grading.judging.content import of_matrix
 from service.grading.judging.expected import given_values
 from service.grading.judging.matrix import ExpectedMatrix
 from service.grading.kinds.matrix_rows import matrix_rows
@@ -16,5 +17,6 @@ def read(part: MatrixSpec, answer: object, grading: Grading) -> StudentMatrix:
 def judge(part: MatrixSpec, answer: StudentMatrix, grading: Grading) -> Judged:
     """The matrix row by row and entry by entry."""
     expected = ExpectedMatrix(given_values(part, grading), part.quantities)
-    judged = matrix_rows(answer, expected, part.points, grading)
-    return Judged(judged.rows, judged.feedback)
+    judged = matrix_rows(answer, expected, grading)
+    content = of_matrix(expected.values, expected.scale(grading.exercise.length_scale))
+    return Judged(judged.rows, content, judged.feedback)

@@ -42,14 +42,13 @@ def _no_explanations(_case: MatrixCase) -> list[Explanation]:
 def matrix_rows(
     student: StudentMatrix,
     expected: ExpectedMatrix,
-    points: float,
     grading: Grading,
     chains: Callable[[Samples], tuple[Chain, ...]] = _no_chains,
     explanations: Callable[[MatrixCase], list[Explanation]] = _no_explanations,
     work_budget: float = WORK_BUDGET,
     name: str = "",
 ) -> MatrixRows:
-    """The rows of a matrix that is worth ``points``, with what explains its wrong entries.
+    """The rows of a matrix, with what explains its wrong entries.
 
     ``chains`` gives, at the samples it is handed, the links that the matrix is the product of;
     ``explanations`` explains the matrix by what else it is made of, and is asked first. Both are
@@ -59,7 +58,7 @@ def matrix_rows(
     labels = [f"{name}.{i + 1}" if name else str(i + 1) for i in range(len(student.entries))]
     found = expected.matches(student, grading.exercise.length_scale)
     if (found >= Match.ROUNDED).all():
-        return MatrixRows(entry_rows(student.entries, found, {}, points, grading, labels=labels))
+        return MatrixRows(entry_rows(student.entries, found, {}, grading, labels=labels))
     scale = expected.scale(grading.exercise.length_scale)
     case = MatrixCase(
         actual=Samples.subset_of(student.values, SUBSET),
@@ -89,7 +88,7 @@ def matrix_rows(
     findings = [(explanation.finding, explanation.row) for explanation in explained]
     findings += [(check, None)] if check else []
     return MatrixRows(
-        entry_rows(student.entries, found, slips, points, grading, labels=labels),
+        entry_rows(student.entries, found, slips, grading, labels=labels),
         tuple(
             message
             for finding, row in findings

@@ -10,6 +10,7 @@ from service.grading.diagnosis.link_products import chains_of
 from service.grading.diagnosis.position import MISCONCEPTIONS, WrongPosition
 from service.grading.diagnosis.value_list import slips_of
 from service.grading.feedback import Finding
+from service.grading.judging.content import known_cells, of_list
 from service.grading.judging.expected import as_entries, asked_pose, formula_values, is_whole_chain
 from service.grading.judging.matrix import constant_text
 from service.grading.judging.report_rows import value_rows
@@ -36,8 +37,9 @@ def judge(part: PositionSpec, answer: StudentValues, grading: Grading) -> Judged
     wrong = found < Match.ROUNDED
     explained = _explained(part, compared, grading) if wrong.any() else None
     slips = {} if explained else slips_of(compared, wrong, grading)
-    rows = value_rows(answer, found, slips, part.points, grading)
-    return Judged(rows, grading.visible((explained,) if explained else ()))
+    rows = value_rows(answer, found, slips, grading)
+    content = of_list(known_cells(expected, 0.0, compared.scales(grading)))
+    return Judged(rows, content, grading.visible((explained,) if explained else ()))
 
 
 def _expected(part: PositionSpec, grading: Grading) -> Numbers:

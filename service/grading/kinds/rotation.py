@@ -6,6 +6,7 @@ from service.catalogue.parts.rotation import RotationSpec
 from service.grading.diagnosis.link_products import Chain, chains_of
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
 from service.grading.diagnosis.rotation_steps import Step, explain_steps
+from service.grading.judging.content import of_rigid
 from service.grading.judging.expected import (
     as_entries,
     asked_pose,
@@ -40,8 +41,9 @@ def judge(part: RotationSpec, answer: StudentMatrix, grading: Grading) -> Judged
         return explain_steps(case, steps)
 
     expected = ExpectedMatrix(_expected(part, steps, grading), ROTATION, rigid=True)
-    judged = matrix_rows(answer, expected, part.points, grading, chains, explanations)
-    return Judged(judged.rows, judged.feedback)
+    judged = matrix_rows(answer, expected, grading, chains, explanations)
+    content = of_rigid(expected.values, exercise.length_scale)
+    return Judged(judged.rows, content, judged.feedback)
 
 
 def _expected(part: RotationSpec, steps: list[Step], grading: Grading) -> Numbers:

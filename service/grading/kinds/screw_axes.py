@@ -1,6 +1,6 @@
 """Answer kind ``screw_axes``: the screw axis (ω; v) of each joint, seen from base or tool."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from service.grading.comparison import Match, matches
 from service.grading.diagnosis.screw_axis import WrongScrew, explain_screw
 from service.grading.diagnosis.value_list import slips_of
 from service.grading.feedback import Finding
+from service.grading.judging.content import known_cells, of_rows
 from service.grading.judging.expected import formula_values
 from service.grading.judging.matrix import constant_text
 from service.grading.judging.report_rows import entry_rows
@@ -19,7 +20,7 @@ from service.grading.judging.value_list import ComparedValues
 from service.grading.part import Grading, Judged
 from service.grading.reading.matrix import StudentMatrix, read_matrix
 from service.grading.reading.value_list import StudentValues
-from service.grading.report import RowReport, Severity, Verdict, rounded_points
+from service.grading.report import Severity
 from service.grading.samples import SAMPLES
 from service.kinematics.screws import moved
 from service.kinematics.transforms import Numbers, inverse
@@ -67,22 +68,18 @@ def judge(part: ScrewAxesSpec, answer: StudentMatrix, grading: Grading) -> Judge
         answer.entries,
         found,
         slips,
-        part.points,
         grading,
         labels=expected.labels,
         remarks={**remarks, **explained},
     )
-    return Judged(tuple(map(_marked_by_vectors, rows)))
+    return Judged(rows, of_rows(_known(axes, grading)))
 
 
-def _marked_by_vectors(row: RowReport) -> RowReport:
-    """The row with its points for ω and for v, each as a whole.
-
-    Most numbers of an axis are 0: number by number, six zeros would earn nearly all of them.
-    """
-    right = [cell.verdict is Verdict.CORRECT for cell in row.cells]
-    share = (all(right[:3]) + all(right[3:])) / 2
-    return replace(row, points=rounded_points(row.max_points * share))
+def _known(axes: Numbers, grading: Grading) -> NDArray[np.bool_]:
+    """Which numbers ``(joints, 6)`` differ from those of an axis that is z of the base frame."""
+    turns = np.abs(axes[:, :3]).max(axis=(1, 2)) > 0
+    lazy = np.where(turns[:, None], [0, 0, 1, 0, 0, 0], [0, 0, 0, 0, 0, 1])
+    return known_cells(axes, lazy[..., None], _scale(grading))
 
 
 REVERSED = Finding(

@@ -9,6 +9,7 @@ from service.grading.diagnosis.exponentials import explain_product
 from service.grading.diagnosis.link_products import Chain, chains_of
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
 from service.grading.follow_through import stands_still
+from service.grading.judging.content import of_rigid
 from service.grading.judging.expected import as_entries, asked_pose, formula_values, is_whole_chain
 from service.grading.judging.matrix import ExpectedMatrix
 from service.grading.kinds.matrix_rows import matrix_rows
@@ -39,11 +40,12 @@ def judge(part: TransformSpec, answer: StudentMatrix, grading: Grading) -> Judge
         return explain_product(case, exercise, grading.samples) if whole else []
 
     expected = ExpectedMatrix(values, HOMOGENEOUS, rigid=True)
-    judged = matrix_rows(answer, expected, part.points, grading, chains, explanations)
+    judged = matrix_rows(answer, expected, grading, chains, explanations)
     return Judged(
         judged.rows,
+        of_rigid(values, exercise.length_scale),
         judged.feedback,
-        stands_still=whole and stands_still(answer.values),
+        stands_still=whole and stands_still(answer.values, HOMOGENEOUS, grading),
         chain=lambda: _chain(answer),
     )
 

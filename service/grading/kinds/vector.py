@@ -3,6 +3,7 @@
 from service.catalogue.parts.vector import VectorSpec
 from service.grading.comparison import Match
 from service.grading.diagnosis.value_list import slips_of
+from service.grading.judging.content import known_cells, of_list
 from service.grading.judging.expected import given_values
 from service.grading.judging.report_rows import value_rows
 from service.grading.judging.value_list import ComparedValues
@@ -23,4 +24,5 @@ def judge(part: VectorSpec, answer: StudentValues, grading: Grading) -> Judged:
     compared = ComparedValues(answer, expected, [formula.text() for formula in formulas])
     found = compared.matches(grading)
     slips = slips_of(compared, found < Match.ROUNDED, grading)
-    return Judged(value_rows(answer, found, slips, part.points, grading))
+    content = of_list(known_cells(expected, 0.0, compared.scales(grading)))
+    return Judged(value_rows(answer, found, slips, grading), content)

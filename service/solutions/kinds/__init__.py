@@ -1,6 +1,7 @@
 """The right answer to a part, by its kind: one module for one kind.
 
-A module ``<kind>.py`` has a function ``answer(part, work)``; it is found here by its name.
+A module ``<kind>.py`` has a function ``answer(part, work)``, and ``lazy(part, exercise)`` for the
+answers of somebody who knows nothing. It is found here by its name.
 """
 
 from collections.abc import Callable, Mapping
@@ -8,10 +9,16 @@ from importlib import import_module
 from pkgutil import iter_modules
 from typing import Any, Final
 
+from service.catalogue import Exercise
 from service.solutions.model_solution import PrintedAnswer
 from service.solutions.work import Work
 
+_MODULES: Final = {
+    module.name: import_module(f"{__name__}.{module.name}") for module in iter_modules(__path__)
+}
 ANSWERS: Final[Mapping[str, Callable[[Any, Work], PrintedAnswer]]] = {
-    module.name: import_module(f"{__name__}.{module.name}").answer
-    for module in iter_modules(__path__)
+    name: module.answer for name, module in _MODULES.items()
+}
+LAZY: Final[Mapping[str, Callable[[Any, Exercise], list[object]]]] = {
+    name: module.lazy for name, module in _MODULES.items()
 }

@@ -1,6 +1,8 @@
 """The model answer of kind ``dh_table``: the reference's table, in the convention asked for."""
 
+from service.catalogue import Exercise
 from service.catalogue.parts.dh_table import DhTableSpec
+from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention
 from service.solutions import layout
 from service.solutions.model_solution import PrintedAnswer
@@ -15,3 +17,15 @@ def answer(part: DhTableSpec, work: Work) -> PrintedAnswer:
     table = robot.tables[convention]
     rows = [work.table_row(row) for row in table.rows]
     return layout.table(rows, table.labels, convention, named=asked == "either")
+
+
+def lazy(part: DhTableSpec, exercise: Exercise) -> list[object]:
+    """The joint variables in their columns and 0 elsewhere."""
+    robot, asked = exercise.robot, part.convention
+    convention = asked if isinstance(asked, Convention) else robot.convention
+    table = robot.tables[convention]
+    rows = [dict.fromkeys(COLUMNS, "0") for _ in table.rows]
+    for row, joint in zip(rows, table.joints, strict=False):
+        row["d" if joint.prismatic else "theta"] = joint.variable
+    named = {"convention": convention.value} if asked == "either" else {}
+    return [{"rows": rows, **named}]

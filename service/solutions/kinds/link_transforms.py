@@ -1,6 +1,8 @@
 """The model answer of kind ``link_transforms``: the transforms of the reference's rows."""
 
+from service.catalogue import Exercise
 from service.catalogue.parts.link_transforms import LinkTransformsSpec
+from service.solutions.lazy import IDENTITY, motion
 from service.solutions.model_solution import PrintedAnswer
 from service.solutions.work import Work
 
@@ -15,3 +17,10 @@ def answer(part: LinkTransformsSpec, work: Work) -> PrintedAnswer:
         ),
         [matrix.answer for matrix in matrices.values()],
     )
+
+
+def lazy(part: LinkTransformsSpec, exercise: Exercise) -> list[object]:
+    """The motion of each joint, and the identity for a fixed row."""
+    table = exercise.robot.tables[part.convention]
+    fixed = len(table.rows) - len(table.joints)
+    return [[*(motion([joint]) for joint in table.joints), *[IDENTITY] * fixed]]

@@ -1,7 +1,9 @@
 """The model answer of kind ``rotation``."""
 
+from service.catalogue import Exercise
 from service.catalogue.parts.rotation import RotationSpec
 from service.solutions import layout
+from service.solutions.lazy import poses
 from service.solutions.model_solution import PrintedAnswer
 from service.solutions.motions import Motion, Turn, X, Y, Z, multiplied
 from service.solutions.work import Work
@@ -24,3 +26,8 @@ def _turns(part: RotationSpec, work: Work) -> list[Motion]:
     for step, angle in zip(part.steps, angles, strict=True):
         motions.insert(0 if step.about == "fixed" else len(motions), Turn(_AXES[step.axis], angle))
     return motions
+
+
+def lazy(_part: RotationSpec, exercise: Exercise) -> list[object]:
+    """The identity, and all joints on one axis."""
+    return [*poses(exercise, 3)]

@@ -77,6 +77,23 @@ def without_idle_rows(rows: tuple[StudentRow, ...], expected_rows: int) -> tuple
     return rows
 
 
+def rows_of_mechanism(
+    rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
+) -> list[int]:
+    """Which rows stand for the mechanism: those of the joints and the first of the tool.
+
+    Chosen by the joint variables alone, so that of several guesses at a row it is not the right one
+    that is taken.
+    """
+    usual, joints = _usual_rows(convention, grading), grading.exercise.robot.joints
+    if len(rows) <= usual:
+        return list(range(len(rows)))
+    roles = [role for role in roles_of(rows, joints, grading.samples, usual) if role.row]
+    last = max((i for i, role in enumerate(roles) if role.joint), default=-1)
+    of_joints = [i for i, role in enumerate(roles) if role.joint]
+    return [*of_joints, *range(last + 1, len(roles))[: usual - len(joints)]]
+
+
 def _usual_rows(convention: Convention, grading: Grading) -> int:
     """How many rows the reference's table has, or would have without fixed ones."""
     robot = grading.exercise.robot

@@ -58,9 +58,15 @@ def handed_in_values(roles: Sequence[Role]) -> Table:
 
 def variables_of(roles: Sequence[Role], samples: Samples) -> Table:
     """The joint variable that belongs in each cell, ``(rows, 4, samples)``; 0 in the others."""
-    variables = np.zeros((len(roles), len(COLUMNS), samples.count))
-    for cell, joint in joint_cells(roles).items():
-        variables[cell] = samples.values[joint.variable]
+    return joint_variables([role.joint for role in roles], samples)
+
+
+def joint_variables(joints: Sequence[Joint | None], samples: Samples) -> Table:
+    """The same for rows of these joints; None is a fixed row."""
+    variables = np.zeros((len(joints), len(COLUMNS), samples.count))
+    for row, joint in zip(variables, joints, strict=True):
+        if joint is not None:
+            row[variable_column(joint)] = samples.values[joint.variable]
     return variables
 
 

@@ -1,0 +1,119 @@
+"""The cells of a right answer that one has to know something for, which its marks are earned by.
+
+Most cells of a DH table are 0 and every row has its joint variable in the usual place. A student
+who writes just that knows no geometry. So the right answer is compared with the lazy one, and only
+the cells in which they differ are worth something.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from service.catalogue import Joint
+from service.grading.comparison import difference
+from service.grading.part import Content
+from service.grading.samples import Samples
+from service.grading.tolerances import SAME_CONTENT
+from service.kinematics.transforms import Matrices, Numbers
+
+Known = NDArray[np.bool_]
+
+
+def known_cells(
+    right: Numbers, lazy: ArrayLike, scale: ArrayLike = 1.0, angle: ArrayLike = False
+) -> Known:
+    """Which cells ``(...)`` of the right answer ``(..., samples)`` differ from the lazy one.
+
+    ``scale`` and ``angle`` are as ``comparison.matches`` takes them.
+    """
+    error = np.abs(difference(right, np.asarray(lazy), angle)).max(axis=-1)
+    return np.asarray(error > SAME_CONTENT * np.asarray(scale))
+
+
+def of_rows(known: Known, reference: Known | None = None) -> Content:
+    """The content of rows ``(rows, cells)`` that are worth something each: tables and screws.
+
+    ``reference`` are the cells of the reference's own answer, where other answers are right too.
+    """
+    rows = known.tolist()
+    groups = [[i] * len(row) for i, row in enumerate(rows)]
+    return Content(rows, groups, besides=True, most=_count(reference))
+
+
+def of_one_row(known: Known) -> Content:
+    """The content of a single row ``(cells,)``."""
+    return Content([_or_all(known).tolist()], [[0] * len(known)])
+
+
+def of_list(known: Known, reference: Known | None = None) -> Content:
+    """The content of a list of single values ``(values,)``."""
+    cells = [[value] for value in _or_all(known).tolist()]
+    return Content(cells, [[0]] * len(cells), most=_count(reference))
+
+
+def of_rigid(right: Numbers, length_scale: float) -> Content:
+    """The content of a rotation ``(3, 3, samples)`` or a homogeneous transform ``(4, 4, samples)``.
+
+    One half is the rotation's and one the position's, where both are other than the identity's.
+    """
+    known = _differs_from_identity(right, length_scale)
+    halves = known[:, :3].any() and known[:, 3:].any()
+    groups = [int(halves and column == 3) for column in range(known.shape[1])]
+    return Content(_or_all(known).tolist(), [groups] * len(known), equal=True)
+
+
+def of_matrix(right: Numbers, scale: Numbers) -> Content:
+    """The content of a matrix of any meaning, ``(rows, columns, samples)``.
+
+    A matrix of zeros is as easy to write as the identity is.
+    """
+    known = known_cells(right, 0.0, scale)
+    if known.shape[0] == known.shape[1]:
+        known &= known_cells(right, np.eye(len(right))[..., None], scale)
+    return Content(_or_all(known).tolist(), [[0] * known.shape[1]] * len(known))
+
+
+def of_links(
+    right: Matrices, reference: Matrices, joints: Sequence[Joint], samples: Samples, scale: float
+) -> Content:
+    """The content of link transforms ``(links, samples, 4, 4)``, each of four rows.
+
+    The lazy link of a joint is its motion alone. ``reference`` are the reference's own links.
+    """
+    known = _differs_from_motion(right, joints, samples, scale)
+    most = _differs_from_motion(reference, joints, samples, scale)
+    groups = np.repeat(np.arange(len(right)), 16).reshape(-1, 4)
+    return Content(known.reshape(-1, 4).tolist(), groups.tolist(), besides=True, most=_count(most))
+
+
+def _differs_from_motion(
+    links: Matrices, joints: Sequence[Joint], samples: Samples, scale: float
+) -> Known:
+    """Which entries ``(links, 4, 4)`` differ from those of the joint's motion alone."""
+    lazy = np.tile(np.eye(4), (len(links), samples.count, 1, 1))
+    for link, joint in zip(lazy, joints, strict=False):
+        q = samples.values[joint.variable]
+        if joint.prismatic:
+            link[:, 2, 3] = q
+        else:
+            link[:, 0, 0] = link[:, 1, 1] = np.cos(q)
+            link[:, 1, 0] = np.sin(q)
+            link[:, 0, 1] = -np.sin(q)
+    scales = np.array([1.0, 1.0, 1.0, scale])
+    return known_cells(np.moveaxis(links, 1, -1), np.moveaxis(lazy, 1, -1), scales)
+
+
+def _differs_from_identity(right: Numbers, length_scale: float) -> Known:
+    scales = np.ones(right.shape[1])
+    scales[3:] = length_scale
+    return known_cells(right, np.eye(len(right))[..., None], scales)
+
+
+def _or_all(known: Known) -> Known:
+    """The same; all cells where the right answer is the lazy one."""
+    return known if known.any() else np.ones_like(known)
+
+
+def _count(known: Known | None) -> int | None:
+    return None if known is None else int(np.count_nonzero(known))

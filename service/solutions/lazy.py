@@ -1,0 +1,30 @@
+"""Answers of a student who knows nothing: what they earn shows whether the marks are fair.
+
+Every joint has its variable in the usual place, turning about z or sliding along it; all else is 0.
+"""
+
+from collections.abc import Sequence
+
+from service.catalogue import Exercise, Joint
+
+Rows = list[list[str]]
+
+IDENTITY: Rows = [["1" if i == j else "0" for j in range(4)] for i in range(4)]
+
+
+def motion(joints: Sequence[Joint]) -> Rows:
+    """The homogeneous transform of joints that turn about, and slide along, the z axis."""
+    angle = " + ".join(joint.variable for joint in joints if not joint.prismatic)
+    distance = " + ".join(joint.variable for joint in joints if joint.prismatic)
+    rows = [list(row) for row in IDENTITY]
+    if angle:
+        rows[0][:2] = f"cos({angle})", f"-sin({angle})"
+        rows[1][:2] = f"sin({angle})", f"cos({angle})"
+    rows[2][3] = distance or "0"
+    return rows
+
+
+def poses(exercise: Exercise, size: int) -> list[Rows]:
+    """The identity, and the motion of all joints as if they had one axis: ``size`` is 3 or 4."""
+    of_joints = [motion(exercise.joints)] if exercise.joints else []
+    return [[row[:size] for row in rows[:size]] for rows in (IDENTITY, *of_joints)]
