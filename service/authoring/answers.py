@@ -20,8 +20,8 @@ from service.solutions import solve
 UNITS: Final[tuple[AngleUnit, ...]] = ("radians", "degrees")
 # So many checks of each kind make a mistake in the exercise unlikely.
 WANTED: Final = {"right": 1, "equivalent": 1, "wrong": 2}
-# Points are rounded to six digits.
-_SAME_POINTS: Final = 1e-5
+# A tutor writes points with two decimals.
+_SAME_POINTS: Final = 0.005
 _SAME_NUMBER: Final = 1e-9
 
 
@@ -157,4 +157,5 @@ def _in_words(report: PartReport) -> str:
     """Verdict, points and the first message of a part, for a remark."""
     # A message on a single cell tells more than one on the whole part.
     message = next((f": {each.message}" for each, _ in reversed([*messages_of(report)])), "")
-    return f"{report.verdict.value}, {report.points:g} of {report.max_points:g} points{message}"
+    points = f"{round(report.points, 2):g} of {report.max_points:g} points"
+    return f"{report.verdict.value}, {points}{message}"

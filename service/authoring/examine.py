@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator
 
 from service.authoring.answers import duplicate_parts, failed_checks, missing_checks, model_answer
 from service.authoring.freedom import lost_freedom
+from service.authoring.lazy import lazy_answers
 from service.authoring.remarks import Remark
 from service.authoring.symbols import ambiguous_symbols, badly_scaled, bare_degrees, unused_symbols
 from service.catalogue import Exercise
@@ -18,6 +19,7 @@ EXAMINATIONS: tuple[Callable[[Exercise], Iterator[Remark]], ...] = (
     bare_degrees,
     duplicate_parts,
     lost_freedom,
+    lazy_answers,
 )
 
 

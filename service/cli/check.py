@@ -1,5 +1,6 @@
 """`dh-grader exercises check`: faults in exercise files, for their authors."""
 
+import math
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,7 +10,7 @@ import typer
 from rich.console import Console
 from rich.text import Text
 
-from service.authoring import Level, Remark, examine
+from service.authoring import Level, Remark, examine, lazy_shares
 from service.catalogue import CatalogueError, Exercise, exercise_files, load_exercise
 from service.catalogue.lines import line_of, value_lines
 from service.cli.terminal import UNUSABLE, complain, stdout
@@ -69,7 +70,11 @@ def _lines(exercise: Exercise, remarks: list[Remark], file: Path) -> Iterator[Te
     verdict = ("failed", STYLES[Level.FAILED]) if failed else ("ok", "green")
     parts = _count(len(exercise.parts), "part")
     checks = _count(len(exercise.checks), "check")
-    yield Text.assemble((exercise.id, "bold"), ": ", verdict, f", {parts}, {checks}")
+    earned = ", ".join(
+        f"{math.floor(100 * share)} % of {part}" for part, share in lazy_shares(exercise).items()
+    )
+    lazy = f"; a lazy answer earns {earned}"
+    yield Text.assemble((exercise.id, "bold"), ": ", verdict, f", {parts}, {checks}{lazy}")
     lines = value_lines(file.read_text(encoding="utf-8")) if remarks else {}
     for remark in remarks:
         line = line_of(remark.field, lines)

@@ -21,7 +21,7 @@ from service.kinematics.jacobian import rank
 from service.kinematics.screws import exponential, sliding_axis, turning_axis
 from service.kinematics.transforms import Matrices, Numbers, inverse, is_rigid
 
-Quantities = Sequence[Kind] | Sequence[Sequence[Kind]]
+_Quantities = Sequence[Kind] | Sequence[Sequence[Kind]]
 
 
 # By how much a joint is moved: in radians, or in the exercise's typical length.
@@ -84,7 +84,7 @@ def _axis(tool_at: ToolAt, i: int, step: float, grading: Grading, *, later: bool
     return axis if max(error, np.abs(length - 1).max()) < SAME_AXIS else None
 
 
-def stands_still(values: Numbers, quantities: Quantities, grading: Grading) -> bool:
+def stands_still(values: Numbers, quantities: _Quantities, grading: Grading) -> bool:
     """Whether the joints move no entry ``(rows, columns, SAMPLES)`` of an answer that was read.
 
     ``quantities`` are those of the columns, or of all entries. Nobody knows how an entry moves that

@@ -60,7 +60,7 @@ def grade(exercise: Exercise, submission: Submission) -> Report:
     return Report(
         exercise=exercise.id,
         version=exercise.version,
-        gradable=any(_was_read(part) for part in parts),
+        gradable=any(_was_read(each.report) for each in graded.values()),
         points=points,
         max_points=max_points,
         score=round(points / max_points, 6),
@@ -152,4 +152,6 @@ def _without_rows(report: PartReport) -> PartReport:
 
 
 def _was_read(part: PartReport) -> bool:
-    return part.verdict not in (Verdict.MISSING, Verdict.UNREADABLE)
+    """Whether any cell of the part was read."""
+    unread = (Verdict.MISSING, Verdict.UNREADABLE)
+    return any(cell.verdict not in unread for row in part.rows for cell in row.cells)

@@ -65,8 +65,8 @@ class Content:
     Both lists are ``(rows, cells)``, as the rows of the report. ``known`` says which cells these
     are. ``groups`` numbers the group of each cell: a wrong cell costs no more than its group has.
     With ``besides`` each group is worth a little besides its cells. With ``equal`` all groups are
-    worth the same, however many cells they have. ``most`` is the number of such cells in the
-    reference's own answer, where frames of a student's choice may have more.
+    worth the same, however many cells they have. ``most`` is the number of cells that
+    count, where a student's own choices may have added others.
     """
 
     known: Sequence[Sequence[bool]]

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 
 from service.catalogue import Exercise, Joint
 
-Rows = list[list[str]]
+_Rows = list[list[str]]
 
-IDENTITY: Rows = [["1" if i == j else "0" for j in range(4)] for i in range(4)]
+IDENTITY: _Rows = [["1" if i == j else "0" for j in range(4)] for i in range(4)]
 
 
-def motion(joints: Sequence[Joint]) -> Rows:
+def motion(joints: Sequence[Joint]) -> _Rows:
     """The homogeneous transform of joints that turn about, and slide along, the z axis."""
     angle = " + ".join(joint.variable for joint in joints if not joint.prismatic)
     distance = " + ".join(joint.variable for joint in joints if joint.prismatic)
@@ -24,7 +24,7 @@ def motion(joints: Sequence[Joint]) -> Rows:
     return rows
 
 
-def poses(exercise: Exercise, size: int) -> list[Rows]:
+def poses(exercise: Exercise, size: int) -> list[_Rows]:
     """The identity, and the motion of all joints as if they had one axis: ``size`` is 3 or 4."""
     of_joints = [motion(exercise.joints)] if exercise.joints else []
     return [[row[:size] for row in rows[:size]] for rows in (IDENTITY, *of_joints)]

@@ -43,7 +43,7 @@ frames = "free"
 id = "pose"
 kind = "transform"
 title = "Pose"
-all_or_nothing = true
+marking = "whole"
 """
 
 
@@ -117,7 +117,7 @@ def test_an_exercise_shows_exactly_what_a_student_may_see(secretive: httpx.Clien
                 }
             },
             part("pose", "transform", "Pose", "", 1)
-            | {"all_or_nothing": True, "shape": {"columns": four, "rows": four}},
+            | {"marking": "whole", "shape": {"columns": four, "rows": four}},
         ],
     }
 
@@ -129,7 +129,7 @@ def part(part_id: str, kind: str, title: str, prompt: str, points: float) -> dic
         "title": title,
         "prompt": prompt,
         "points": points,
-        "all_or_nothing": False,
+        "marking": "content",
     }
 
 

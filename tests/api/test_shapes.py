@@ -71,5 +71,5 @@ def test_an_exercise_without_a_robot_has_no_structure(client: httpx.Client) -> N
 def test_no_formula_of_an_answer_is_shown(exercise: str, client: httpx.Client) -> None:
     shown = client.get(f"/v1/exercises/{exercise}").json()
     for part in shown["parts"]:
-        assert set(part) == {"id", "title", "prompt", "kind", "points", "all_or_nothing", "shape"}
+        assert set(part) == {"id", "title", "prompt", "kind", "points", "marking", "shape"}
     assert "expected" not in str(shown["parts"])

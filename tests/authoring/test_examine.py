@@ -23,7 +23,7 @@ answers.pose = {RIGHT_ROWS.replace("d2", "q2")}
 title = "Wrong height"
 kind = "wrong"
 answers.pose = {WRONG_ROWS}
-expect.pose = {{ points = 3.75, verdict = "partial", codes = ["sign"] }}
+expect.pose = {{ points = 3.33, verdict = "partial", codes = ["sign"] }}
 [[checks]]
 title = "Nothing"
 kind = "wrong"
@@ -54,7 +54,7 @@ FAILURES: dict[str, tuple[tuple[str, str], int, str]] = {
     "an equivalent answer that is wrong": (('"q2 s1"', '"-q2 s1"'), 1, "should get full marks"),
     "a wrong answer that is right": ((WRONG_ROWS, RIGHT_ROWS), 2, "should lose points"),
     "other points": (
-        ("points = 3.75", "points = 3"),
+        ("points = 3.33", "points = 3"),
         2,
         "should get 3 points; it got partial, 3.75",
     ),

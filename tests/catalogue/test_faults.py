@@ -246,7 +246,7 @@ def test_comments_and_layout_do_not_change_the_version(
         ('"a length"', '"the length"'),
         ("points = 4", "points = 5"),
         ('convention = "standard"\n\n', 'convention = "modified"\n\n'),
-        ("points = 4", "points = 4\nall_or_nothing = true"),
+        ("points = 4", "points = 4\nmarking = 'whole'"),
     ],
 )
 def test_content_changes_the_version(change: tuple[str, str], tmp_path: Path) -> None:

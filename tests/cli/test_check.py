@@ -64,7 +64,7 @@ def test_a_place_that_cannot_be_written(run: Run, tmp_path: Path) -> None:
 
 
 def test_a_failed_check_is_exit_code_1_with_its_line(run: Run, arm: Path) -> None:
-    changed(arm, ("points = 3.5", "points = 3"))
+    changed(arm, ("points = 2.33", "points = 3"))
     result = run("exercises", "check", arm)
     assert result.exit_code == 1
     first, second = result.stdout.splitlines()
@@ -92,7 +92,7 @@ def test_a_file_that_cannot_be_used_is_exit_code_2_and_the_others_are_checked(
     run("exercises", "new", "broken", "--output", arm.parent)
     run("exercises", "new", "wrong", "--output", arm.parent)
     broken = changed(arm.parent / "broken.toml", ("[0.3, 0.9]", "[0.9, 0.3]"))
-    changed(arm.parent / "wrong.toml", ("points = 3.5", "points = 3"))
+    changed(arm.parent / "wrong.toml", ("points = 2.33", "points = 3"))
     result = run("exercises", "check", arm.parent)
     assert result.exit_code == 2
     line = broken.read_text(encoding="utf-8").split("[0.9, 0.3]")[0].count("\n") + 1

@@ -30,7 +30,8 @@ def test_matrices_that_follow_from_a_wrong_table_earn_their_points(scara: Exerci
     links = [A1, a2_with("a1"), A3, A4]
     position = ["a1*c1 + a1*c12", "a1*s1 + a1*s12", "-d3 - d4"]
     parts = graded(scara, table=wrong, links=links, pose=pose_with("a1"), position=position)
-    assert parts["table"].points == 7.5
+    # One of the four cells that one has to know is wrong; each row is worth a fifth besides.
+    assert parts["table"].points == pytest.approx(8 * 3.8 / 4.8, abs=1e-5)
     for name in ("links", "pose", "position"):
         assert parts[name].points == parts[name].max_points, name
         assert parts[name].follow_through, name
@@ -53,7 +54,7 @@ def test_what_is_right_does_not_follow(scara: Exercise) -> None:
 
 def test_a_right_table_does_not_make_a_wrong_pose_right(scara: Exercise) -> None:
     parts = graded(scara, table=table(TABLE), pose=pose_with("a1"))
-    assert parts["pose"].points == 7
+    assert parts["pose"].points < 8
     assert not parts["pose"].follow_through
 
 
@@ -95,6 +96,6 @@ def test_a_chain_that_has_lost_a_freedom_does_not_carry(scara: Exercise) -> None
         list("0001"),
     ]
     parts = graded(scara, table=bare, pose=pose)
-    assert parts["table"].points >= 4
+    assert parts["table"].points == pytest.approx(8 * 0.8 / 4.8, abs=1e-5)
     assert not parts["pose"].follow_through
     assert parts["pose"].points <= 4

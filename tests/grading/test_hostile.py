@@ -13,6 +13,7 @@ from service.catalogue import Exercise
 from service.grading import FeedbackLevel, Report, Submission, UnknownPartError, Verdict, grade
 from tests.grading.support.robots import EXACT, STANFORD
 from tests.grading.support.submitting import as_data, cell, handed_in, not_correct, part, table
+from tests.grading.support.worth import about, points
 from tests.guards import STALL
 
 
@@ -200,7 +201,7 @@ def test_a_row_that_is_no_object_earns_nothing(
     answer = table(EXACT.rows(STANFORD))
     answer["rows"][2] = row
     found = part(handed_in(given_frames[STANFORD.exercise], {"table": answer}), "table")
-    assert found.points == pytest.approx(10)
+    assert [row.points for row in found.rows] == about(points(STANFORD, 12, [2] * 4))
     assert found.rows[2].verdict in (Verdict.UNREADABLE, Verdict.MISSING)
 
 

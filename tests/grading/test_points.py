@@ -1,4 +1,4 @@
-"""Points add up, and all_or_nothing means what it says."""
+"""Points add up, and each marking means what it says."""
 
 from collections.abc import Callable, Mapping
 
@@ -10,6 +10,7 @@ from service.catalogue import Exercise
 from service.grading import Severity, Verdict
 from tests.grading.support.robots import EXACT, ROBOTS, STANFORD, Robot
 from tests.grading.support.submitting import graded_table, handed_in, part, table
+from tests.grading.support.worth import about, points
 
 STRICT = """
 title = "Planar RR"
@@ -29,7 +30,7 @@ kind = "dh_table"
 title = "Table"
 points = 7
 convention = "standard"
-all_or_nothing = true
+marking = "whole"
 [[parts]]
 id = "again"
 kind = "dh_table"
@@ -44,7 +45,7 @@ RIGHT = [("a1", "0", "0", "q1"), ("a2", "0", "0", "q2")]
     robot=st.sampled_from(ROBOTS),
     wrong=st.sets(st.tuples(st.integers(0, 5), st.integers(0, 3))),
 )
-def test_each_cell_is_worth_the_same_within_a_table(
+def test_a_row_is_worth_the_cells_that_one_has_to_know(
     given_frames: Mapping[str, Exercise], robot: Robot, wrong: set[tuple[int, int]]
 ) -> None:
     rows = [list(row) for row in EXACT.rows(robot)]
@@ -52,15 +53,15 @@ def test_each_cell_is_worth_the_same_within_a_table(
     for i, j in wrong:
         rows[i][j] += " + 0.321"
     report = graded_table(given_frames[robot.exercise], rows)
-    cells = 4 * len(rows)
-    assert report.points == pytest.approx(report.max_points * (cells - len(wrong)) / cells)
-    assert sum(row.points for row in report.rows) == pytest.approx(report.points)
-    assert sum(row.max_points for row in report.rows) == pytest.approx(report.max_points)
+    expected = points(robot, report.max_points, [i for i, _ in wrong])
+    assert [row.points for row in report.rows] == about(expected)
+    assert [row.max_points for row in report.rows] == about(points(robot, report.max_points, []))
+    assert report.points == pytest.approx(sum(expected), abs=1e-5)
     assert (report.points == report.max_points) is (not wrong)
     for i, row in enumerate(report.rows):
         bad = sum(1 for place in wrong if place[0] == i)
         assert row.verdict is (
-            Verdict.CORRECT if not bad else Verdict.INCORRECT if bad == 4 else Verdict.PARTIAL
+            Verdict.CORRECT if not bad else Verdict.PARTIAL if row.points else Verdict.INCORRECT
         )
 
 
@@ -86,14 +87,32 @@ def test_a_wrong_answer_is_gradable(given_frames: Mapping[str, Exercise]) -> Non
     assert part(report, "table").verdict is Verdict.INCORRECT
 
 
-def test_all_or_nothing(make_exercise: Callable[[str], Exercise]) -> None:
-    exercise = make_exercise(STRICT)
-    wrong = [("a1", "0", "0", "q1"), ("a1", "0", "0", "q2")]
-    unread = [("a1", "0", "0", "q1"), ("a2", "0", "(", "q2")]
-    for rows, points in ((RIGHT, 7), (wrong, 0), (unread, 0), ([*RIGHT, ["1"] * 4], 0)):
-        report = part(handed_in(exercise, {"table": table(rows)}), "table")
-        assert report.points == points
-        assert report.verdict is (Verdict.CORRECT if points else Verdict.PARTIAL)
+UNREAD = [("a1", "0", "0", "q1"), ("a2", "0", "(", "q2")]
+ONE_WRONG = [("a1", "0", "0", "q1"), ("a1", "0", "0", "q2")]
+TOO_MANY = [*RIGHT, ("1", "1", "1", "1")]
+# By hand: of the eight cells a1 and a2 are what one has to know; each row is worth a fifth besides,
+# and that is what the unread 0 costs.
+MARKINGS = {
+    "content": {"wrong": 7 * 1.4 / 2.4, "unread": 7 * 2.2 / 2.4, "extra": 7 * 1.4 / 2.4},
+    "cells": {"wrong": 7 * 7 / 8, "unread": 7 * 7 / 8, "extra": 7 * 1 / 2},
+    "rows": {"wrong": 7 * 1 / 2, "unread": 7 * 1 / 2, "extra": 7 * 1 / 2},
+    "whole": {"wrong": 0.0, "unread": 0.0, "extra": 0.0},
+}
+
+
+@pytest.mark.parametrize("marking", MARKINGS)
+def test_a_part_says_how_it_is_marked(
+    marking: str, make_exercise: Callable[[str], Exercise]
+) -> None:
+    exercise = make_exercise(STRICT.replace('"whole"', f'"{marking}"'))
+    answers = {"right": RIGHT, "wrong": ONE_WRONG, "unread": UNREAD, "extra": TOO_MANY}
+    for name, expected in {"right": 7.0, **MARKINGS[marking]}.items():
+        report = part(handed_in(exercise, {"table": table(answers[name])}), "table")
+        assert report.points == pytest.approx(expected, abs=1e-5), name
+        assert sum(row.points for row in report.rows) == pytest.approx(expected, abs=1e-5), name
+        assert sum(row.max_points for row in report.rows) == pytest.approx(7, abs=1e-5), name
+        assert (report.verdict is Verdict.CORRECT) is (name == "right"), name
+        assert (report.verdict is Verdict.PARTIAL) is (0 < expected < 7), name
 
 
 def test_thirds_leave_no_dust(make_exercise: Callable[[str], Exercise]) -> None:
@@ -101,7 +120,7 @@ def test_thirds_leave_no_dust(make_exercise: Callable[[str], Exercise]) -> None:
     report = handed_in(exercise, {"again": table(RIGHT), "table": table(RIGHT)})
     assert (report.points, report.score) == (7.1, 1.0)
     one_off = handed_in(exercise, {"again": table([RIGHT[0], ("a2", "0", "1", "q2")])})
-    assert part(one_off, "again").points == 0.0875
+    assert part(one_off, "again").points == 0.058333
 
 
 ROTATION = """
@@ -120,12 +139,17 @@ expected = [["1", "0", "0"], ["0", "cos(q1)", "-sin(q1)"], ["0", "sin(q1)", "cos
 """
 
 
-def test_three_thirds_of_a_point_are_a_point(make_exercise: Callable[[str], Exercise]) -> None:
-    """One entry of three is right in each row; each row is worth a point."""
-    rows = [["1", "2", "2"], ["0", "2", "2"], ["0", "2", "2"]]
-    report = part(handed_in(make_exercise(ROTATION), {"rotation": rows}), "rotation")
-    assert [row.points for row in report.rows] == [0.333333] * 3
-    assert report.points == 1
+def test_a_wrong_entry_costs_one_of_those_that_one_has_to_know(
+    make_exercise: Callable[[str], Exercise],
+) -> None:
+    """Four entries of a turn about x differ from those of the identity."""
+    exercise = make_exercise(ROTATION)
+    right = [["1", "0", "0"], ["0", "cos(q1)", "-sin(q1)"], ["0", "sin(q1)", "cos(q1)"]]
+    for wrong, expected in (([(0, 0)], 2.25), ([(1, 2)], 2.25), ([(0, 1), (2, 2)], 1.5)):
+        rows = [["2" if (i, j) in wrong else right[i][j] for j in range(3)] for i in range(3)]
+        report = part(handed_in(exercise, {"rotation": rows}), "rotation")
+        assert report.points == expected
+        assert sum(row.points for row in report.rows) == pytest.approx(expected, abs=1e-5)
 
 
 def test_another_convention_named_costs_nothing(given_frames: Mapping[str, Exercise]) -> None:

@@ -9,6 +9,7 @@ from service.grading import Severity, Verdict
 from tests.grading.support.robots import COLUMNS, EXACT, ROBOTS, Robot
 from tests.grading.support.slips import Slip, slips
 from tests.grading.support.submitting import cell, graded_table, not_correct, row
+from tests.grading.support.worth import about, points
 
 CELLS = [
     (robot, i, j) for robot in ROBOTS for i in range(len(robot.rows)) for j in range(len(COLUMNS))
@@ -34,11 +35,13 @@ def check(slip: Slip, exercise: Exercise) -> None:
 
     label, column = slip.robot.labels[slip.row], COLUMNS[slip.column]
     assert not_correct(report) == {(label, column): slip.verdict}, slip
-    share = report.max_points / len(rows)
+    expected = points(slip.robot, report.max_points, [slip.row])
     assert report.verdict is Verdict.PARTIAL, slip
-    assert report.points == pytest.approx(report.max_points - share / 4), slip
-    assert row(report, label).verdict is Verdict.PARTIAL, slip
-    assert row(report, label).points == pytest.approx(share * 3 / 4), slip
+    assert [row.points for row in report.rows] == about(expected), slip
+    assert report.points == pytest.approx(sum(expected), abs=1e-5), slip
+    # Nothing is partly right that earns nothing.
+    verdict = Verdict.PARTIAL if expected[slip.row] else slip.verdict
+    assert row(report, label).verdict is verdict, slip
 
     [feedback] = cell(report, label, column).feedback
     assert (feedback.code, feedback.severity) == (slip.code, Severity.ERROR), slip

@@ -17,12 +17,12 @@ from service.grading.samples import Samples
 from service.grading.tolerances import SAME_CONTENT
 from service.kinematics.transforms import Matrices, Numbers
 
-Known = NDArray[np.bool_]
+KnownCells = NDArray[np.bool_]
 
 
 def known_cells(
     right: Numbers, lazy: ArrayLike, scale: ArrayLike = 1.0, angle: ArrayLike = False
-) -> Known:
+) -> KnownCells:
     """Which cells ``(...)`` of the right answer ``(..., samples)`` differ from the lazy one.
 
     ``scale`` and ``angle`` are as ``comparison.matches`` takes them.
@@ -31,22 +31,19 @@ def known_cells(
     return np.asarray(error > SAME_CONTENT * np.asarray(scale))
 
 
-def of_rows(known: Known, reference: Known | None = None) -> Content:
-    """The content of rows ``(rows, cells)`` that are worth something each: tables and screws.
-
-    ``reference`` are the cells of the reference's own answer, where other answers are right too.
-    """
+def of_rows(known: KnownCells, most: int | None = None) -> Content:
+    """The content of rows ``(rows, cells)`` that are worth something each: tables and screws."""
     rows = known.tolist()
     groups = [[i] * len(row) for i, row in enumerate(rows)]
-    return Content(rows, groups, besides=True, most=_count(reference))
+    return Content(rows, groups, besides=True, most=most)
 
 
-def of_one_row(known: Known) -> Content:
+def of_one_row(known: KnownCells) -> Content:
     """The content of a single row ``(cells,)``."""
     return Content([_or_all(known).tolist()], [[0] * len(known)])
 
 
-def of_list(known: Known, reference: Known | None = None) -> Content:
+def of_list(known: KnownCells, reference: KnownCells | None = None) -> Content:
     """The content of a list of single values ``(values,)``."""
     cells = [[value] for value in _or_all(known).tolist()]
     return Content(cells, [[0]] * len(cells), most=_count(reference))
@@ -89,7 +86,7 @@ def of_links(
 
 def _differs_from_motion(
     links: Matrices, joints: Sequence[Joint], samples: Samples, scale: float
-) -> Known:
+) -> KnownCells:
     """Which entries ``(links, 4, 4)`` differ from those of the joint's motion alone."""
     lazy = np.tile(np.eye(4), (len(links), samples.count, 1, 1))
     for link, joint in zip(lazy, joints, strict=False):
@@ -104,16 +101,16 @@ def _differs_from_motion(
     return known_cells(np.moveaxis(links, 1, -1), np.moveaxis(lazy, 1, -1), scales)
 
 
-def _differs_from_identity(right: Numbers, length_scale: float) -> Known:
+def _differs_from_identity(right: Numbers, length_scale: float) -> KnownCells:
     scales = np.ones(right.shape[1])
     scales[3:] = length_scale
     return known_cells(right, np.eye(len(right))[..., None], scales)
 
 
-def _or_all(known: Known) -> Known:
+def _or_all(known: KnownCells) -> KnownCells:
     """The same; all cells where the right answer is the lazy one."""
     return known if known.any() else np.ones_like(known)
 
 
-def _count(known: Known | None) -> int | None:
+def _count(known: KnownCells | None) -> int | None:
     return None if known is None else int(np.count_nonzero(known))

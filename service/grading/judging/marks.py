@@ -24,7 +24,8 @@ from service.grading.report import (
 BESIDES: Final = 0.2
 MOST_BESIDES: Final = 1 / 3
 
-Right = Sequence[Sequence[bool]]
+# The verdicts on the cells of each row.
+_Verdicts = Sequence[Sequence[Verdict]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,15 +53,14 @@ def part_report(part: PartSpec, judged: Judged) -> PartReport:
         _with_points(row, possible * part.points, earned * part.points)
         for row, possible, earned in zip(judged.rows, shares.possible, shares.earned, strict=True)
     )
-    verdicts = [row.verdict for row in judged.rows]
     points = rounded_points(sum(shares.earned) * part.points)
-    verdict = combined(verdicts)
+    verdict = combined(row.verdict for row in rows)
     if verdict is Verdict.CORRECT and judged.slips:
         verdict = Verdict.PARTIAL
     return PartReport(
         part=part.id,
         kind=part.kind,
-        verdict=_with_none(verdict, verdicts) if not points else verdict,
+        verdict=verdict if points else _without_points(verdict, rows),
         points=points,
         max_points=part.points,
         follow_through=False,
@@ -83,8 +83,8 @@ def share_by_content(judged: Judged) -> float:
 
 def shares_of(judged: Judged, marking: Marking) -> Shares:
     """The share of each row by a marking. Together they make 1 where everything is right."""
-    right = [[cell.verdict is Verdict.CORRECT for cell in row.cells] for row in judged.rows]
-    shares, slip_cost = _SHARES[marking](judged.content, right)
+    verdicts = [[cell.verdict for cell in row.cells] for row in judged.rows]
+    shares, slip_cost = _SHARES[marking](judged.content, verdicts)
     total = sum(shares.earned) - slip_cost * judged.slips
     if judged.whole_cost is not None and marking != "whole":
         total = max(total, 1 - judged.whole_cost)
@@ -95,16 +95,16 @@ def shares_of(judged: Judged, marking: Marking) -> Shares:
     return shares.with_total(max(0.0, total))
 
 
-def _by_content(content: Content, right: Right) -> tuple[Shares, float]:
+def _by_content(content: Content, verdicts: _Verdicts) -> tuple[Shares, float]:
     """What one has to know, and the cost of a slip that no cell shows: that of a wrong cell.
 
     A wrong cell costs a unit, down to the worth of its group. A student's own frames may have more
     cells that are worth something than the reference's; a wrong cell costs no less for that.
     """
-    groups = _groups_of(content, right)
+    groups = _groups_of(content, verdicts)
     worth = sum(group.worth for group in groups)
     lost = sum(group.lost for group in groups)
-    possible, earned = [0.0] * len(right), [0.0] * len(right)
+    possible, earned = [0.0] * len(verdicts), [0.0] * len(verdicts)
     for group in groups:
         value = 1 / (len(groups) * group.worth) if content.equal else 1 / worth
         for row, units, kept in group.by_row():
@@ -120,10 +120,15 @@ def _by_content(content: Content, right: Right) -> tuple[Shares, float]:
 
 @dataclass(slots=True)
 class _Group:
-    """The worth of a group's cells in each row, and how many of them are wrong."""
+    """The worth of a group's cells in each row, the wrong ones, and the rows with unread ones.
+
+    A cell that was not read costs itself: a unit where one has to know something for it. The others
+    of a row cost a fifth together.
+    """
 
     units: dict[int, float]
     wrong: dict[int, int]
+    unread: set[int]
 
     @property
     def worth(self) -> float:
@@ -131,25 +136,32 @@ class _Group:
 
     @property
     def lost(self) -> float:
-        return min(self.worth, sum(self.wrong.values()))
+        return min(self.worth, sum(map(self.lost_in, self.units)))
+
+    def lost_in(self, row: int) -> float:
+        return self.wrong[row] + BESIDES * (row in self.unread)
 
     def by_row(self) -> Iterator[tuple[int, float, float]]:
         """Each row of the group, its worth and what it keeps."""
-        kept = {row: max(0.0, self.units[row] - self.wrong[row]) for row in self.units}
+        kept = {row: max(0.0, units - self.lost_in(row)) for row, units in self.units.items()}
         # A row cannot lose more than it has; then the others lose the rest.
         factor = (self.worth - self.lost) / (sum(kept.values()) or 1.0)
         for row, units in self.units.items():
             yield row, units, kept[row] * factor
 
 
-def _groups_of(content: Content, right: Right) -> list[_Group]:
+def _groups_of(content: Content, verdicts: _Verdicts) -> list[_Group]:
     groups: dict[int, _Group] = {}
-    rows = zip(content.known, content.groups, right, strict=True)
+    rows = zip(content.known, content.groups, verdicts, strict=True)
     for i, cells in enumerate(rows):
-        for known, number, is_right in zip(*cells, strict=True):
-            group = groups.setdefault(number, _Group({}, {}))
+        for known, number, verdict in zip(*cells, strict=True):
+            group = groups.setdefault(number, _Group({}, {}, set()))
             group.units[i] = group.units.get(i, 0.0) + known
-            group.wrong[i] = group.wrong.get(i, 0) + (not is_right)
+            group.wrong.setdefault(i, 0)
+            if verdict is Verdict.INCORRECT or (known and verdict is not Verdict.CORRECT):
+                group.wrong[i] += 1
+            elif verdict is not Verdict.CORRECT:
+                group.unread.add(i)
     if content.besides:
         most = MOST_BESIDES * content.count / len(groups)
         besides = min(BESIDES, most) or BESIDES
@@ -159,26 +171,31 @@ def _groups_of(content: Content, right: Right) -> list[_Group]:
     return list(groups.values())
 
 
-def _by_cells(_content: Content, right: Right) -> tuple[Shares, float]:
+def _by_cells(_content: Content, verdicts: _Verdicts) -> tuple[Shares, float]:
     """Each cell counts the same."""
-    cells = sum(map(len, right))
-    shares = Shares([len(row) / cells for row in right], [sum(row) / cells for row in right])
-    return shares, 1 / len(right)
+    cells = sum(map(len, verdicts))
+    right = [row.count(Verdict.CORRECT) for row in verdicts]
+    shares = Shares([len(row) / cells for row in verdicts], [count / cells for count in right])
+    return shares, 1 / len(verdicts)
 
 
-def _by_rows(_content: Content, right: Right) -> tuple[Shares, float]:
+def _by_rows(_content: Content, verdicts: _Verdicts) -> tuple[Shares, float]:
     """A row is right or not."""
-    share = 1 / len(right)
-    return Shares([share] * len(right), [share * all(row) for row in right]), share
+    share = 1 / len(verdicts)
+    return Shares([share] * len(verdicts), [share * _is_right(row) for row in verdicts]), share
 
 
-def _as_a_whole(content: Content, right: Right) -> tuple[Shares, float]:
+def _as_a_whole(content: Content, verdicts: _Verdicts) -> tuple[Shares, float]:
     """All or nothing."""
-    shares, _ = _by_content(content, right)
-    return shares.with_total(float(all(map(all, right)))), 1.0
+    shares, _ = _by_content(content, verdicts)
+    return shares.with_total(float(all(map(_is_right, verdicts)))), 1.0
 
 
-_SHARES: Final[Mapping[Marking, Callable[[Content, Right], tuple[Shares, float]]]] = {
+def _is_right(row: Sequence[Verdict]) -> bool:
+    return all(verdict is Verdict.CORRECT for verdict in row)
+
+
+_SHARES: Final[Mapping[Marking, Callable[[Content, _Verdicts], tuple[Shares, float]]]] = {
     "content": _by_content,
     "cells": _by_cells,
     "rows": _by_rows,
@@ -189,14 +206,13 @@ _SHARES: Final[Mapping[Marking, Callable[[Content, Right], tuple[Shares, float]]
 def _with_points(row: RowReport, possible: float, earned: float) -> RowReport:
     """The row with its points."""
     points = rounded_points(earned)
-    verdict = row.verdict
-    if not points:
-        verdict = _with_none(verdict, [cell.verdict for cell in row.cells])
+    verdict = row.verdict if points else _without_points(row.verdict, [row])
     return RowReport(row.label, verdict, points, rounded_points(possible), row.cells, row.feedback)
 
 
-def _with_none(verdict: Verdict, of_pieces: Sequence[Verdict]) -> Verdict:
-    """The verdict on something without points: nothing is partly right that earns nothing."""
+def _without_points(verdict: Verdict, rows: Sequence[RowReport]) -> Verdict:
+    """The verdict on rows that earn nothing: nothing is partly right that earns nothing."""
     if verdict is not Verdict.PARTIAL:
         return verdict
-    return combined(piece for piece in of_pieces if piece not in (Verdict.CORRECT, Verdict.PARTIAL))
+    of_cells = {cell.verdict for row in rows for cell in row.cells}
+    return combined(of_cells - {Verdict.CORRECT})

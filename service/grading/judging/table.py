@@ -16,19 +16,13 @@ from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.comparison import Match, difference, matches, same
 from service.grading.feedback import Finding
 from service.grading.joint_motion import changes
-from service.grading.judging.content import known_cells, of_rows
 from service.grading.judging.own_frames.best_roles import best_roles, without_idle_rows
 from service.grading.judging.own_frames.few_cells import NearestTable, frames_from_reference
 from service.grading.judging.own_frames.nearest_table import parallel_neighbours
 from service.grading.judging.own_frames.reference import reference_values
 from service.grading.judging.own_frames.remarks import remarks_on
-from service.grading.judging.own_frames.row_roles import (
-    Role,
-    joint_variables,
-    pair_in_order,
-    variable_column,
-)
-from service.grading.part import Content, Grading
+from service.grading.judging.own_frames.row_roles import Role, pair_in_order, variable_column
+from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE, StudentRow, values_of
 from service.grading.samples import SAMPLES
 from service.grading.tolerances import HUGE_CELL, HUGE_LENGTH, PLAINLY_DIFFERENT, SAME_MOTION
@@ -232,22 +226,6 @@ def _matches_of(judged: Sequence[JudgedRow], grading: Grading) -> NDArray[np.int
         too_far = (found == Match.EXACT) & (error > HUGE_CELL * scales)
         found = np.where(too_far, int(Match.DIFFERENT), found)
     return found
-
-
-def table_content(judgement: Judgement, convention: Convention, grading: Grading) -> Content:
-    """The cells that differ from a lazy table's: 0, and the bare joint variable in its place."""
-    scales, angle = column_scales(grading), IS_ANGLE[:, None]
-    lazy = joint_variables([judged.joint for judged in judgement.rows], grading.samples)
-    known = known_cells(
-        np.array([judged.expected for judged in judgement.rows]), lazy, scales, angle
-    )
-    reference = grading.exercise.robot.tables.get(convention)
-    if not judgement.roles or reference is None:
-        return of_rows(known)
-    values = reference_values(reference, grading.samples)
-    fixed = [None] * (len(values) - len(reference.joints))
-    lazy = joint_variables([*reference.joints, *fixed], grading.samples)
-    return of_rows(known, known_cells(values, lazy, scales, angle))
 
 
 def column_scales(grading: Grading) -> Numbers:

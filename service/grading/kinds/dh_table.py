@@ -12,7 +12,8 @@ from service.grading.feedback import Finding
 from service.grading.follow_through import stands_still
 from service.grading.judging.own_frames.best_roles import roles_in, rows_of_mechanism
 from service.grading.judging.report_rows import cell_report
-from service.grading.judging.table import JudgedRow, Judgement, judged_table, table_content
+from service.grading.judging.table import JudgedRow, Judgement, judged_table
+from service.grading.judging.table_content import table_content
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.column_headers import QUANTITIES
 from service.grading.reading.table import StudentTable, read_table
@@ -46,9 +47,9 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
         return judged
     convention, _ = _convention(part, answer, grading.exercise)
     kept = rows_of_mechanism(answer.rows, convention, grading)
-    extra = [i for i, row in enumerate(answer.rows) if i not in kept and not row.is_zero]
-    if not extra:
+    if len(kept) == len(answer.rows):
         return judged
+    extra = [i for i, row in enumerate(answer.rows) if i not in kept and not row.is_zero]
     rows = tuple(answer.rows[i] for i in kept)
     without = _judged(part, replace(answer, rows=rows, values=answer.values[kept]), grading)
     messages = grading.visible(tuple(map(_row_too_many, extra)))
@@ -80,7 +81,7 @@ def _judged(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged
     extra = grading.visible(tuple(_extra_row(i) for i in judgement.extra))
     return Judged(
         _row_reports(judgement, grading, found),
-        table_content(judgement, convention, grading),
+        table_content(part, judgement, convention, grading),
         (*messages, *missing, *extra),
         slips=judgement.slips,
         whole_cost=_cost_of(found) if found else None,

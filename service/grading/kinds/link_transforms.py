@@ -6,8 +6,6 @@ import numpy as np
 
 from service.catalogue.formulas import HOMOGENEOUS
 from service.catalogue.parts.link_transforms import LinkTransformsSpec
-from service.expressions import Vocabulary
-from service.expressions import read as read_expression
 from service.grading.diagnosis.matrix_entry import WORK_BUDGET
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.follow_through import stands_still
@@ -17,9 +15,8 @@ from service.grading.judging.own_frames.best_roles import nearest_with_tool_row
 from service.grading.judging.own_frames.row_roles import FrameFreedom, Role
 from service.grading.kinds.matrix_rows import matrix_rows
 from service.grading.part import Content, Grading, Judged, StudentChain
-from service.grading.reading.entry import Entry
 from service.grading.reading.matrix import StudentMatrix, read_matrix
-from service.grading.reading.table import StudentRow
+from service.grading.reading.table import StudentRow, computed_row
 from service.grading.report import Feedback, RowReport
 from service.grading.samples import SAMPLES, Samples
 from service.grading.tolerances import LINK_TRANSFORM
@@ -27,9 +24,6 @@ from service.kinematics.chain import links, products
 from service.kinematics.dh import link_transforms
 from service.kinematics.dh_row import row as dh_row
 from service.kinematics.transforms import Matrices, Numbers
-
-# A number that was worked out of a matrix stands for a cell that was read.
-_WORKED_OUT = Entry(read_expression(0, Vocabulary([])))
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +135,7 @@ def _row(matrix: Matrices, part: LinkTransformsSpec) -> StudentRow | None:
     row = dh_row(matrix, part.convention)
     if np.abs(link_transforms(part.convention, *row) - matrix).max() > LINK_TRANSFORM:
         return None
-    return StudentRow((_WORKED_OUT,) * 4, row)
+    return computed_row(row)
 
 
 def _wrong_shape(labels: tuple[str, ...]) -> Finding:

@@ -76,10 +76,11 @@ def judge(part: ScrewAxesSpec, answer: StudentMatrix, grading: Grading) -> Judge
 
 
 def _known(axes: Numbers, grading: Grading) -> NDArray[np.bool_]:
-    """Which numbers ``(joints, 6)`` differ from those of an axis that is z of the base frame."""
+    """Which numbers ``(joints, 6)`` are neither 0 nor those of an axis that is z of the frame."""
     turns = np.abs(axes[:, :3]).max(axis=(1, 2)) > 0
     lazy = np.where(turns[:, None], [0, 0, 1, 0, 0, 0], [0, 0, 0, 0, 0, 1])
-    return known_cells(axes, lazy[..., None], _scale(grading))
+    scale = _scale(grading)
+    return known_cells(axes, lazy[..., None], scale) & known_cells(axes, 0.0, scale)
 
 
 REVERSED = Finding(

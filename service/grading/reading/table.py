@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from service.expressions import Vocabulary
+from service.expressions import read as read_expression
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.reading.column_headers import QUANTITIES
 from service.grading.reading.entry import MISSING, Entry, Reader, entry_values, unreadable
@@ -132,6 +134,15 @@ def _table(
         return StudentTable((), _NO_ROWS, convention, findings)
     values = _values(read, reader.samples)
     return StudentTable(tuple(map(StudentRow, read, values)), values, convention, findings)
+
+
+# A number that was computed stands for a cell that was read.
+_COMPUTED = Entry(read_expression(0, Vocabulary([])))
+
+
+def computed_row(values: Table) -> StudentRow:
+    """A row as if somebody had handed in these numbers, ``(4, SAMPLES)``."""
+    return StudentRow((_COMPUTED,) * len(COLUMNS), values)
 
 
 _NO_ROWS: Table = np.empty((0, len(COLUMNS), 0))

@@ -40,7 +40,8 @@ def _in_space(exercise: Exercise, algebra: Algebra) -> list[tuple[sympy.Matrix, 
 
 
 def lazy(part: ScrewAxesSpec, exercise: Exercise) -> list[object]:
-    """Each axis is z of the base frame."""
+    """Zeros, and each axis z of the base frame."""
     kinds = [joint.prismatic for joint in exercise.joints]
     prismatic = kinds if part.expected is None else [False] * len(part.expected)
-    return [[["0"] * 5 + ["1"] if slides else [*"001000"] for slides in prismatic]]
+    axes = [["0"] * 5 + ["1"] if slides else [*"001000"] for slides in prismatic]
+    return [axes, [["0"] * 6] * len(axes)]

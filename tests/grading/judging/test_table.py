@@ -15,6 +15,7 @@ from tests.grading.support.submitting import (
     part,
     table,
 )
+from tests.grading.support.worth import about, points, worth_of_rows
 
 NOTHING: Row = ("0", "0", "0", "0")
 
@@ -44,7 +45,8 @@ def test_a_missing_row_costs_that_row_only(
     expected = [Verdict.CORRECT] * len(robot.rows)
     expected[missing] = Verdict.MISSING
     assert verdicts(report) == expected
-    assert report.points == pytest.approx(report.max_points * len(rows) / len(robot.rows))
+    kept = points(robot, report.max_points, [missing] * 4)
+    assert [row.points for row in report.rows] == about(kept)
     label = robot.labels[missing]
     assert codes(report) == ["missing_tool_row" if label == "e" else "missing_row"]
     assert report.feedback[0].row == label
@@ -52,7 +54,7 @@ def test_a_missing_row_costs_that_row_only(
 
 
 @pytest.mark.parametrize("place", range(7))
-def test_an_extra_row_is_left_out_and_costs_a_rows_worth(
+def test_an_extra_row_is_left_out_and_costs_what_a_wrong_cell_costs(
     place: int, given_frames: Mapping[str, Exercise]
 ) -> None:
     rows = EXACT.rows(STANFORD)
@@ -60,8 +62,10 @@ def test_an_extra_row_is_left_out_and_costs_a_rows_worth(
     report = graded_table(given_frames[STANFORD.exercise], rows)
     assert verdicts(report) == [Verdict.CORRECT] * 6
     assert report.verdict is Verdict.PARTIAL
-    assert report.points == pytest.approx(10)
-    assert codes(report) == ["extra_row"]
+    worth = sum(worth_of_rows(STANFORD))
+    assert report.points == pytest.approx(12 * (worth - 1) / worth, abs=1e-5)
+    assert sum(row.points for row in report.rows) == pytest.approx(report.points, abs=1e-5)
+    assert codes(report) == ["extra_row", "row_too_many"]
     assert f"Row {place + 1} " in report.feedback[0].message
 
 
@@ -91,7 +95,9 @@ def test_twelve_rows_are_read_and_thirteen_are_not(given_frames: Mapping[str, Ex
     wrong: Row = ("1", "1", "1", "1")
     twelve = graded_table(exercise, [*EXACT.rows(STANFORD), *[wrong] * 6])
     assert verdicts(twelve) == [Verdict.CORRECT] * 6
-    assert (twelve.points, codes(twelve)) == (0, ["extra_row"] * 6)
+    worth = sum(worth_of_rows(STANFORD))
+    assert twelve.points == pytest.approx(12 * (worth - 6) / worth, abs=1e-5)
+    assert codes(twelve).count("extra_row") == 6
     thirteen = graded_table(exercise, [*EXACT.rows(STANFORD), *[NOTHING] * 7])
     assert (thirteen.verdict, thirteen.rows) == (Verdict.UNREADABLE, ())
     assert codes(thirteen) == ["too_many_rows"]

@@ -141,8 +141,9 @@ def test_in_a_singular_configuration_the_sum_counts(answer: object, make_exercis
 def test_in_a_singular_configuration_not_everything_is_right(
     answer: object, make_exercise: Make
 ) -> None:
+    """One has to know the sum only: what is wrong there leaves nothing."""
     report = graded(make_exercise(SINGULAR), answer)
-    assert report.verdict is Verdict.PARTIAL
+    assert (report.verdict, report.points) == (Verdict.INCORRECT, 0)
     assert len(not_correct(report)) == 1
 
 

@@ -64,7 +64,9 @@ def test_without_a_table_a_wrong_matrix_is_named(scara: Exercise) -> None:
 def test_a_matrix_left_off_is_missing_and_the_others_are_graded(scara: Exercise) -> None:
     part = graded(scara, table=table(TABLE), links=LINKS[:3])["links"]
     assert {row for row, _ in wrong_cells(part)} == {"A4.1", "A4.2", "A4.3", "A4.4"}
-    assert part.points == 6
+    # A1 has 2 entries that differ from those of the joint's motion, A2 5, A3 none and A4 1.
+    worth = [2.2, 5.2, 0.2, 1.2]
+    assert part.points == pytest.approx(8 * sum(worth[:3]) / sum(worth), abs=1e-5)
 
 
 @pytest.mark.parametrize("answer", [5, "x", {}, [5], [[["1"]] * 9], [IDENTITY] * 5, [[]]])

@@ -1,0 +1,71 @@
+"""The cells of a table that one has to know something for."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+
+from service.catalogue import Exercise, Joint
+from service.catalogue.parts.dh_table import DhTableSpec
+from service.grading.feedback import FeedbackLevel
+from service.grading.judging.content import KnownCells, known_cells, of_rows
+from service.grading.judging.own_frames.nearest_table import nearest_for_roles
+from service.grading.judging.own_frames.row_roles import Role, freedom_of, joint_variables
+from service.grading.judging.table import Judgement, column_scales
+from service.grading.part import Content, Grading
+from service.grading.reading.entry import Reader
+from service.grading.reading.table import IS_ANGLE, computed_row
+from service.grading.samples import draw
+from service.kinematics.chain import Table
+from service.kinematics.dh import Convention
+
+
+def table_content(
+    part: DhTableSpec, judgement: Judgement, convention: Convention, grading: Grading
+) -> Content:
+    """The cells that differ from a lazy table's: 0, and the bare joint variable in its place."""
+    joints = [judged.joint for judged in judgement.rows]
+    expected = np.array([judged.expected for judged in judgement.rows])
+    known = _differs_from_lazy(expected, joints, grading)
+    if not (judgement.roles and judgement.wrong):
+        return of_rows(known)
+    return of_rows(
+        known, _fewest(_Task(grading.exercise.version, part, convention, grading.exercise))
+    )
+
+
+def _differs_from_lazy(
+    table: Table, joints: Sequence[Joint | None], grading: Grading
+) -> KnownCells:
+    lazy = joint_variables(joints, grading.samples)
+    return known_cells(table, lazy, column_scales(grading), IS_ANGLE[:, None])
+
+
+@dataclass(frozen=True)
+class _Task:
+    """A table that is asked for; tasks are told apart by the version of their exercise."""
+
+    version: str
+    part: DhTableSpec
+    convention: Convention
+    exercise: Exercise = field(compare=False)
+
+
+@lru_cache(maxsize=256)
+def _fewest(task: _Task) -> int:
+    """How few cells of a valid table differ from the lazy one.
+
+    Along parallel axes two lengths may be added up in one cell, and a student may write numbers of
+    one's own into two others. They are worth nothing more.
+    """
+    exercise, samples = task.exercise, draw(task.exercise, None)
+    reader = Reader.of(exercise, samples, "radians")
+    grading = Grading(exercise, samples, reader, FeedbackLevel.SCORE)
+    reference = exercise.robot.tables.get(task.convention)
+    count = len(exercise.joints if reference is None else reference.rows)
+    joints = [*exercise.joints, *[None] * (count - len(exercise.joints))]
+    lazy = joint_variables(joints, samples)
+    roles = tuple(Role(computed_row(row), joint) for row, joint in zip(lazy, joints, strict=True))
+    nearest = nearest_for_roles(roles, task.convention, freedom_of(task.part), grading)
+    return int(np.count_nonzero(_differs_from_lazy(nearest.expected, joints, grading)))
