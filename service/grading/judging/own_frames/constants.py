@@ -47,7 +47,12 @@ def row_constants(
     constants = (cells - counts @ variables)[..., :HALF]
     written = np.where((is_gradable & linear)[..., None], constants, np.nan)
     wrong_regardless = is_gradable & ~(linear & (counts == expected).all(axis=-1))
-    rounded = np.array([role.row.rounded if role.row else [False] * 4 for role in roles])
+    rounded = np.array(
+        [
+            [entry.may_be_rounded for entry in role.row.entries] if role.row else [False] * 4
+            for role in roles
+        ]
+    )
     rows = zip(
         regrouped(written, convention),
         regrouped(is_gradable, convention),
