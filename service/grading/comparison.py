@@ -33,6 +33,8 @@ MAX_SHARED_DECIMALS = 64
 # Each step leaves about a hundredth of the error that the step before has left.
 FIT_STEPS = 8
 PROJECTIONS = 100
+# Unknowns, relative to those with the largest effect.
+NO_EFFECT = 1e-9
 # Of a number with three figures rounding leaves off up to a hundredth.
 LARGEST_SLACK = 0.01
 
@@ -180,23 +182,35 @@ def fitted_shifts(
     """The shifts of ``count`` decimals ``(count,)`` that leave no error; None if there are none.
 
     ``errors`` gives the errors ``(K, n)`` for shifts ``(K, count)``. Each shift is as large as
-    rounding or cutting off leaves it. Gauss and Newton's method with the derivative at the start,
-    for the shifts are small.
+    rounding or cutting off leaves it.
     """
     steps = np.eye(count) / 2
     rates = (errors(steps) - errors(-steps)).T
-    if not np.isfinite(rates).all():
+    return fitted_unknowns(lambda shifts: errors(shifts[None])[0], rates, count, tolerance)
+
+
+def fitted_unknowns(
+    errors: Callable[[Numbers], Numbers], rates: Numbers, count: int, tolerance: float
+) -> Numbers | None:
+    """The unknowns ``(N,)`` that leave no error, of which the first ``count`` are shifts.
+
+    None if there are none. ``errors`` gives the errors ``(n,)`` for unknowns, ``rates`` ``(n, N)``
+    is its derivative where they are 0. Gauss and Newton's method with that derivative throughout,
+    for all of them are small.
+    """
+    unknowns = np.zeros(rates.shape[1])
+    error = errors(unknowns)
+    if not (np.isfinite(rates).all() and np.isfinite(error).all()):
         return None
-    solver = np.linalg.pinv(rates, rcond=1e-9)
-    shifts = np.zeros(count)
-    error = errors(shifts[None])[0]
+    solver = np.linalg.pinv(rates, rcond=NO_EFFECT)
+    determined = solver @ rates
     for _ in range(FIT_STEPS):
         before = float(np.abs(error).max())
-        shifts = _nearest_allowed(shifts - solver @ error, solver @ rates)
-        error = errors(shifts[None])[0]
+        unknowns = _nearest_allowed(unknowns - solver @ error, determined, count)
+        error = errors(unknowns)
         largest = float(np.abs(error).max())
         if largest <= tolerance:
-            return shifts if are_allowed(shifts) else None
+            return unknowns if are_allowed(unknowns[:count]) else None
         # NaN is not less than anything.
         if not largest < before / 2:
             return None
@@ -241,27 +255,28 @@ def are_allowed(shifts: Numbers) -> bool:
     return bool((shifts >= -ROUNDED_UP).all() and (shifts <= CUT_OFF).all())
 
 
-def _nearest_allowed(shifts: Numbers, determined: Numbers) -> Numbers:
-    """Shifts with the same effect that are allowed, if there are any.
+def _nearest_allowed(unknowns: Numbers, determined: Numbers, count: int) -> Numbers:
+    """Unknowns with the same effect whose shifts are allowed, if there are any.
 
-    ``determined`` ``(m, m)`` projects shifts on those that have an effect. Of two decimals of which
-    only the sum counts, one alone may not make up for both. Projections on both sets in turn meet
-    in their intersection (von Neumann, Bregman).
+    ``determined`` ``(N, N)`` projects unknowns on those that have an effect. Of two decimals of
+    which only the sum counts, one alone may not make up for both. Projections on both sets in turn
+    meet in their intersection (von Neumann, Bregman).
     """
-    if are_allowed(shifts):
-        return shifts
-    effect = determined @ shifts
-    tried: Numbers = effect + (np.eye(len(shifts)) - determined) @ np.full(len(shifts), _MIDDLE)
+    if are_allowed(unknowns[:count]):
+        return unknowns
+    effect = determined @ unknowns
+    tried: Numbers = unknowns
     for _ in range(PROJECTIONS):
-        if are_allowed(tried):
-            return tried
-        inside = np.clip(tried, _LOWEST, _HIGHEST)
+        inside = tried.copy()
+        inside[:count] = np.clip(tried[:count], _LOWEST, _HIGHEST)
         tried = inside - determined @ inside + effect
+        if are_allowed(tried[:count]):
+            break
     return tried
 
 
-_LOWEST, _HIGHEST = -ROUNDED_UP, CUT_OFF
-_MIDDLE = (_LOWEST + _HIGHEST) / 2
+# A little inside, so that projections get there.
+_LOWEST, _HIGHEST = -ROUNDED_UP + 1e-7, CUT_OFF - 1e-7
 
 
 def _tolerance(expected: Numbers, scale: ArrayLike) -> Numbers:
