@@ -30,11 +30,11 @@ from service.kinematics.transforms import Numbers
 # More decimals in one entry are taken as they are written: the work grows with their number.
 MAX_DECIMALS = 16
 MAX_SHARED_DECIMALS = 64
-# Each step leaves about a hundredth of the error that the step before has left.
-FIT_STEPS = 8
 PROJECTIONS = 100
-# Unknowns, relative to those with the largest effect.
-NO_EFFECT = 1e-9
+# What an unknown must at least do to the errors, relative to those that do most, in each step of a
+# fit. Where two axes are parallel but for rounding, only the sum of what is measured along them has
+# an effect; the smaller the errors that are left, the better this is seen.
+LEAST_EFFECTS = (3e-2, 1e-3, 1e-5, 1e-7, 1e-9, 1e-9)
 # Of a number with three figures rounding leaves off up to a hundredth.
 LARGEST_SLACK = 0.01
 
@@ -185,35 +185,44 @@ def fitted_shifts(
     rounding or cutting off leaves it.
     """
     steps = np.eye(count) / 2
-    rates = (errors(steps) - errors(-steps)).T
-    return fitted_unknowns(lambda shifts: errors(shifts[None])[0], rates, count, tolerance)
+    ways = np.concatenate([steps, -steps, np.zeros((1, count))])
+
+    def linearised(shifts: Numbers) -> tuple[Numbers, Numbers]:
+        found = errors(shifts + ways)
+        return found[-1], (found[:count] - found[count:-1]).T
+
+    return fitted_unknowns(linearised, count, count, tolerance)
 
 
 def fitted_unknowns(
-    errors: Callable[[Numbers], Numbers], rates: Numbers, count: int, tolerance: float
+    linearised: Callable[[Numbers], tuple[Numbers, Numbers]],
+    size: int,
+    count: int,
+    tolerance: float,
 ) -> Numbers | None:
-    """The unknowns ``(N,)`` that leave no error, of which the first ``count`` are shifts.
+    """The unknowns ``(size,)`` that leave no error, of which the first ``count`` are shifts.
 
-    None if there are none. ``errors`` gives the errors ``(n,)`` for unknowns, ``rates`` ``(n, N)``
-    is its derivative where they are 0. Gauss and Newton's method with that derivative throughout,
-    for all of them are small.
+    None if there are none. ``linearised`` gives the errors ``(n,)`` for unknowns, and their
+    derivative ``(n, size)``. All unknowns are small, so Gauss and Newton's method needs few steps.
     """
-    unknowns = np.zeros(rates.shape[1])
-    error = errors(unknowns)
-    if not (np.isfinite(rates).all() and np.isfinite(error).all()):
-        return None
-    solver = np.linalg.pinv(rates, rcond=NO_EFFECT)
-    determined = solver @ rates
-    for _ in range(FIT_STEPS):
-        before = float(np.abs(error).max())
-        unknowns = _nearest_allowed(unknowns - solver @ error, determined, count)
-        error = errors(unknowns)
-        largest = float(np.abs(error).max())
-        if largest <= tolerance:
-            return unknowns if are_allowed(unknowns[:count]) else None
-        # NaN is not less than anything.
-        if not largest < before / 2:
+    unknowns, first = np.zeros(size), np.inf
+    for step, least_effect in enumerate(LEAST_EFFECTS):
+        error, rates = linearised(unknowns)
+        if not (np.isfinite(rates).all() and np.isfinite(error).all()):
             return None
+        largest = float(np.abs(error).max())
+        if largest <= tolerance and are_allowed(unknowns[:count]):
+            return unknowns
+        if step == 0:
+            first = largest
+        elif step > 1 and largest > first / 2:
+            return None
+        sizes = np.linalg.norm(rates, axis=0)
+        sizes[sizes == 0.0] = 1.0
+        solver = np.linalg.pinv(rates / sizes, rcond=least_effect)
+        moved = unknowns * sizes - solver @ error
+        bounds = np.outer([_LOWEST, _HIGHEST], sizes[:count])
+        unknowns = _nearest_inside(moved, solver @ (rates / sizes), bounds) / sizes
     return None
 
 
@@ -255,24 +264,23 @@ def are_allowed(shifts: Numbers) -> bool:
     return bool((shifts >= -ROUNDED_UP).all() and (shifts <= CUT_OFF).all())
 
 
-def _nearest_allowed(unknowns: Numbers, determined: Numbers, count: int) -> Numbers:
-    """Unknowns with the same effect whose shifts are allowed, if there are any.
+def _nearest_inside(unknowns: Numbers, determined: Numbers, bounds: Numbers) -> Numbers:
+    """Unknowns with the same effect, the first of which are inside bounds, if there are any.
 
-    ``determined`` ``(N, N)`` projects unknowns on those that have an effect. Of two decimals of
-    which only the sum counts, one alone may not make up for both. Projections on both sets in turn
-    meet in their intersection (von Neumann, Bregman).
+    ``bounds`` ``(2, count)`` are the lower and the upper ones. ``determined`` ``(N, N)`` projects
+    unknowns on those that have an effect. Of two decimals of which only the sum counts, one alone
+    may not make up for both. Projections on both sets in turn meet in their intersection (von
+    Neumann, Bregman).
     """
-    if are_allowed(unknowns[:count]):
-        return unknowns
+    (lower, upper), count = bounds, bounds.shape[1]
     effect = determined @ unknowns
-    tried: Numbers = unknowns
     for _ in range(PROJECTIONS):
-        inside = tried.copy()
-        inside[:count] = np.clip(tried[:count], _LOWEST, _HIGHEST)
-        tried = inside - determined @ inside + effect
-        if are_allowed(tried[:count]):
+        clipped = np.clip(unknowns[:count], lower, upper)
+        if (clipped == unknowns[:count]).all():
             break
-    return tried
+        inside = np.concatenate([clipped, unknowns[count:]])
+        unknowns = inside - determined @ inside + effect
+    return unknowns
 
 
 # A little inside, so that projections get there.

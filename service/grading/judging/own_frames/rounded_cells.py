@@ -95,23 +95,22 @@ class _Chain:
         """The shifts ``(count,)`` and other unknowns ``(free, L)`` that leave no error."""
         count, sets = self.decimals.count, self.links.shape[-1]
         steps = np.eye(count + self.free) / 2
-        ways = np.concatenate([steps, -steps])
-        free = np.repeat(ways[:, count:, None], sets, axis=-1)
-        ahead, behind = np.split(self.misfits(ways[:, :count], free), 2)
-        rates = ahead - behind
-        # Each of the other unknowns acts at its own set of links alone.
-        own = np.einsum("fnl,lk->flnk", rates[count:], np.eye(sets))
-        size = rates.shape[1] * sets
-        columns = [rates[:count].reshape(count, size), own.reshape(self.free * sets, size)]
+        ways = np.concatenate([steps, -steps, np.zeros((1, len(steps)))])
 
         def split(unknowns: Numbers) -> tuple[Numbers, Numbers]:
             return unknowns[:count], unknowns[count:].reshape(self.free, sets)
 
-        def errors(unknowns: Numbers) -> Numbers:
-            shifts, others = split(unknowns)
-            return self.misfits(shifts[None], others[None]).ravel()
+        def linearised(unknowns: Numbers) -> tuple[Numbers, Numbers]:
+            shifts, free = split(unknowns)
+            found = self.misfits(ways[:, :count] + shifts, ways[:, count:, None] + free)
+            rates = found[: len(steps)] - found[len(steps) : -1]
+            # Each of the other unknowns acts at its own set of links alone.
+            own = np.einsum("fnl,lk->flnk", rates[count:], np.eye(sets))
+            size = found[-1].size
+            columns = [rates[:count].reshape(count, size), own.reshape(self.free * sets, size)]
+            return found[-1].ravel(), np.concatenate(columns).T
 
-        found = fitted_unknowns(errors, np.concatenate(columns).T, count, EXACT_VALUE)
+        found = fitted_unknowns(linearised, count + self.free * sets, count, EXACT_VALUE)
         return None if found is None else split(found)
 
 
