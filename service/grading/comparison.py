@@ -31,10 +31,10 @@ from service.kinematics.transforms import Numbers
 MAX_DECIMALS = 16
 MAX_SHARED_DECIMALS = 64
 PROJECTIONS = 100
-# What an unknown must at least do to the errors, relative to those that do most, in each step of a
-# fit. Where two axes are parallel but for rounding, only the sum of what is measured along them has
-# an effect; the smaller the errors that are left, the better this is seen.
-LEAST_EFFECTS = (3e-2, 1e-3, 1e-5, 1e-7, 1e-9, 1e-9)
+# What an unknown must at least do to the errors, for its size and relative to those that do most,
+# in each step of a fit. Where two axes are parallel but for rounding, only the sum of what is
+# measured along them has an effect; the smaller the errors that are left, the better this is seen.
+LEAST_EFFECTS = (5e-2, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-9)
 # Of a number with three figures rounding leaves off up to a hundredth.
 LARGEST_SLACK = 0.01
 
@@ -120,7 +120,7 @@ def is_rounded(
         return np.asarray(difference(values, expected[None], angle))
 
     tolerance = float(_tolerance(expected, scale))
-    return fitted_shifts(errors, count, tolerance) is not None
+    return fitted_shifts(errors, decimals.units, tolerance) is not None
 
 
 def nearly_equal(
@@ -177,13 +177,14 @@ def rounding_slack(expression: Expression, samples: Samples) -> float:
 
 
 def fitted_shifts(
-    errors: Callable[[Numbers], Numbers], count: int, tolerance: float
+    errors: Callable[[Numbers], Numbers], units: Numbers, tolerance: float
 ) -> Numbers | None:
-    """The shifts of ``count`` decimals ``(count,)`` that leave no error; None if there are none.
+    """The shifts ``(m,)`` of decimals that leave no error; None if there are none.
 
-    ``errors`` gives the errors ``(K, n)`` for shifts ``(K, count)``. Each shift is as large as
-    rounding or cutting off leaves it.
+    ``errors`` gives the errors ``(K, n)`` for shifts ``(K, m)``, ``units`` ``(m,)`` are those of
+    the decimals. Each shift is as large as rounding or cutting off leaves it.
     """
+    count = len(units)
     steps = np.eye(count) / 2
     ways = np.concatenate([steps, -steps, np.zeros((1, count))])
 
@@ -191,21 +192,22 @@ def fitted_shifts(
         found = errors(shifts + ways)
         return found[-1], (found[:count] - found[count:-1]).T
 
-    return fitted_unknowns(linearised, count, count, tolerance)
+    return fitted_unknowns(linearised, units, count, tolerance)
 
 
 def fitted_unknowns(
     linearised: Callable[[Numbers], tuple[Numbers, Numbers]],
-    size: int,
+    sizes: Numbers,
     count: int,
     tolerance: float,
 ) -> Numbers | None:
-    """The unknowns ``(size,)`` that leave no error, of which the first ``count`` are shifts.
+    """The unknowns ``(N,)`` that leave no error, of which the first ``count`` are shifts.
 
     None if there are none. ``linearised`` gives the errors ``(n,)`` for unknowns, and their
-    derivative ``(n, size)``. All unknowns are small, so Gauss and Newton's method needs few steps.
+    derivative ``(n, N)``; ``sizes`` ``(N,)`` is how large an error an unknown makes that acts
+    directly. All unknowns are small, so Gauss and Newton's method needs few steps.
     """
-    unknowns, first = np.zeros(size), np.inf
+    unknowns, first = np.zeros(len(sizes)), np.inf
     for step, least_effect in enumerate(LEAST_EFFECTS):
         error, rates = linearised(unknowns)
         if not (np.isfinite(rates).all() and np.isfinite(error).all()):
@@ -217,8 +219,6 @@ def fitted_unknowns(
             first = largest
         elif step > 1 and largest > first / 2:
             return None
-        sizes = np.linalg.norm(rates, axis=0)
-        sizes[sizes == 0.0] = 1.0
         solver = np.linalg.pinv(rates / sizes, rcond=least_effect)
         moved = unknowns * sizes - solver @ error
         bounds = np.outer([_LOWEST, _HIGHEST], sizes[:count])
@@ -229,7 +229,7 @@ def fitted_unknowns(
 class SharedDecimals:
     """The rounded decimals of several entries, which may be right together and not each by itself.
 
-    ``count`` is their number; 0 where there are none or too many.
+    ``units`` ``(count,)`` are theirs; ``count`` is 0 where there are none or too many.
     """
 
     def __init__(self, expressions: Sequence[Expression | None], samples: Samples) -> None:
@@ -237,6 +237,7 @@ class SharedDecimals:
         self._samples = samples
         self._parts: list[tuple[int, Decimals, slice]] = []
         self.count = 0
+        self.units = np.zeros(0)
         for i, expression in enumerate(expressions):
             if expression is None or not expression.has_decimal:
                 continue
@@ -245,6 +246,7 @@ class SharedDecimals:
                 places = slice(self.count, self.count + len(decimals.units))
                 self._parts.append((i, decimals, places))
                 self.count = places.stop
+                self.units = np.append(self.units, decimals.units)
         if self.count > MAX_SHARED_DECIMALS:
             self._parts, self.count = [], 0
 

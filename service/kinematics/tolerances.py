@@ -16,6 +16,8 @@ SAME_SCREW: Final = 1e-7
 PARALLEL: Final = 1e-7
 # An axis that helps to fix a basis must be far from parallel, for it is divided by this sine.
 CLEARLY_NOT_PARALLEL: Final = 100 * PARALLEL
+# Two axes that are parallel but for angles with three figures are not farther from it.
+NOT_PARALLEL_BY_ROUNDING: Final = 3e-2
 # An x axis that lies along a common normal, one way or the other: its cosine, less 1.
 ALONG_NORMAL: Final = 1e-6
 # An x axis along z: the length of its projection on the plane across z.

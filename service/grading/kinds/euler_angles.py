@@ -119,7 +119,7 @@ def _are_rounded(
         described = from_angles(part.turns, np.swapaxes(angles, 1, 2), fixed=part.axes == "fixed")
         return np.asarray((described - rotation).reshape(len(shifts), -1))
 
-    return fitted_shifts(errors, decimals.count, EXACT_VALUE) is not None
+    return fitted_shifts(errors, decimals.units, EXACT_VALUE) is not None
 
 
 def nearest_triple(

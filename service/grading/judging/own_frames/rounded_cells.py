@@ -40,6 +40,8 @@ LINKS = 6
 # The unit of the unknowns that are no shifts: an angle, and the same part of the typical length.
 SMALL = 1e-2
 TWIST = 6
+# A decimal without effect has some size.
+LEAST_SIZE = 1e-16
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +93,14 @@ class _Chain:
         turn[..., :3, 3] = np.swapaxes(SMALL * self.length_scale * twist[:, 3:], 1, 2)
         return np.asarray(turn @ self.base)
 
+    def _sizes(self) -> Numbers:
+        """By how much a unit of each decimal changes its own cell, at most: ``(count,)``."""
+        cells = self.values.reshape(-1, SAMPLES)
+        moved = self.decimals.shifted(np.eye(self.decimals.count), cells) - cells
+        lengths = np.tile(np.where(IS_ANGLE, 1.0, self.length_scale), len(self.values))
+        largest: Numbers = np.abs(moved / lengths[:, None]).max(axis=(1, 2))
+        return np.maximum(largest, LEAST_SIZE)
+
     def fit(self) -> tuple[Numbers, Numbers] | None:
         """The shifts ``(count,)`` and other unknowns ``(free, L)`` that leave no error."""
         count, sets = self.decimals.count, self.links.shape[-1]
@@ -110,7 +120,8 @@ class _Chain:
             columns = [rates[:count].reshape(count, size), own.reshape(self.free * sets, size)]
             return found[-1].ravel(), np.concatenate(columns).T
 
-        found = fitted_unknowns(linearised, count + self.free * sets, count, EXACT_VALUE)
+        sizes = np.concatenate([self._sizes(), np.full(self.free * sets, SMALL)])
+        found = fitted_unknowns(linearised, sizes, count, EXACT_VALUE)
         return None if found is None else split(found)
 
 
