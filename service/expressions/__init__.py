@@ -1,6 +1,7 @@
 """Formula as typed -> syntax tree -> numbers, text, LaTeX, MathML. Knows nothing of robots."""
 
 from service.expressions.errors import ExpressionError, Note
+from service.expressions.evaluation.decimals import Decimals, decimals_of
 from service.expressions.limits import LIMITS, Limits
 from service.expressions.reader import AngleUnit, Expression, evaluate_all, read
 from service.expressions.vocabulary.symbols import Kind, Symbol, Vocabulary, joint_variable
@@ -8,6 +9,7 @@ from service.expressions.vocabulary.symbols import Kind, Symbol, Vocabulary, joi
 __all__ = [
     "LIMITS",
     "AngleUnit",
+    "Decimals",
     "Expression",
     "ExpressionError",
     "Kind",
@@ -15,6 +17,7 @@ __all__ = [
     "Note",
     "Symbol",
     "Vocabulary",
+    "decimals_of",
     "evaluate_all",
     "joint_variable",
     "read",

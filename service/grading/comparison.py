@@ -1,17 +1,42 @@
 """When two columns of numbers are the same answer.
 
-Arrays are ``(..., samples)``; what is asked of them must hold at all samples.
+Arrays are ``(..., samples)``; what is asked of them must hold at all samples. No tolerance depends
+on the values that were drawn, so that every draw finds the same.
+
+A decimal number with three or more figures is right if it is the true number, rounded or cut off
+(``expressions.evaluation.decimals``). So an entry is right if its decimals can each be moved as far
+as rounding may have moved it, once for all samples, so that the entry is what was expected.
 """
 
 import math
+from collections.abc import Callable, Sequence
 from enum import IntEnum
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from service.grading.tolerances import EXACT_VALUE, ROUNDED_VALUE
+from service.expressions import Decimals, Expression, decimals_of
+from service.grading.samples import Samples
+from service.grading.tolerances import (
+    CUT_OFF,
+    EXACT_VALUE,
+    FLOATING_POINT,
+    ROUNDED_UP,
+    ROUNDED_VALUE,
+)
 from service.kinematics.tolerances import LARGEST_ANGLE, LARGEST_LENGTH
 from service.kinematics.transforms import Numbers
+
+# More decimals in one entry are taken as they are written: the work grows with their number.
+MAX_DECIMALS = 16
+MAX_SHARED_DECIMALS = 64
+PROJECTIONS = 100
+# What an unknown must at least do to the errors, for its size and relative to those that do most,
+# in each step of a fit. Where two axes are parallel but for rounding, only the sum of what is
+# measured along them has an effect; the smaller the errors that are left, the better this is seen.
+LEAST_EFFECTS = (5e-2, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-9)
+# Of a number with three figures rounding leaves off up to a hundredth.
+LARGEST_SLACK = 0.01
 
 
 class Match(IntEnum):
@@ -31,41 +56,240 @@ def difference(actual: Numbers, expected: Numbers, angle: ArrayLike = False) -> 
 
 
 def matches(
-    actual: Numbers,
-    expected: Numbers,
-    scale: ArrayLike,
-    angle: ArrayLike = False,
-    rounded: ArrayLike = True,
+    actual: Numbers, expected: Numbers, scale: ArrayLike, angle: ArrayLike = False
 ) -> NDArray[np.int_]:
-    """The Match of each entry ``(...)``, from ``(..., samples)``.
+    """The Match of each entry ``(...)`` as it is written, from ``(..., samples)``.
 
-    ``rounded`` says which entries may differ by what rounding to three figures does to a number of
-    the entry's size, or of the largest size that the robot's own numbers have, if that is smaller:
-    a student's own large offset must not widen what is let through.
     ``scale`` is the unit of the tolerance: 1 for angles and direction cosines, a typical length for
     lengths. It gives the tolerance an absolute floor, so that sin² + cos² − 1 is 0 every time; the
     floor is far too low for a wrong constant to hide beside a large entry.
     """
     with np.errstate(invalid="ignore", over="ignore"):
         error = np.abs(difference(actual, expected, angle)).max(axis=-1)
-        size = np.sqrt(np.mean(expected * expected, axis=-1))
-        largest = np.where(np.any(angle, axis=-1), LARGEST_ANGLE, LARGEST_LENGTH) * scale
-        near = (error <= ROUNDED_VALUE * np.minimum(size, largest)) & rounded
-        found = np.where(near, Match.ROUNDED, Match.DIFFERENT)
-        found = np.where(error <= EXACT_VALUE * np.maximum(size, scale), Match.EXACT, found)
+        found = np.where(error <= _tolerance(expected, scale), Match.EXACT, Match.DIFFERENT)
     return np.where(np.isfinite(actual).all(axis=-1), found, Match.UNDEFINED)
 
 
-def same(actual: Numbers, expected: Numbers, scale: float = 1.0, angle: bool = False) -> bool:
-    """Whether two single entries ``(samples,)`` are equal, or equal but for rounding.
+def entry_matches(
+    expressions: Sequence[Expression | None],
+    actual: Numbers,
+    expected: Numbers,
+    scale: ArrayLike,
+    samples: Samples,
+    angle: ArrayLike = False,
+) -> NDArray[np.int_]:
+    """The Match of each entry ``(...)``; those that are not exact may be rounded.
 
-    It asks the same as ``matches``, for a fifth of its cost.
+    ``expressions`` are those of the entries in order, None where there is none.
     """
-    error = actual - expected
+    found = matches(actual, expected, scale, angle)
+    different = np.flatnonzero(found == Match.DIFFERENT).tolist()
+    if not any((each := expressions[i]) is not None and each.has_decimal for i in different):
+        return found
+    shape = found.shape
+    scales = np.broadcast_to(scale, shape).ravel()
+    angles = np.broadcast_to(angle, (*shape, 1)).ravel()
+    found, wanted = found.ravel(), expected.reshape(-1, expected.shape[-1])
+    for i in different:
+        expression = expressions[i]
+        if expression is not None and is_rounded(
+            expression, wanted[i], float(scales[i]), samples, angle=bool(angles[i])
+        ):
+            found[i] = Match.ROUNDED
+    return found.reshape(shape)
+
+
+def is_rounded(
+    expression: Expression,
+    expected: Numbers,
+    scale: float,
+    samples: Samples,
+    *,
+    angle: bool = False,
+) -> bool:
+    """Whether an entry would be the expected one, ``(samples,)``, but for its rounded decimals."""
+    if not expression.has_decimal:
+        return False
+    decimals = decimals_of(expression)
+    count = len(decimals.units)
+    if not 0 < count <= MAX_DECIMALS:
+        return False
+
+    def errors(shifts: Numbers) -> Numbers:
+        values = decimals.shifted(shifts, samples.values)
+        return np.asarray(difference(values, expected[None], angle))
+
+    tolerance = float(_tolerance(expected, scale))
+    return fitted_shifts(errors, decimals.units, tolerance) is not None
+
+
+def nearly_equal(
+    one: Numbers,
+    other: Numbers,
+    scale: ArrayLike = 1.0,
+    angle: ArrayLike = False,
+    slack: float = 0.0,
+) -> NDArray[np.bool_]:
+    """Whether values ``(..., samples)`` are equal but for what rounding does to them: ``(...)``.
+
+    This is for guesses, such as which slip explains an answer, and never for a verdict. ``slack``
+    is what rounding is known to do. Values are never nearer than three figures of their size, or of
+    the largest size that the robot's own numbers have, if that is smaller.
+    """
+    error = np.abs(difference(one, other, angle)).max(axis=-1)
+    size = np.sqrt(np.mean(other * other, axis=-1))
+    largest = np.where(np.any(angle, axis=-1), LARGEST_ANGLE, LARGEST_LENGTH) * scale
+    tolerance = np.maximum(ROUNDED_VALUE * np.minimum(size, largest), _tolerance(other, scale))
+    # NaN is not within any tolerance.
+    near = error <= np.maximum(tolerance, np.minimum(slack, LARGEST_SLACK * size))
+    return np.asarray(near & np.isfinite(size))
+
+
+def same(
+    one: Numbers, other: Numbers, scale: float = 1.0, angle: bool = False, slack: float = 0.0
+) -> bool:
+    """Whether two single values ``(samples,)`` are nearly equal.
+
+    It asks the same as ``nearly_equal``, for a fifth of its cost.
+    """
+    error = one - other
     if angle:
         error -= 2 * np.pi * np.round(error / (2 * np.pi))
-    size = math.sqrt(float(expected @ expected) / expected.size)
+    size = math.sqrt(float(other @ other) / other.size)
     largest = (LARGEST_ANGLE if angle else LARGEST_LENGTH) * scale
-    tolerance = max(ROUNDED_VALUE * min(size, largest), EXACT_VALUE * max(size, scale))
+    exact = EXACT_VALUE * scale + FLOATING_POINT * size
+    tolerance = max(ROUNDED_VALUE * min(size, largest), exact, min(slack, LARGEST_SLACK * size))
     # NaN is not within any tolerance.
     return bool(np.abs(error).max() <= tolerance) and math.isfinite(size)
+
+
+def rounding_slack(expression: Expression, samples: Samples) -> float:
+    """By how much rounding may have moved an entry, to first order."""
+    if not expression.has_decimal:
+        return 0.0
+    decimals = decimals_of(expression)
+    count = len(decimals.units)
+    if not 0 < count <= MAX_DECIMALS:
+        return 0.0
+    steps = np.eye(count) / 2
+    rates = decimals.shifted(steps, samples.values) - decimals.shifted(-steps, samples.values)
+    return float(np.nan_to_num(np.abs(rates).sum(axis=0).max()))
+
+
+def fitted_shifts(
+    errors: Callable[[Numbers], Numbers], units: Numbers, tolerance: float
+) -> Numbers | None:
+    """The shifts ``(m,)`` of decimals that leave no error; None if there are none.
+
+    ``errors`` gives the errors ``(K, n)`` for shifts ``(K, m)``, ``units`` ``(m,)`` are those of
+    the decimals. Each shift is as large as rounding or cutting off leaves it.
+    """
+    count = len(units)
+    steps = np.eye(count) / 2
+    ways = np.concatenate([steps, -steps, np.zeros((1, count))])
+
+    def linearised(shifts: Numbers) -> tuple[Numbers, Numbers]:
+        found = errors(shifts + ways)
+        return found[-1], (found[:count] - found[count:-1]).T
+
+    return fitted_unknowns(linearised, units, count, tolerance)
+
+
+def fitted_unknowns(
+    linearised: Callable[[Numbers], tuple[Numbers, Numbers]],
+    sizes: Numbers,
+    count: int,
+    tolerance: float,
+) -> Numbers | None:
+    """The unknowns ``(N,)`` that leave no error, of which the first ``count`` are shifts.
+
+    None if there are none. ``linearised`` gives the errors ``(n,)`` for unknowns, and their
+    derivative ``(n, N)``; ``sizes`` ``(N,)`` is how large an error an unknown makes that acts
+    directly. All unknowns are small, so Gauss and Newton's method needs few steps.
+    """
+    unknowns, first = np.zeros(len(sizes)), np.inf
+    for step, least_effect in enumerate(LEAST_EFFECTS):
+        error, rates = linearised(unknowns)
+        if not (np.isfinite(rates).all() and np.isfinite(error).all()):
+            return None
+        largest = float(np.abs(error).max())
+        if largest <= tolerance and are_allowed(unknowns[:count]):
+            return unknowns
+        if step == 0:
+            first = largest
+        elif step > 1 and largest > first / 2:
+            return None
+        solver = np.linalg.pinv(rates / sizes, rcond=least_effect)
+        moved = unknowns * sizes - solver @ error
+        bounds = np.outer([_LOWEST, _HIGHEST], sizes[:count])
+        unknowns = _nearest_inside(moved, solver @ (rates / sizes), bounds) / sizes
+    return None
+
+
+class SharedDecimals:
+    """The rounded decimals of several entries, which may be right together and not each by itself.
+
+    ``units`` ``(count,)`` are theirs; ``count`` is 0 where there are none or too many.
+    """
+
+    def __init__(self, expressions: Sequence[Expression | None], samples: Samples) -> None:
+        """``expressions`` are those of the entries, None where there is none."""
+        self._samples = samples
+        self._parts: list[tuple[int, Decimals, slice]] = []
+        self.count = 0
+        self.units = np.zeros(0)
+        for i, expression in enumerate(expressions):
+            if expression is None or not expression.has_decimal:
+                continue
+            decimals = decimals_of(expression)
+            if 0 < len(decimals.units) <= MAX_DECIMALS:
+                places = slice(self.count, self.count + len(decimals.units))
+                self._parts.append((i, decimals, places))
+                self.count = places.stop
+                self.units = np.append(self.units, decimals.units)
+        if self.count > MAX_SHARED_DECIMALS:
+            self._parts, self.count = [], 0
+
+    def shifted(self, shifts: Numbers, values: Numbers) -> Numbers:
+        """The ``values`` ``(entries, samples)`` with the decimals shifted: ``(K, entries, ...)``.
+
+        ``shifts`` is ``(K, count)``.
+        """
+        moved = np.repeat(values[None], len(shifts), axis=0)
+        for i, decimals, places in self._parts:
+            moved[:, i] = decimals.shifted(shifts[:, places], self._samples.values)
+        return moved
+
+
+def are_allowed(shifts: Numbers) -> bool:
+    """Whether rounding or cutting off may have shifted decimals so."""
+    return bool((shifts >= -ROUNDED_UP).all() and (shifts <= CUT_OFF).all())
+
+
+def _nearest_inside(unknowns: Numbers, determined: Numbers, bounds: Numbers) -> Numbers:
+    """Unknowns with the same effect, the first of which are inside bounds, if there are any.
+
+    ``bounds`` ``(2, count)`` are the lower and the upper ones. ``determined`` ``(N, N)`` projects
+    unknowns on those that have an effect. Of two decimals of which only the sum counts, one alone
+    may not make up for both. Projections on both sets in turn meet in their intersection (von
+    Neumann, Bregman).
+    """
+    (lower, upper), count = bounds, bounds.shape[1]
+    effect = determined @ unknowns
+    for _ in range(PROJECTIONS):
+        clipped = np.clip(unknowns[:count], lower, upper)
+        if (clipped == unknowns[:count]).all():
+            break
+        inside = np.concatenate([clipped, unknowns[count:]])
+        unknowns = inside - determined @ inside + effect
+    return unknowns
+
+
+# A little inside, so that projections get there.
+_LOWEST, _HIGHEST = -ROUNDED_UP + 1e-7, CUT_OFF - 1e-7
+
+
+def _tolerance(expected: Numbers, scale: ArrayLike) -> Numbers:
+    """How far two values may be apart that are the same: ``(...)``."""
+    size = np.sqrt(np.mean(expected * expected, axis=-1))
+    return np.asarray(EXACT_VALUE * np.asarray(scale) + FLOATING_POINT * size)

@@ -6,11 +6,21 @@ otherwise.
 
 from typing import Final
 
-# Two answers: far above what rounding does to a formula of 200 operations, far below any slip.
-# Relative to the size of the expected value, or to its scale, if that is larger.
+# Two answers: far above what floating point does to a formula of 200 operations, far below any
+# slip. Relative to the scale of the expected value, which is the same in every draw.
 EXACT_VALUE: Final = 1e-9
-# A number with three figures: 1.57 for π/2, 0.707 for 1/√2. Relative to its size.
+# What floating point does to values far larger than their scale, relative to their size: so little
+# that the draw, on which the size depends, decides nothing.
+FLOATING_POINT: Final = 1e-12
+# How far the true number may lie from a decimal, in units of its last place: half a unit either way
+# if it was rounded, nearly a whole one further from 0 if digits were cut off. 0.999 is not 1.
+ROUNDED_UP: Final = 0.5 + 1e-6
+CUT_OFF: Final = 1 - 1e-6
+# Two numbers with three figures, in guesses which slip explains another. Relative to their size.
 ROUNDED_VALUE: Final = 1e-3
+# An angle near enough to that of a triple to say which triple a student took: beyond what rounding
+# does to three figures.
+NEAR_ANGLE: Final = 1e-2
 
 # A cell of the right answer, and of the lazy one: formulas of the same value.
 SAME_CONTENT: Final = 1e-9

@@ -9,7 +9,7 @@ the possible transforms is returned.
 import numpy as np
 from numpy.typing import NDArray
 
-from service.kinematics.tolerances import CLEARLY_NOT_PARALLEL
+from service.kinematics.tolerances import CLEARLY_NOT_PARALLEL, NOT_PARALLEL_BY_ROUNDING
 from service.kinematics.transforms import Matrices, Numbers, identity
 
 
@@ -36,10 +36,13 @@ def _basis(axes: Matrices, sliding: NDArray[np.bool_]) -> Matrices:
     # Seen from a point of the first axis that turns.
     points = axes[..., :3, 3] - axes[np.argmin(sliding), :, :3, 3]
     points = np.where(sliding[:, None, None], 0.0, points)
-    for across in (*_across(directions, z), *_across(points, z)):
-        length = np.linalg.norm(across, axis=-1, keepdims=True)
-        if length.min() > CLEARLY_NOT_PARALLEL:
-            return _from_x_and_z(across / length, z)
+    ways = [*_across(directions, z), *_across(points, z)]
+    lengths = [np.linalg.norm(across, axis=-1, keepdims=True) for across in ways]
+    # Axes that should be parallel are nearly so where numbers were rounded.
+    for least in (NOT_PARALLEL_BY_ROUNDING, CLEARLY_NOT_PARALLEL):
+        for across, length in zip(ways, lengths, strict=True):
+            if length.min() > least:
+                return _from_x_and_z(across / length, z)
     x = _across(np.eye(3)[np.argmin(np.abs(z), axis=-1)], z)
     return _from_x_and_z(x / np.linalg.norm(x, axis=-1, keepdims=True), z)
 

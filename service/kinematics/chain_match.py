@@ -45,17 +45,17 @@ class RowConstants:
 
     ``written`` is ``(4, L)``, NaN where there is no usable number. Of the cells ``(4,)``,
     ``is_gradable`` says which can be right or wrong, ``wrong_regardless`` which are wrong whatever
-    the frames, ``absent`` for which the table has no room (they are 0), and ``tolerance`` how much
-    of its size each may be off because it was rounded. ``variable`` is the column of the variable
-    of the joint that the row starts from, None where it starts from none; ``joint_sign`` the sign
-    of that variable: +1, −1, or 0 where it is not known.
+    the frames, ``absent`` for which the table has no room (they are 0), and ``slack`` how far each
+    may be off because it was rounded. ``variable`` is the column of the variable of the joint that
+    the row starts from, None where it starts from none; ``joint_sign`` the sign of that variable:
+    +1, −1, or 0 where it is not known.
     """
 
     written: Numbers
     is_gradable: NDArray[np.bool_]
     wrong_regardless: NDArray[np.bool_]
     absent: NDArray[np.bool_]
-    tolerance: Numbers
+    slack: Numbers
     variable: int | None
     joint_sign: int
 
@@ -131,6 +131,26 @@ def match_tables(
         if i > 0:
             valid &= joint_signs[:, i] * joint_signs_of(poses[i - 1]) >= 0
     return valid, poses
+
+
+def misfits(poses: Matrices, targets: Sequence[Target], length_scale: float) -> Numbers:
+    """How relative poses miss what the targets demand, ``(tables, n, L)``: 0 where they do not.
+
+    ``poses`` ``(rows, tables, L, 4, 4)`` are those of ``match_tables``. The direction of the axes
+    is left out.
+    """
+    unit = np.array([1.0, 1.0, 1.0, length_scale])
+    missed: list[Numbers] = []
+    for pose, target in zip(poses, targets, strict=True):
+        if target.kind is TargetKind.TOOL:
+            difference = (pose - np.eye(4))[..., :3, :] / unit
+            missed.append(difference.reshape(*pose.shape[:2], -1))
+        elif target.kind is TargetKind.REVOLUTE:
+            off_axis = pose[..., :2, 2:] / unit[2:]
+            missed.append(off_axis.reshape(*pose.shape[:2], -1))
+        elif target.kind is TargetKind.PRISMATIC:
+            missed.append(pose[..., :2, 2])
+    return np.asarray(np.swapaxes(np.concatenate(missed, axis=-1), 1, 2))
 
 
 def _error_at(pose: Matrices, kind: TargetKind, length_scale: float) -> Numbers:

@@ -25,8 +25,7 @@ from service.kinematics.dh import standard_link
 from service.kinematics.dh_row import is_unreachable
 from service.kinematics.tolerances import (
     EXACT_CELL,
-    LARGEST_ANGLE,
-    LARGEST_LENGTH,
+    ROUNDED_CELL,
     SAME_HYPOTHESIS,
     SAME_POSE,
 )
@@ -186,12 +185,11 @@ def _wrong_cells(row: RowConstants, rows: Numbers, length_scale: float) -> NDArr
     error = np.abs(row.written - rows)
     turns = error[:, [ALPHA, THETA]] / (2 * np.pi)
     error[:, [ALPHA, THETA]] = 2 * np.pi * np.abs(turns - np.round(turns))
-    size = np.sqrt(np.mean(rows * rows, axis=-1))
     scale = np.array([length_scale, 1.0, length_scale, 1.0])
-    largest = scale * [LARGEST_LENGTH, LARGEST_ANGLE, LARGEST_LENGTH, LARGEST_ANGLE]
+    # The cells that this one is computed from may be rounded, too.
+    slack = np.where(row.slack > 0, np.maximum(row.slack, ROUNDED_CELL * scale), EXACT_CELL * scale)
     with np.errstate(invalid="ignore"):
-        bounded = np.minimum(size, largest)
-        right = error.max(axis=-1) <= np.maximum(row.tolerance * bounded, EXACT_CELL * scale)
+        right = error.max(axis=-1) <= slack
     return np.asarray(~right)
 
 

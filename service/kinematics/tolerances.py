@@ -16,6 +16,8 @@ SAME_SCREW: Final = 1e-7
 PARALLEL: Final = 1e-7
 # An axis that helps to fix a basis must be far from parallel, for it is divided by this sine.
 CLEARLY_NOT_PARALLEL: Final = 100 * PARALLEL
+# Two axes that are parallel but for angles with three figures are not farther from it.
+NOT_PARALLEL_BY_ROUNDING: Final = 3e-2
 # An x axis that lies along a common normal, one way or the other: its cosine, less 1.
 ALONG_NORMAL: Final = 1e-6
 # An x axis along z: the length of its projection on the plane across z.
@@ -36,8 +38,9 @@ NO_ROTATION: Final = 1e-12
 
 # A cell of a table, as a multiple of the unit of its column: exact beyond all doubt.
 EXACT_CELL: Final = 1e-9
+# The same for a rounded cell of a table in which others are rounded, too.
+ROUNDED_CELL: Final = 1e-3
 # How many times its unit a number of the robot's own may be: an angle goes up to π, a length hardly
-# beyond the longest link. A cell may be off by what rounding does to a number of that size, and no
-# more, so that a student's own large offset does not widen what is let through.
+# beyond the longest link.
 LARGEST_ANGLE: Final = 4.0
 LARGEST_LENGTH: Final = 1.5

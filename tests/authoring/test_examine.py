@@ -56,7 +56,7 @@ FAILURES: dict[str, tuple[tuple[str, str], int, str]] = {
     "other points": (
         ("points = 3.33", "points = 3"),
         2,
-        "should get 3 points; it got partial, 3.75",
+        "should get 3 points; it got partial, 3.33",
     ),
     "another verdict": (('"partial"', '"incorrect"'), 2, "should be incorrect; it got partial"),
     "another code": (('["sign"]', '["sign", "half_turn"]'), 2, "told half_turn, but was told"),

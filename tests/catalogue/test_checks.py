@@ -104,7 +104,7 @@ SAID: dict[tuple[str, str], list[str]] = {
         "robot.structure (line 6): *: write one letter for each joint, R if it turns and P if *",
     ],
     ("points = 4", "marks = 4"): [
-        "parts[1].marks (line 28): there is no key 'marks' here; the keys are id, title, *",
+        "parts[1].marks (line 28): there is no key 'marks' here; did you mean 'marking'? *",
     ],
     ("range =", "limits ="): ["symbols.a1.limits (line 15): * kind, description, unit, range"],
     ('"0", "d2 + a1", "0"]', '"0", "d2 + a1"]'): [

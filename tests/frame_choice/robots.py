@@ -42,6 +42,8 @@ POLICIES = (
     Policy("free tool", tool=True),
     Policy("free base, tool", base=True, tool=True),
     Policy("free directions", directions=True),
+    Policy("free base, directions", base=True, directions=True),
+    Policy("free tool, directions", tool=True, directions=True),
     Policy("all free", base=True, tool=True, directions=True),
 )
 

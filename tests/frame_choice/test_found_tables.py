@@ -3,10 +3,18 @@
 import pytest
 
 from tests.frame_choice.oracle import is_equivalent
-from tests.frame_choice.robots import MODIFIED, POLICIES, ROBOTS, STANDARD, exercise
+from tests.frame_choice.robots import MODIFIED, POLICIES, ROBOTS, STANDARD, Robot, exercise
 from tests.frame_choice.trials import grade_rows
 
-ROBOT = {robot.name: robot for robot in ROBOTS}
+RPP = Robot(
+    "numeric RPP",
+    "RPP",
+    STANDARD,
+    ("theta1", "d2", "d3"),
+    (("0", "0", "0", "theta1"), ("0.5", "0", "d2", "0"), ("0.7", "0", "d3", "-40*pi/180")),
+    (),
+)
+ROBOT = {robot.name: robot for robot in (*ROBOTS, RPP)}
 POLICY = {policy.name: policy for policy in POLICIES}
 
 VALID = [
@@ -50,8 +58,20 @@ VALID = [
             "d1 | 0 | 0 | 0",
         ),
     ),
+    (
+        "planar RR",
+        STANDARD,
+        "free base, directions",
+        ("a1 | 0 | 0 | theta1", "a2 | 0 | 0 | -theta2"),
+    ),
 ]
 INVALID = [
+    (
+        "numeric RPP",
+        STANDARD,
+        "free base",
+        ("0 | 0 | 0 | theta1", "0.5 | 0 | d2 | 0", "0.7 | 0 | d3 | -0.87"),
+    ),
     (
         "Cartesian PPP",
         MODIFIED,

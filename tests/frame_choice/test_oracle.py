@@ -25,7 +25,8 @@ from tests.frame_choice.trials import equivalent
 
 BY_NAME = {robot.name: robot for robot in ROBOTS}
 SCARA, STANFORD, RRRP = BY_NAME["SCARA"], BY_NAME["Stanford"], BY_NAME["RRRP"]
-FREE_BASE, FREE_TOOL, FREE_ENDS, FREE_DIRECTIONS, ALL_FREE = POLICIES[1:]
+FREE_BASE, FREE_TOOL, FREE_ENDS, FREE_DIRECTIONS = POLICIES[1:5]
+ALL_FREE = POLICIES[-1]
 RRRP_MODIFIED = (
     ("0", "0", "l1", "q1"),
     ("l2", "0", "0", "q2"),

@@ -40,7 +40,6 @@ def arm(make_exercise: Callable[[str], Exercise]) -> Exercise:
 ACCEPTED = [
     (0, "alpha", "0.785"),
     (0, "alpha", "0.7854"),
-    (0, "alpha", "44.98deg"),
     (0, "theta", "q1 + 1.5708"),
     (0, "theta", "q1 + 1.57"),
     (0, "theta", "1.571 + q1"),
@@ -49,7 +48,6 @@ ACCEPTED = [
     (1, "alpha", "3.14"),
     (1, "alpha", "-3.14"),
     (1, "alpha", "3.1416"),
-    (1, "d", "999.5"),
 ]
 REFUSED = [
     (0, "alpha", "0.8"),
@@ -63,6 +61,8 @@ REFUSED = [
     (1, "alpha", "3.2"),
     (1, "a", "0.0001"),
     (1, "d", "998"),
+    (1, "d", "999.5"),
+    (0, "alpha", "44.98deg"),
     (1, "theta", "q2 + 0.01"),
 ]
 

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from service.grading.comparison import Match, matches
+from service.grading.comparison import nearly_equal
 from service.grading.diagnosis.wrong_value import Hypotheses, WrongNumbers
 from service.grading.feedback import Finding
 from service.grading.misconception import Written, diagnosed
@@ -141,7 +141,7 @@ def point_for_velocity(case: WrongScrew) -> Hypotheses:
     if case.turns and np.abs(case.moment).max() >= EXACT_VALUE:
         point = case.actual[3:]
         of_point = -np.cross(case.direction, point, axis=0)
-        if (matches(of_point, case.moment, case.length_scale) >= Match.ROUNDED).all():
+        if nearly_equal(of_point, case.moment, case.length_scale).all():
             yield Written(case.with_velocity(point), finding)
 
 

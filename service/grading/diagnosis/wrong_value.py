@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from service.catalogue import Joint
 from service.expressions import Expression
-from service.grading.comparison import Match, difference, matches, same
+from service.grading.comparison import difference, nearly_equal, rounding_slack, same
 from service.grading.diagnosis.wording import MEASURED, SYMBOLS
 from service.grading.feedback import Finding
 from service.grading.misconception import AnyHypothesis, Hypothesis, Index, Repaired, Written
@@ -42,9 +42,14 @@ class WrongValue:
         """The actual and the expected value, as hypotheses are compared with them."""
         return self.actual, self.expected
 
+    @cached_property
+    def slack(self) -> float:
+        """By how much rounding may have moved the value."""
+        return rounding_slack(self.expression, self.samples)
+
     def equal(self, one: Numbers, other: Numbers) -> bool:
-        """Whether two values of this quantity are the same."""
-        return same(one, other, self.scale, self.angle)
+        """Whether two values of this quantity are the same but for rounding."""
+        return same(one, other, self.scale, self.angle, self.slack)
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterator[AnyHypothesis]:
         """Those hypotheses that explain the value, each compared when it is asked for."""
@@ -59,7 +64,9 @@ class WrongValue:
             error = difference(actual, answer, self.angle)
             return bool(np.abs(error).max() <= hypothesis.tolerance)
         # As plain numbers: of −180° for 180° the sign is said to be wrong.
-        return self.equal(actual, answer) and not same(expected, answer, self.scale)
+        return self.equal(actual, answer) and not same(
+            expected, answer, self.scale, slack=self.slack
+        )
 
 
 def finding_on(
@@ -133,7 +140,7 @@ class WrongNumbers:
     def agree(self, one: Numbers, other: Numbers, entries: Index = ...) -> Mask:
         """Where ``one`` is ``other`` in these entries, exactly or rounded: ``(...)``."""
         scale = np.asarray(self.scale)[entries]
-        return np.asarray(matches(one, other, scale, self.angle) >= Match.ROUNDED)
+        return nearly_equal(one, other, scale, self.angle)
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> list[AnyHypothesis]:
         """Those hypotheses that explain the numbers, all compared at once.

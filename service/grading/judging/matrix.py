@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.expressions import Kind
-from service.grading.comparison import matches
+from service.grading.comparison import entry_matches
 from service.grading.reading.matrix import StudentMatrix
+from service.grading.samples import Samples
 from service.grading.tolerances import PRINTED_NUMBER
 from service.kinematics.transforms import Numbers
 
@@ -29,10 +30,12 @@ class ExpectedMatrix:
             [[length_scale if q == "length" else 1.0 for q in row] for row in self.quantities]
         )
 
-    def matches(self, student: StudentMatrix, length_scale: float) -> NDArray[np.int_]:
+    def matches(
+        self, student: StudentMatrix, length_scale: float, samples: Samples
+    ) -> NDArray[np.int_]:
         """The Match of each entry, ``(rows, columns)``."""
         scale = self.scale(length_scale)
-        return matches(student.values, self.values, scale, rounded=student.rounded)
+        return entry_matches(student.expressions, student.values, self.values, scale, samples)
 
 
 def constant_text(values: Numbers) -> str:

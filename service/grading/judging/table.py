@@ -13,19 +13,19 @@ from numpy.typing import NDArray
 
 from service.catalogue import Joint, ReferenceTable
 from service.catalogue.parts.dh_table import DhTableSpec
-from service.grading.comparison import Match, difference, matches, same
+from service.expressions import Expression
+from service.grading.comparison import Match, difference, entry_matches, nearly_equal
 from service.grading.feedback import Finding
-from service.grading.joint_motion import changes
 from service.grading.judging.own_frames.best_roles import best_roles, without_idle_rows
 from service.grading.judging.own_frames.few_cells import NearestTable, frames_from_reference
 from service.grading.judging.own_frames.nearest_table import parallel_neighbours
 from service.grading.judging.own_frames.reference import reference_values
 from service.grading.judging.own_frames.remarks import remarks_on
-from service.grading.judging.own_frames.row_roles import Role, pair_in_order, variable_column
+from service.grading.judging.own_frames.row_roles import Role, pair_in_order
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE, StudentRow, values_of
 from service.grading.samples import SAMPLES
-from service.grading.tolerances import HUGE_CELL, HUGE_LENGTH, PLAINLY_DIFFERENT, SAME_MOTION
+from service.grading.tolerances import HUGE_CELL, HUGE_LENGTH, PLAINLY_DIFFERENT
 from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh import Convention
 from service.kinematics.frame_choice import NO_SUCH_CELL, WRONG_CELL, departure
@@ -130,8 +130,8 @@ def _paired(
     if len(rows) == len(expected):
         return [(i, i) for i in range(len(rows))]
     actual = values_of(rows)[:, None]
-    found = matches(actual, expected[None], column_scales(grading), IS_ANGLE[:, None])
-    return pair_in_order((found >= Match.ROUNDED).sum(axis=-1).astype(np.float64))
+    found = nearly_equal(actual, expected[None], column_scales(grading), IS_ANGLE[:, None])
+    return pair_in_order(found.sum(axis=-1).astype(np.float64))
 
 
 def _judged_by_nearest(
@@ -213,13 +213,9 @@ def _matches_of(judged: Sequence[JudgedRow], grading: Grading) -> NDArray[np.int
     nothing = np.full((len(COLUMNS), SAMPLES), np.nan)
     actual = np.array([nothing if row.row is None else row.row.handed_in for row in judged])
     expected = np.array([row.expected for row in judged])
-    rounded = [[False] * 4 if row.row is None else row.row.rounded for row in judged]
+    expressions = [each for row in judged for each in _expressions(row.row)]
     angle, scales = IS_ANGLE[:, None], column_scales(grading)
-    found = matches(actual, expected, scales, angle, rounded)
-    for i, column in np.argwhere(found == Match.ROUNDED).tolist():
-        cells = actual[i, column], expected[i, column]
-        if not _is_rounded(*cells, column, judged[i].joint, grading):
-            found[i, column] = Match.DIFFERENT
+    found = entry_matches(expressions, actual, expected, scales, grading.samples, angle)
     if np.abs(expected[..., 0]).max() > HUGE_LENGTH * grading.exercise.length_scale:
         # A student's own large offset must not widen what is let through.
         error = np.abs(difference(actual, expected, angle)).max(axis=-1)
@@ -233,22 +229,5 @@ def column_scales(grading: Grading) -> Numbers:
     return np.where(IS_ANGLE, 1.0, grading.exercise.length_scale)
 
 
-def _is_rounded(
-    actual: Numbers, expected: Numbers, column: int, joint: Joint | None, grading: Grading
-) -> bool:
-    """Whether a cell that is nearly right has a rounded constant and moves as it should."""
-    angle = bool(IS_ANGLE[column])
-    if not _moves_as(actual, expected, angle):
-        return False
-    if joint is None or column != variable_column(joint):
-        return True
-    variable = grading.samples.values[joint.variable]
-    if not _moves_as(expected, variable, angle):
-        variable = -variable
-    scale = float(column_scales(grading)[column])
-    return same(actual - variable, expected - variable, scale, angle)
-
-
-def _moves_as(one: Numbers, other: Numbers, angle: bool) -> bool:
-    error = np.abs(difference(changes(one), changes(other), angle))
-    return bool(error.max() < SAME_MOTION)
+def _expressions(row: StudentRow | None) -> Sequence[Expression | None]:
+    return [None] * len(COLUMNS) if row is None else row.expressions

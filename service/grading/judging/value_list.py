@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from service.grading.comparison import matches
+from service.grading.comparison import entry_matches
 from service.grading.part import Grading
 from service.grading.reading.value_list import StudentValues
 from service.kinematics.transforms import Numbers
@@ -32,4 +32,6 @@ class ComparedValues:
         """The Match of each value, ``(n,)``; angles modulo 2π."""
         student, scales = self.student, self.scales(grading)
         angle = np.array([[quantity == "angle"] for quantity in student.quantities])
-        return matches(student.values, self.expected, scales, angle, student.rounded)
+        return entry_matches(
+            student.expressions, student.values, self.expected, scales, grading.samples, angle
+        )

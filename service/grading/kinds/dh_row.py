@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from service.catalogue.parts.dh_row import DhRowSpec
 from service.expressions import Expression
-from service.grading.comparison import Match, matches
+from service.grading.comparison import Match, entry_matches
 from service.grading.diagnosis.dh_row import MISCONCEPTIONS, WrongRow, has_a_row, violated
 from service.grading.diagnosis.table_cell import diagnose
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, WrongCell
@@ -78,7 +78,9 @@ def _against_the_row(
 ) -> tuple[tuple[CellReport, ...], list[Finding]]:
     """The cells held against the row that the transform has, and what explains all of them."""
     scale = _scale(grading)
-    found = matches(written.values, expected, scale, IS_ANGLE[:, None], rounded=written.rounded)
+    found = entry_matches(
+        written.expressions, written.values, expected, scale, grading.samples, IS_ANGLE[:, None]
+    )
     explained: Finding | None = None
     if (found < Match.ROUNDED).any() and np.isfinite(written.values).all():
         case = WrongRow(written.values, expected, scale, transform, part.convention)

@@ -11,7 +11,13 @@ from numpy.typing import NDArray
 
 from service.catalogue.parts.euler_angles import EulerAnglesSpec
 from service.expressions import Kind
-from service.grading.comparison import Match, difference, matches
+from service.grading.comparison import (
+    Match,
+    SharedDecimals,
+    difference,
+    entry_matches,
+    fitted_shifts,
+)
 from service.grading.diagnosis.angle import has_arctangent
 from service.grading.diagnosis.euler_triple import RepairedTriple, WrongTriple, explain_triple
 from service.grading.diagnosis.value_list import slips_of
@@ -26,7 +32,7 @@ from service.grading.part import Content, Grading, Judged
 from service.grading.reading.entry import Entry
 from service.grading.reading.value_list import StudentValues, read_list
 from service.grading.report import Severity
-from service.grading.tolerances import EXACT_VALUE, ROUNDED_VALUE
+from service.grading.tolerances import EXACT_VALUE, NEAR_ANGLE
 from service.kinematics.rotations import (
     from_angles,
     is_singular,
@@ -56,7 +62,7 @@ def judge(part: EulerAnglesSpec, answer: StudentValues, grading: Grading) -> Jud
     turns, fixed = part.turns, part.axes == "fixed"
     angles, rotation = answer.values, _expected_rotation(part, grading)
     expected = nearest_triple(angles, rotation, turns, fixed=fixed)
-    found = _found(answer, expected, rotation, part)
+    found = _found(answer, expected, rotation, part, grading)
     slips: dict[tuple[int, int], Finding] = {}
     findings: tuple[Finding, ...] = ()
     if is_singular(turns, rotation, fixed=fixed).all():
@@ -88,16 +94,41 @@ def _expected_rotation(part: EulerAnglesSpec, grading: Grading) -> Matrices:
 
 
 def _found(
-    student: StudentValues, expected: Numbers, rotation: Matrices, part: EulerAnglesSpec
+    student: StudentValues,
+    expected: Numbers,
+    rotation: Matrices,
+    part: EulerAnglesSpec,
+    grading: Grading,
 ) -> NDArray[np.int_]:
     """The Match of each angle, ``(3,)``: all are right where they describe the rotation."""
     angles = student.values
-    found = matches(angles, expected, 1.0, angle=True, rounded=student.rounded)
+    found = entry_matches(student.expressions, angles, expected, 1.0, grading.samples, angle=True)
     if np.isfinite(angles).all():
         described = from_angles(part.turns, angles.T, fixed=part.axes == "fixed")
         if np.abs(described - rotation).max() < EXACT_VALUE:
             return np.full(3, int(Match.EXACT))
+        if (found < Match.ROUNDED).any() and _are_rounded(student, rotation, part, grading):
+            return np.where(found == Match.EXACT, found, int(Match.ROUNDED))
     return found
+
+
+def _are_rounded(
+    student: StudentValues, rotation: Matrices, part: EulerAnglesSpec, grading: Grading
+) -> bool:
+    """Whether the angles describe the rotation but for their decimals, which are rounded.
+
+    In a singular orientation each by itself need not be a rounded angle: their sum counts.
+    """
+    decimals = SharedDecimals(student.expressions, grading.samples)
+    if not decimals.count:
+        return False
+
+    def errors(shifts: Numbers) -> Numbers:
+        angles = decimals.shifted(shifts, student.values)
+        described = from_angles(part.turns, np.swapaxes(angles, 1, 2), fixed=part.axes == "fixed")
+        return np.asarray((described - rotation).reshape(len(shifts), -1))
+
+    return fitted_shifts(errors, decimals.units, EXACT_VALUE) is not None
 
 
 def nearest_triple(
@@ -115,7 +146,7 @@ def nearest_triple(
         one = np.where(singular[:, None], _singular_triple(angles, one, rotation, sequence), one)
     both = np.stack([one, np.where(singular[:, None], one, other_triple(sequence, one))])
     off = np.nan_to_num(np.abs(difference(angles.T, both, angle=True)))
-    hit = off <= ROUNDED_VALUE * np.maximum(1.0, np.abs(both))
+    hit = off <= NEAR_ANGLE * np.maximum(1.0, np.abs(both))
     samples = np.arange(len(one))
     # The samples may take sides differently: an atan2 is of one family, a robot's own angle of
     # both.

@@ -56,7 +56,7 @@ def matrix_rows(
     tells one matrix of several: its rows are then "A2.1" and so on.
     """
     labels = [f"{name}.{i + 1}" if name else str(i + 1) for i in range(len(student.entries))]
-    found = expected.matches(student, grading.exercise.length_scale)
+    found = expected.matches(student, grading.exercise.length_scale, grading.samples)
     if (found >= Match.ROUNDED).all():
         return MatrixRows(entry_rows(student.entries, found, {}, grading, labels=labels))
     scale = expected.scale(grading.exercise.length_scale)

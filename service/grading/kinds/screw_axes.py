@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from service.catalogue.formulas import SCREW
 from service.catalogue.parts.screw_axes import ScrewAxesSpec
 from service.catalogue.robot import at_home
-from service.grading.comparison import Match, matches
+from service.grading.comparison import Match, entry_matches
 from service.grading.diagnosis.screw_axis import WrongScrew, explain_screw
 from service.grading.diagnosis.value_list import slips_of
 from service.grading.feedback import Finding
@@ -122,7 +122,9 @@ def _expected(part: ScrewAxesSpec, grading: Grading) -> ExpectedScrews:
 
 def _matches(student: StudentMatrix, expected: Numbers, grading: Grading) -> NDArray[np.int_]:
     """The Match of each number, ``(joints, 6)``."""
-    return matches(student.values, expected, _scale(grading), rounded=student.rounded)
+    return entry_matches(
+        student.expressions, student.values, expected, _scale(grading), grading.samples
+    )
 
 
 def _scale(grading: Grading) -> Numbers:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 
-from service.expressions import Kind
+from service.expressions import Expression, Kind
 from service.grading.feedback import UnreadableAnswerError, reading_error
 from service.grading.reading.entry import (
     MISSING,
@@ -34,9 +34,9 @@ class StudentMatrix:
     values: Numbers
 
     @property
-    def rounded(self) -> list[list[bool]]:
-        """Which entries may have been rounded."""
-        return [[entry.may_be_rounded for entry in row] for row in self.entries]
+    def expressions(self) -> list[Expression | None]:
+        """The expressions of the entries, row by row; None where nothing could be read."""
+        return [entry.expression for row in self.entries for entry in row]
 
     def values_at(self, samples: Samples) -> Numbers:
         """The values at other samples."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from service.expressions import Vocabulary
+from service.expressions import Expression, Vocabulary
 from service.expressions import read as read_expression
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.reading.column_headers import QUANTITIES
@@ -55,9 +55,9 @@ class StudentRow:
         return self.values if self.as_written is None else self.as_written
 
     @property
-    def rounded(self) -> list[bool]:
-        """Which cells may have been rounded."""
-        return [entry.may_be_rounded for entry in self.entries]
+    def expressions(self) -> list[Expression | None]:
+        """The expressions of the cells; None where nothing could be read."""
+        return [entry.expression for entry in self.entries]
 
     def values_at(self, samples: Samples) -> Table:
         """The numbers at other samples, as they were handed in."""

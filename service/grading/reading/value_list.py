@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from service.expressions import Kind
+from service.expressions import Expression, Kind
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error, reading_note
 from service.grading.reading.entry import MISSING, Entry, Reader, entry_values
 from service.grading.reading.pasted import from_grid_error, placed
@@ -21,9 +21,9 @@ class StudentValues:
     values: Numbers
 
     @property
-    def rounded(self) -> list[bool]:
-        """Which values may have been rounded."""
-        return [entry.may_be_rounded for entry in self.entries]
+    def expressions(self) -> list[Expression | None]:
+        """The expressions of the values; None where nothing could be read."""
+        return [entry.expression for entry in self.entries]
 
 
 def read_list(

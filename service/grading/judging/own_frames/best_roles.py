@@ -7,6 +7,10 @@ from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.judging.own_frames.few_cells import NearestTable
 from service.grading.judging.own_frames.nearest_table import nearest_for_roles
 from service.grading.judging.own_frames.rounded_angles import with_exact_angles
+from service.grading.judging.own_frames.rounded_cells import (
+    with_rounded_cells,
+    with_true_numbers,
+)
 from service.grading.judging.own_frames.row_roles import FrameFreedom, Role, freedom_of, roles_of
 from service.grading.part import Grading
 from service.grading.reading.table import StudentRow
@@ -18,8 +22,18 @@ def best_roles(
     part: DhTableSpec, rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
 ) -> tuple[tuple[Role, ...], NearestTable]:
     """The roles of the rows, and the valid table nearest to them."""
-    joints, freedom = grading.exercise.robot.joints, freedom_of(part)
+    freedom = freedom_of(part)
+    roles, nearest = _best_as_written(rows, convention, freedom, grading)
+    return roles, with_rounded_cells(nearest, convention, freedom, grading)
+
+
+def _best_as_written(
+    rows: tuple[StudentRow, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
+) -> tuple[tuple[Role, ...], NearestTable]:
+    """The same, the right cells taken for what is written in them."""
+    joints = grading.exercise.robot.joints
     roles = roles_in(rows, convention, grading)
+    roles = with_true_numbers(roles, convention, freedom, grading)
     nearest = nearest_with_tool_row(roles, convention, freedom, grading)
     if nearest.cost < WRONG_CELL:
         return roles, nearest

@@ -7,6 +7,7 @@ from service.catalogue import Joint
 from service.grading.comparison import difference
 from service.grading.joint_motion import halves, joint_counts
 from service.grading.judging.own_frames.reference import regrouped
+from service.grading.judging.own_frames.rounded_angles import slack_of_cells
 from service.grading.judging.own_frames.row_roles import (
     Role,
     handed_in_values,
@@ -15,7 +16,7 @@ from service.grading.judging.own_frames.row_roles import (
 )
 from service.grading.reading.table import IS_ANGLE
 from service.grading.samples import HALF, SAMPLES, Samples
-from service.grading.tolerances import ROUNDED_VALUE, SAME_MOTION
+from service.grading.tolerances import SAME_MOTION
 from service.kinematics.chain import COLUMNS
 from service.kinematics.chain_match import RowConstants
 from service.kinematics.dh import Convention
@@ -47,13 +48,12 @@ def row_constants(
     constants = (cells - counts @ variables)[..., :HALF]
     written = np.where((is_gradable & linear)[..., None], constants, np.nan)
     wrong_regardless = is_gradable & ~(linear & (counts == expected).all(axis=-1))
-    rounded = np.array([role.row.rounded if role.row else [False] * 4 for role in roles])
     rows = zip(
         regrouped(written, convention),
         regrouped(is_gradable, convention),
         regrouped(wrong_regardless, convention),
         ~regrouped(np.ones_like(is_gradable), convention),
-        regrouped(ROUNDED_VALUE * rounded, convention),
+        regrouped(slack_of_cells(roles, samples), convention),
         [None, *(role.joint and variable_column(role.joint) for role in roles)],
         [0, *joint_signs.tolist()],
         strict=True,

@@ -1,13 +1,12 @@
 """The valid table nearest to a handed-in one, where it is known which row is for which joint."""
 
 from dataclasses import replace
-from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
 
-from service.grading.joint_motion import halves
-from service.grading.judging.own_frames.constants import row_constants, without_variables
+from service.grading.judging.own_frames.base_frame import possible_bases
+from service.grading.judging.own_frames.constants import row_constants
 from service.grading.judging.own_frames.few_cells import (
     NearestTable,
     frames_from_reference,
@@ -19,7 +18,6 @@ from service.grading.judging.own_frames.reference import (
     mechanism_at,
     reference_frames,
     regrouped,
-    tool_pose,
 )
 from service.grading.judging.own_frames.row_roles import (
     FrameFreedom,
@@ -35,11 +33,9 @@ from service.grading.judging.own_frames.written_table import (
 )
 from service.grading.misconception import hypotheses_of
 from service.grading.part import Grading
-from service.grading.samples import HALF
 from service.grading.tolerances import INTENDED_POSE, UNCHANGED_CELL
-from service.kinematics.axis_alignment import align_axes
-from service.kinematics.chain import Table, axis_frames, pose, z_links
-from service.kinematics.chain_match import ChainMatch, match_as_written
+from service.kinematics.chain import Table, z_links
+from service.kinematics.chain_match import ChainMatch, match_as_written, match_tables
 from service.kinematics.dh import Convention
 from service.kinematics.frame_choice import NO_SUCH_CELL, WRONG_CELL
 from service.kinematics.frame_choice import nearest_table as search_nearest_table
@@ -103,9 +99,10 @@ def _search(
     mechanism = mechanism_at(exercise, samples)
     targets = targets_of(roles, convention, mechanism, freedom)
     rows = row_constants(roles, exercise.robot.joints, convention, samples)
-    bases = _possible_bases(roles, convention, freedom, grading) if freedom.base else [None]
+    written = np.array([row.written for row in rows])
+    signs = np.array([row.joint_sign for row in rows])
     match = None
-    for base in bases:
+    for base in possible_bases(written, signs, roles, mechanism, freedom):
         match = match or match_as_written(
             rows, targets, scale, directions_given=directions_given, start=base
         )
@@ -113,10 +110,16 @@ def _search(
         match = search_nearest_table(
             rows, targets, scale, base_given=not freedom.base, directions_given=directions_given
         )
-        rounded = any(row.tolerance.any() for row in rows)
-        if freedom.base and match.cost < WRONG_CELL and not rounded:
-            # It is not valid from any possible base: then it cannot be right.
-            match = replace(match, cost=match.cost + NO_SUCH_CELL)
+        if freedom.base and match.cost < WRONG_CELL:
+            # Nothing is wrong but for rounding. The search takes a free base to be wherever each
+            # row needs it; so the table that it found need not be valid from one of them.
+            bases = possible_bases(match.rows, signs, roles, mechanism, freedom)
+            asked = signs * directions_given
+            if not any(
+                match_tables(match.rows[None], asked[None], targets, scale, start=base)[0].any()
+                for base in bases
+            ):
+                match = replace(match, cost=match.cost + NO_SUCH_CELL)
     # What each cell should be: the constants and the joint variables.
     expected = np.tile(as_table(match.rows, convention), 2)
     for (i, column), joint in joint_cells(roles).items():
@@ -124,45 +127,6 @@ def _search(
         expected[i, column] += sign * samples.values[joint.variable]
     frames = _joint_frames(roles, match, convention, mechanism)
     return NearestTable(roles, expected, frames, match.cost)
-
-
-def _possible_bases(
-    roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
-) -> list[Matrices]:
-    """Where a free frame 0 may lie in the reference's frame 0, ``(HALF, 4, 4)`` each.
-
-    A given tool leaves one possibility. Otherwise the student's joint axes must lie on the
-    reference's, each in the direction that the sign of its variable says, or in either direction
-    where the directions are free.
-    """
-    table = handed_in_values(roles)
-    if np.isnan(table).any():
-        return []
-    exercise, samples = grading.exercise, grading.samples
-    if not freedom.tool:
-        return [(tool_pose(exercise, samples) @ inverse(pose(table, convention)))[:HALF]]
-    sliding = np.array([joint.prismatic for joint in exercise.robot.joints])
-    rows = [i for i, _ in joint_cells(roles)]
-    constants, signs = (x[0] for x in without_variables(table[None], roles, samples))
-    if not freedom.directions:
-        student_axes = axis_frames(halves(table)[0], convention, Convention.STANDARD)[rows]
-        target = reference_frames(exercise, Convention.STANDARD, samples)[:-1, :HALF]
-        return [align_axes(_directed(student_axes, signs[rows]), target, sliding)]
-    # A variable may have either sign, so the axes are compared where all variables are 0. Only the
-    # first axis and the next that is not parallel to it decide how the base is turned.
-    student_axes = axis_frames(constants, convention, Convention.STANDARD)[rows]
-    target = np.array(list(accumulate(mechanism_at(exercise, samples).joints, np.matmul)))
-    directions = [
-        np.array([first, *[others] * (len(rows) - 1)]) for first in (1, -1) for others in (1, -1)
-    ]
-    return [align_axes(_directed(student_axes, signs), target, sliding) for signs in directions]
-
-
-def _directed(frames: Matrices, signs: NDArray[np.int_]) -> Matrices:
-    """The frames with z reversed where the sign is −1."""
-    directed = frames.copy()
-    directed[signs < 0, :, :3, :3] *= np.array([1.0, -1.0, -1.0])
-    return directed
 
 
 def _joint_frames(

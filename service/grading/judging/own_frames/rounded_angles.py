@@ -6,24 +6,22 @@ so are the angles in all the frames that one would draw. Then a decimal that is 
 its last digit stands for it: 2.094 for 2π/3, but not 2.0951.
 """
 
-import re
 from dataclasses import replace
 
 import numpy as np
 
 from service.catalogue import Exercise
 from service.catalogue.robot import at_home
+from service.grading.comparison import rounding_slack
 from service.grading.joint_motion import changes
 from service.grading.judging.own_frames.row_roles import Role, handed_in_values, variables_of
-from service.grading.reading.entry import Entry
 from service.grading.reading.table import IS_ANGLE
 from service.grading.samples import Samples
-from service.grading.tolerances import MULTIPLE_OF_STEP, ROUNDED_VALUE
-from service.kinematics.tolerances import LARGEST_ANGLE
+from service.grading.tolerances import MULTIPLE_OF_STEP
+from service.kinematics.chain import COLUMNS
 from service.kinematics.transforms import Numbers
 
 STEP = np.pi / 12
-_DECIMALS = re.compile(r"\.([0-9]*)")
 
 
 def with_exact_angles(
@@ -33,13 +31,11 @@ def with_exact_angles(
 
     Where no angle was rounded, the result is ``roles`` itself.
     """
-    digits = IS_ANGLE * [
-        list(map(_last_digit, role.row.entries)) if role.row else [0.0] * 4 for role in roles
-    ]
-    if not digits.any() or not _turns_in_steps(exercise, samples):
+    slack = slack_of_cells(roles, samples)
+    if not slack[:, IS_ANGLE].any() or not _turns_in_steps(exercise, samples):
         return roles
     values = handed_in_values(roles)
-    error = _rounding_errors(values, variables_of(roles, samples), digits)
+    error = _rounding_errors(values, variables_of(roles, samples), slack * IS_ANGLE)
     exact = values - error[..., None]
     return tuple(
         replace(role, row=replace(role.row, values=exact[i], as_written=role.row.values))
@@ -49,14 +45,20 @@ def with_exact_angles(
     )
 
 
-def _last_digit(entry: Entry) -> float:
-    """The value of 1 in the last digit written, if the entry has a decimal; else 0."""
-    if not (entry.may_be_rounded and entry.expression):
-        return 0.0
-    return 10.0 ** -min(map(len, _DECIMALS.findall(entry.expression.source)))
+def slack_of_cells(roles: tuple[Role, ...], samples: Samples) -> Numbers:
+    """By how much rounding may have moved each cell, ``(rows, 4)``."""
+    nothing = [0.0] * len(COLUMNS)
+    return np.array(
+        [
+            [rounding_slack(each, samples) if each else 0.0 for each in role.row.expressions]
+            if role.row
+            else nothing
+            for role in roles
+        ]
+    )
 
 
-def _rounding_errors(values: Numbers, variables: Numbers, digits: Numbers) -> Numbers:
+def _rounding_errors(values: Numbers, variables: Numbers, slack: Numbers) -> Numbers:
     """By how much rounding took each cell ``(rows, 4, SAMPLES)`` off a multiple of the step.
 
     0 where the cell is off by more than rounding, or is not its joint's variable and a constant.
@@ -65,9 +67,7 @@ def _rounding_errors(values: Numbers, variables: Numbers, digits: Numbers) -> Nu
     constants = values - signs[..., None] * variables
     exact = STEP * np.round(constants[..., 0] / STEP)
     error = constants[..., 0] - exact
-    # The last digit may have been cut off or rounded, and the number then doubled.
-    largest = np.minimum(2 * digits, ROUNDED_VALUE * np.minimum(np.abs(exact), LARGEST_ANGLE))
-    is_rounded = (np.abs(error) <= largest) & (np.ptp(constants, axis=-1) < MULTIPLE_OF_STEP)
+    is_rounded = (np.abs(error) <= slack) & (np.ptp(constants, axis=-1) < MULTIPLE_OF_STEP)
     return np.where(is_rounded, error, 0.0)
 
 
