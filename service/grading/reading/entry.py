@@ -26,7 +26,7 @@ from service.grading.samples import SAMPLES, Samples
 from service.kinematics.transforms import Numbers
 
 # Textbooks mark the joint variable so in every table: six notes on it would hide the others.
-EXPECTED_NOTES = frozenset({"joint_marker"})
+EXPECTED_IN_TABLES = "joint_marker"
 
 # Beyond these nobody measures a robot, and an angle has lost its digits to whole turns.
 BOUNDS: Mapping[Kind, float] = {"angle": 1e6, "length": 1e9, "number": 1e9}
@@ -99,10 +99,18 @@ class Reader:
         except ExpressionError as error:
             budget.repairs -= 1
             return unreadable(_from_error(error))
-        if not expression.notes:
-            return Entry(expression)
-        notes = (note for note in expression.notes if note.code not in EXPECTED_NOTES)
-        return Entry(expression, findings=tuple(map(from_note, notes)))
+        return Entry(expression, findings=tuple(map(from_note, expression.notes)))
+
+    def read_parameter(self, raw: object, quantity: Kind) -> Entry:
+        """The entry for a cell of a DH table, where a star marks the one joint variable."""
+        entry = self.read(raw, quantity)
+        if entry.expression is None or not entry.findings:
+            return entry
+        by_name = self.vocabulary.by_name
+        if sum(by_name[name].joint is not None for name in entry.expression.symbols) > 1:
+            return entry
+        others = tuple(found for found in entry.findings if found.code != EXPECTED_IN_TABLES)
+        return Entry(entry.expression, findings=others)
 
 
 def entry_values(entries: Sequence[Entry], quantities: Sequence[Kind], samples: Samples) -> Numbers:
