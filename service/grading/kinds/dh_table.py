@@ -4,18 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from service.catalogue import Exercise
 from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.diagnosis.table_cell import diagnose_cells
 from service.grading.diagnosis.table_explained import explained, freedom_lost
 from service.grading.feedback import Finding
 from service.grading.follow_through import stands_still
+from service.grading.judging.convention import judged_in_convention
 from service.grading.judging.own_frames.best_roles import roles_in
 from service.grading.judging.report_rows import cell_report
-from service.grading.judging.table import JudgedRow, Judgement, judged_table
+from service.grading.judging.table import JudgedRow, Judgement
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.table import StudentRow, StudentTable, read_table
-from service.grading.report import CellReport, RowReport, Severity, Verdict, row_report
+from service.grading.report import CellReport, RowReport, Verdict, row_report
 from service.grading.samples import Samples
 from service.kinematics.chain import COLUMNS, frames, links
 from service.kinematics.dh import Convention
@@ -33,8 +33,7 @@ def read(part: DhTableSpec, answer: object, grading: Grading) -> StudentTable | 
 
 def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     """The table row by row and cell by cell."""
-    convention, findings = _convention(part, answer, grading.exercise)
-    first = judged_table(part, answer.rows, convention, grading)
+    convention, first, findings = judged_in_convention(part, answer, grading)
     judgement, found, lost = _of_the_whole(part, answer.rows, first, convention, grading)
     messages = grading.visible((*answer.findings, *findings, *found, *lost, *judgement.findings))
     missing = tuple(
@@ -73,24 +72,6 @@ def _of_the_whole(
         found, judgement = explained(part, roles, convention, judgement, grading, combine=combine)
     # An explained table is not the one that the student intended, so its freedom says nothing.
     return judgement, found, () if found else freedom_lost(roles, convention, grading)
-
-
-def _convention(
-    part: DhTableSpec, table: StudentTable, exercise: Exercise
-) -> tuple[Convention, tuple[Finding, ...]]:
-    """The convention that the table is read in, and the finding where the answer names another."""
-    if part.convention == "either":
-        return table.convention or exercise.robot.convention, ()
-    if table.convention in (None, part.convention):
-        return part.convention, ()
-    return part.convention, (
-        Finding(
-            "convention_not_asked_for",
-            f"This part asks for the {part.convention.value} convention and was graded in it, but "
-            f"the answer says {table.convention.value if table.convention else ''}.",
-            severity=Severity.WARNING,
-        ),
-    )
 
 
 def _chain(

@@ -187,8 +187,8 @@ def _convention_hint(
         return ()
     names = " and ".join(quoted(cell.text) for cell in shifted)
     message = (
-        f"Headers such as {names} belong to the modified (proximal) convention. The table was "
-        "read in the convention of this part, whatever its headers."
+        f"Headers such as {names} belong to the modified (proximal) convention. Headers do not "
+        "decide in which convention the table is read."
     )
     return (_note("convention_hint", message, shifted[0]),)
 
