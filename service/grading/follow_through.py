@@ -61,9 +61,8 @@ def _nudged(samples: Samples, variable: str) -> Samples:
 
 
 def stands_still(values: Numbers) -> bool:
-    """Whether no value ``(..., SAMPLES)`` changes with the joints."""
-    # NaN is not larger than anything.
-    return not (np.abs(changes(values)) > DEPENDS_ON_JOINTS).any()
+    """Whether all values ``(..., SAMPLES)`` are known and none changes with the joints."""
+    return bool((np.abs(changes(values)) <= DEPENDS_ON_JOINTS).all())
 
 
 STANDS_STILL = Finding(
