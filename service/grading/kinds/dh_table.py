@@ -12,6 +12,7 @@ from service.grading.follow_through import stands_still
 from service.grading.judging.convention import judged_in_convention
 from service.grading.judging.own_frames.best_roles import roles_in
 from service.grading.judging.report_rows import cell_report
+from service.grading.judging.row_places import row_places
 from service.grading.judging.table import JudgedRow, Judgement
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.table import StudentRow, StudentTable, read_table
@@ -43,9 +44,10 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
         for message in grading.visible((_missing(judged),), judged.label)
     )
     extra = grading.visible(tuple(_extra_row(i) for i in judgement.extra))
+    places = grading.visible(row_places(answer, judgement, convention, grading))
     return Judged(
         _row_reports(judgement, part.points, grading, found),
-        (*messages, *missing, *extra),
+        (*messages, *missing, *extra, *places),
         lost=judgement.lost,
         stands_still=stands_still(answer.values),
         chain=lambda: _chain(answer, first, convention),
