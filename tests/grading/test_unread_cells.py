@@ -126,3 +126,32 @@ def test_a_slip_beside_a_cell_that_was_not_read_is_still_one(
         ("1", "alpha"): Verdict.INCORRECT,
         ("2", "d"): Verdict.UNREADABLE,
     }
+
+
+def scara_link(a: str, alpha: str, d: str, theta: str) -> list[list[str]]:
+    """The distal link transform for a twist of 0 or 180°. Source: Spong et al., eq. 3.10."""
+    cos = {"0": "1", "180": "-1"}[alpha]
+    c, s = f"cos({theta})", f"sin({theta})"
+    return [
+        [c, f"-{s}*({cos})", "0", f"({a})*{c}"],
+        [s, f"{c}*({cos})", "0", f"({a})*{s}"],
+        ["0", "0", cos, d],
+        ["0", "0", "0", "1"],
+    ]
+
+
+@pytest.mark.parametrize("i", range(4))
+def test_nothing_follows_from_entries_of_a_link_in_other_frames(
+    i: int, catalogue: Mapping[str, Exercise]
+) -> None:
+    """x1 the other way, and origins moved along the parallel axes: valid by hand."""
+    right = [
+        scara_link("-a1", "0", "0.3", "theta1 + pi"),
+        scara_link("a2", "180", "-0.1", "theta2 - pi"),
+        scara_link("0", "0", "d3 + 0.2", "0"),
+        scara_link("0", "0", "d4", "theta4"),
+    ]
+    for cells in ([(0, 3)], [(2, 3), (0, 0)], [(j, k) for j in range(4) for k in range(4)]):
+        answer = changed(right, [(i, *cell) for cell in cells], "thetta?")
+        report = part(grade(catalogue["scara"], Submission({"links": answer})), "links")
+        assert blamed(report, Verdict.UNREADABLE) == []
