@@ -17,6 +17,10 @@ def row_places(
     labels = [str(joint.index) for joint in robot.joints]
     if reference is not None:
         labels = list(reference.labels)
+    handed_in = [row.entries for row in table.rows]
+    graded = [judged.row and judged.row.entries for judged in judgement.rows]
+    if graded == handed_in and [judged.label for judged in judgement.rows] == labels:
+        return ()
     # Rounded angles made exact make a new row of the same entries.
     places = {id(row.entries): i for i, row in enumerate(table.rows)}
     moved = [

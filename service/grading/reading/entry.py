@@ -26,7 +26,7 @@ from service.grading.samples import SAMPLES, Samples
 from service.kinematics.transforms import Numbers
 
 # Textbooks mark the joint variable so in every table: six notes on it would hide the others.
-EXPECTED_IN_TABLES = "joint_marker"
+EXPECTED_IN_TABLES = frozenset({"joint_marker"})
 
 # Beyond these nobody measures a robot, and an angle has lost its digits to whole turns.
 BOUNDS: Mapping[Kind, float] = {"angle": 1e6, "length": 1e9, "number": 1e9}
@@ -74,8 +74,11 @@ class Reader:
         unit = units.pop() if len(units) == 1 else None
         return cls(exercise.vocabulary, samples, angle_unit, unit)
 
-    def read(self, raw: object, quantity: Kind) -> Entry:
-        """The entry for a JSON value. Whatever it is, the worst that comes back is unreadable."""
+    def read(self, raw: object, quantity: Kind, *, in_table: bool = False) -> Entry:
+        """The entry for a JSON value. Whatever it is, the worst that comes back is unreadable.
+
+        ``in_table`` says that it is a cell of a DH table, where a star marks the joint variable.
+        """
         budget = self.budget
         if isinstance(raw, str):
             if not raw.strip():
@@ -99,18 +102,16 @@ class Reader:
         except ExpressionError as error:
             budget.repairs -= 1
             return unreadable(_from_error(error))
-        return Entry(expression, findings=tuple(map(from_note, expression.notes)))
+        if not expression.notes:
+            return Entry(expression)
+        untold = self._untold(expression) if in_table else frozenset()
+        told = (note for note in expression.notes if note.code not in untold)
+        return Entry(expression, findings=tuple(map(from_note, told)))
 
-    def read_parameter(self, raw: object, quantity: Kind) -> Entry:
-        """The entry for a cell of a DH table, where a star marks the one joint variable."""
-        entry = self.read(raw, quantity)
-        if entry.expression is None or not entry.findings:
-            return entry
-        by_name = self.vocabulary.by_name
-        if sum(by_name[name].joint is not None for name in entry.expression.symbols) > 1:
-            return entry
-        others = tuple(found for found in entry.findings if found.code != EXPECTED_IN_TABLES)
-        return Entry(entry.expression, findings=others)
+    def _untold(self, expression: Expression) -> frozenset[str]:
+        """The codes of notes that are not told of a cell of a table."""
+        joints = [self.vocabulary.by_name[name].joint for name in expression.symbols]
+        return EXPECTED_IN_TABLES if len(joints) - joints.count(None) < 2 else frozenset()
 
 
 def entry_values(entries: Sequence[Entry], quantities: Sequence[Kind], samples: Samples) -> Numbers:

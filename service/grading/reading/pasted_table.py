@@ -87,7 +87,7 @@ def table_entry(cell: GridCell, column: str, header: Header, reader: Reader) -> 
     """One cell of a table, in the unit that its header names."""
     if header.angle_unit:
         reader = replace(reader, angle_unit=header.angle_unit)
-    entry = reader.read_parameter(cell.text, QUANTITIES[column])
+    entry = reader.read(cell.text, QUANTITIES[column], in_table=True)
     if header.metres and header.metres != METRES.get(reader.length_unit or ""):
         entry = in_unit(entry, header, reader)
     return placed(entry, cell)

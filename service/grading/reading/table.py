@@ -174,7 +174,7 @@ def _entries(row: object, reader: Reader) -> tuple[Entry, ...]:
     return tuple(
         unreadable(_NO_ROW)
         if stray and column not in row
-        else reader.read_parameter(row.get(column), QUANTITIES[column])
+        else reader.read(row.get(column), QUANTITIES[column], in_table=True)
         for column in COLUMNS
     )
 
