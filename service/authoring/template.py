@@ -1,22 +1,19 @@
 """A new exercise file to start from."""
 
-import re
 from pathlib import Path
 from typing import Final
 
+from service.catalogue import ID_ADVICE, is_exercise_id
+
 _TEMPLATE: Final = Path(__file__).with_name("template.toml")
-_ID: Final = re.compile(r"[a-z][a-z0-9]*(?:[-_][a-z0-9]+)*")
-_LONGEST: Final = 60
+_SHOWN: Final = 60
 
 
 class UnusableIdError(ValueError):
     """A text that cannot be the id of an exercise."""
 
     def __init__(self, exercise_id: str) -> None:
-        super().__init__(
-            f"{exercise_id[:_LONGEST]!r} cannot be an exercise's id: write small letters and "
-            f"digits, with - or _ between them, such as elbow-arm"
-        )
+        super().__init__(f"{exercise_id[:_SHOWN]!r} cannot be an exercise's id: {ID_ADVICE}")
 
 
 def template(exercise_id: str) -> str:
@@ -24,7 +21,7 @@ def template(exercise_id: str) -> str:
 
     Raises UnusableIdError: the id becomes the file's name and a part of web addresses.
     """
-    if not _ID.fullmatch(exercise_id) or len(exercise_id) > _LONGEST:
+    if not is_exercise_id(exercise_id):
         raise UnusableIdError(exercise_id)
     title = exercise_id.replace("-", " ").replace("_", " ").capitalize()
     return _TEMPLATE.read_text(encoding="utf-8").replace("TITLE", title, 1)

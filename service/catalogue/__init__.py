@@ -4,9 +4,11 @@ from service.catalogue.exercise import Exercise
 from service.catalogue.formulas import FormulaGrid, grid_values
 from service.catalogue.live import open_catalogue
 from service.catalogue.load import (
+    ID_ADVICE,
     CatalogueError,
     Fault,
     exercise_files,
+    is_exercise_id,
     load_catalogue,
     load_exercise,
     shipped_folder,
@@ -18,6 +20,7 @@ from service.catalogue.screw_robot import ScrewRobot
 from service.catalogue.variables import Variable
 
 __all__ = [
+    "ID_ADVICE",
     "CatalogueError",
     "CheckSpec",
     "Exercise",
@@ -32,6 +35,7 @@ __all__ = [
     "Variable",
     "exercise_files",
     "grid_values",
+    "is_exercise_id",
     "load_catalogue",
     "load_exercise",
     "open_catalogue",

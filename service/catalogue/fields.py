@@ -25,9 +25,10 @@ def advice(text: str) -> FieldInfo:
 NotBool = BeforeValidator(_no_truth_value)
 Formula = Annotated[str | float, NotBool]
 Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
+IDENTIFIER = r"[a-z][a-z0-9]*(?:[-_][a-z0-9]+)*"
 Identifier = Annotated[
     str,
-    StringConstraints(pattern=r"^[a-z][a-z0-9]*(?:[-_][a-z0-9]+)*$"),
+    StringConstraints(pattern=f"^{IDENTIFIER}$"),
     advice('write small letters and digits, with - or _ between them, such as "link-2"'),
 ]
 GivenOrFree = Literal["given", "free"]

@@ -1,5 +1,6 @@
 """Reading the folder of exercise files."""
 
+import re
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,10 +9,14 @@ from pydantic import ValidationError
 
 from service.catalogue.compile import compile_exercise
 from service.catalogue.exercise import Exercise
+from service.catalogue.fields import IDENTIFIER
 from service.catalogue.formulas import FieldError
 from service.catalogue.lines import line_of, value_lines
 from service.catalogue.refusals import refusals
 from service.catalogue.schema import ExerciseSpec
+
+ID_ADVICE = "write small letters and digits, with - or _ between them, such as elbow-arm"
+_LONGEST_ID = 60
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,8 +89,16 @@ def load_catalogue(*folders: Path) -> dict[str, Exercise]:
     return exercises
 
 
+def is_exercise_id(name: str) -> bool:
+    """Whether ``name`` can be the name of a file, without .toml, and a part of web addresses."""
+    return re.fullmatch(IDENTIFIER, name) is not None and len(name) <= _LONGEST_ID
+
+
 def load_exercise(file: Path) -> Exercise:
     """The exercise of one file; its id is the file's name. Raises CatalogueError."""
+    if not is_exercise_id(file.stem):
+        reason = f"the name of the file is the exercise's id: {ID_ADVICE}"
+        raise CatalogueError([Fault(file, "", reason)])
     text = ""
     try:
         text = file.read_text(encoding="utf-8")

@@ -6,7 +6,7 @@ The kinds themselves are the modules of ``parts/``.
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, StrictBool, model_validator
 
 from service.catalogue.fields import FrameName, Identifier, Marking, NotBool, StrictModel, Text
 from service.catalogue.formulas import FieldError, WrittenFormulas
@@ -41,7 +41,7 @@ class PartSpec(StrictModel, ABC):
     """The title that students see."""
     prompt: str = ""
     """The task, in one sentence or more."""
-    points: Annotated[float, Field(gt=0, le=1000), NotBool] = 1.0
+    points: Annotated[float, Field(gt=0, le=1000, strict=True), NotBool] = 1.0
     """The points for a right answer; its rows share them."""
     marking: Marking = "content"
     """How the points are shared: "content" by what one has to know (a lazy answer earns little),
@@ -50,7 +50,7 @@ class PartSpec(StrictModel, ABC):
     follows: Identifier | None = None
     """The id of an earlier part that this one builds on. An answer that is wrong for the robot,
     but right for the student's own answer to that part, earns its points."""
-    follows_from: Annotated[float, Field(ge=0, le=1), NotBool] = 0.5
+    follows_from: Annotated[float, Field(ge=0, le=1, strict=True), NotBool] = 0.5
     """The share of its points that the student's answer to the earlier part must have earned
     before this part may follow from it."""
     if TYPE_CHECKING:
@@ -84,7 +84,7 @@ class PosePartSpec(PartSpec):
     table."""
     to: FrameName = "tool"
     """The frame whose pose is asked for."""
-    home: bool = False
+    home: StrictBool = False
     """Whether all joint variables are 0."""
 
     def check_reference(self, field: str, reference: Reference | None) -> None:

@@ -106,6 +106,12 @@ def _advised(detail: Mapping[str, Any]) -> str:
             return f"{reason}: write {last} = …"
         case "string_pattern_mismatch":
             return f"{reason}: {_advice(str(last), _model(location[:-1]))}"
+        case "float_type" | "bool_type" if isinstance(detail["input"], str):
+            return f"{reason}: write it without quotation marks"
+        case "bool_type":
+            return f"{reason}: write true or false"
+        case "string_type" if isinstance(detail["input"], bool | int | float):
+            return f"{reason}: write it in quotation marks"
         case "union_tag_not_found":
             return f'{reason}: write kind = "…", one of {", ".join(SPECS)}'
         case _:

@@ -17,11 +17,11 @@ from typing import Any, Literal
 Span = tuple[int, int]
 
 Cause = Literal[
-    "ambiguous_number", "ambiguous_shorthand", "ambiguous_unit", "argument", "arguments", "beyond",
-    "boolean", "character", "command", "cube_root", "degrees", "empty", "function_power", "grammar",
-    "index", "invalid_shorthand", "invisible", "look_alike", "mismatch", "mixed_number", "name",
-    "not_finite", "plus_minus", "raised_zero", "subscript", "transpose", "two_units", "unclosed",
-    "unit_on_variable", "values",
+    "ambiguous_number", "ambiguous_shorthand", "ambiguous_star", "ambiguous_unit", "argument",
+    "arguments", "beyond", "boolean", "character", "command", "cube_root", "degrees", "empty",
+    "function_power", "grammar", "index", "invalid_shorthand", "invisible", "look_alike",
+    "mismatch", "mixed_number", "name", "not_finite", "plus_minus", "raised_zero", "subscript",
+    "transpose", "two_units", "unclosed", "unit_on_variable", "values",
 ]  # fmt: skip
 
 

@@ -88,9 +88,9 @@ class Judged:
     The rows have no points yet: ``content`` says what their cells are worth. ``slips`` counts those
     that no cell shows, such as a row too many. ``whole_cost`` is the share of the points that a
     slip of the whole answer costs, where one explains all its wrong cells. ``stands_still`` says
-    that no joint moves an answer that must move. ``without_extra`` is the same answer judged
-    without rows too many: it earns no more than that. ``chain`` gives the answer as a chain, if it
-    is one; it is asked only where another part follows this one.
+    that no joint moves an answer that must move. ``at_most`` is the same answer judged
+    without what must not help: it earns no more than that. ``chain`` gives the answer as a chain,
+    if it is one; it is asked only where another part follows this one.
     """
 
     rows: tuple[RowReport, ...]
@@ -99,7 +99,7 @@ class Judged:
     slips: int = 0
     whole_cost: float | None = None
     stands_still: bool = False
-    without_extra: "Judged | None" = None
+    at_most: "Judged | None" = None
     chain: Callable[[], StudentChain | None] = _no_chain
 
     @property

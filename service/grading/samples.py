@@ -7,8 +7,9 @@ regrade repeats it to the last bit, on every machine and with every version of n
 import hashlib
 import json
 import math
-from collections.abc import Callable, Hashable, Mapping, Set
+from collections.abc import Callable, Hashable, Iterator, Mapping, Set
 from dataclasses import dataclass
+from datetime import date, time
 from functools import cached_property
 from typing import Any, TypeVar
 
@@ -102,15 +103,36 @@ def draw(exercise: Exercise, answers: object, *, degrees: bool = False) -> Sampl
 
 
 def _canonical(answers: object) -> str:
-    """The answers as text that does not depend on the order of keys.
-
-    Answers that JSON refuses (nested beyond all bounds, a number of thousands of digits) have no
-    readable cell in that place; all of them share one seed.
-    """
+    """The answers as text that does not depend on the order of keys."""
     try:
         return json.dumps(answers, sort_keys=True, separators=(",", ":"))
     except (TypeError, ValueError, RecursionError):
-        return ""
+        return "".join(_pieces(answers))
+
+
+def _pieces(answers: object) -> Iterator[str]:
+    """The answers that JSON refuses, piece by piece: a number of thousands of digits, TOML's dates.
+
+    No depth and no circle stops it: a list or table that was met before is not entered again.
+    """
+    waiting, met = [answers], set[int]()
+    while waiting:
+        value = waiting.pop()
+        if isinstance(value, dict | list | tuple):
+            inside = list(value)
+            if isinstance(value, dict):
+                inside = [each for key in sorted(value, key=str) for each in (key, value[key])]
+            yield f"{type(value).__name__} {len(inside)};"
+            if id(value) not in met:
+                met.add(id(value))
+                waiting += reversed(inside)
+        elif isinstance(value, bool | str | float | date | time | None):
+            yield f"{value!r};"
+        elif isinstance(value, int):
+            # Python refuses thousands of digits in decimals only.
+            yield f"{value:x};"
+        else:
+            yield f"{type(value).__name__};"
 
 
 def _uniform(seed: str, count: int) -> Numbers:

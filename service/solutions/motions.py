@@ -18,6 +18,8 @@ from dataclasses import dataclass
 
 import sympy
 
+from service.solutions import constants
+
 X = sympy.ImmutableMatrix([1, 0, 0])
 Y = sympy.ImmutableMatrix([0, 1, 0])
 Z = sympy.ImmutableMatrix([0, 0, 1])
@@ -155,5 +157,5 @@ def rotation_about(axis: sympy.Matrix, angle: sympy.Expr) -> sympy.Matrix:
     x, y, z = axis
     skew = sympy.Matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     along = axis * axis.T
-    cos, sin = sympy.cos(angle), sympy.sin(angle)
+    cos, sin = constants.folded(sympy.cos(angle)), constants.folded(sympy.sin(angle))
     return cos * (sympy.eye(3) - along) + sin * skew + along

@@ -15,13 +15,13 @@ from service.catalogue import Exercise
 from service.expressions import ExpressionError, Symbol, Vocabulary, read
 from service.expressions.printing.text import to_text
 from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
+from service.solutions import constants
 from service.solutions.algebra import FUNCTIONS
 
 _NAMES = {function: name for name, function in FUNCTIONS.items()}
 _TRIGONOMETRIC = (sympy.sin, sympy.cos, sympy.tan)
 # These fractions are written as such; another has a decimal point where its digits end.
 _PLAIN_DENOMINATORS = (1, 2, 3, 4)
-_MOST_DECIMALS = 20
 
 # Beyond this many nodes a formula has more characters than are read of an answer.
 _MOST_NODES = 1000
@@ -49,6 +49,8 @@ class Writer:
 
     def number(self, expression: sympy.Expr) -> Node:
         """The formula of a number or a length. Raises TooLongError."""
+        if constants.is_unwieldy(expression):
+            expression = constants.rounded(expression)
         if _size(expression, {}) > _MOST_NODES:
             raise TooLongError
         return self._node(_without_negative_brackets(expression))
@@ -198,7 +200,7 @@ def _number(value: sympy.Rational) -> Node:
 def _decimal(value: sympy.Rational) -> str | None:
     """The decimals, or None where they do not end."""
     exact = Fraction(int(value.p), int(value.q))
-    for digits in range(_MOST_DECIMALS + 1):
+    for digits in range(constants.DECIMALS + 1):
         scaled = exact * 10**digits
         if scaled.denominator == 1:
             return f"{Decimal(scaled.numerator).scaleb(-digits):f}"

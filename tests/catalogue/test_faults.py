@@ -2,10 +2,21 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
+from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from service.catalogue import CatalogueError, load_catalogue, load_exercise
+from service.catalogue.parts import SPECS
+from service.catalogue.schema import (
+    CheckSpec,
+    ExerciseSpec,
+    ExpectSpec,
+    RobotSpec,
+    ScrewRobotSpec,
+    SymbolSpec,
+)
 
 VALID = """\
 title = "An arm"
@@ -67,9 +78,25 @@ FAULTS: dict[str, tuple[tuple[str, str], str, str]] = {
     "unknown key of a symbol": (("range =", "limits ="), "symbols.a1.limits", "there is no key"),
     "title missing": (('title = "An arm"\n', ""), "title", "required"),
     "title blank": (('"An arm"', '"  "'), "title", "at least 1"),
-    "title of another type": (('"An arm"', "5"), "title", "string"),
+    "title of another type": (('"An arm"', "5"), "title", "write it in quotation marks"),
     "no parts": ((VALID[VALID.index("[[parts]]") :], ""), "parts", "required"),
     "points of another type": (("points = 4", 'points = "many"'), "parts[1].points", "number"),
+    "points as text": (
+        ("points = 4", 'points = "4"'),
+        "parts[1].points",
+        "without quotation marks",
+    ),
+    "a share as text": (
+        ("points = 4", 'follows = "table"\nfollows_from = "0.5"'),
+        "parts[1].follows_from",
+        "without quotation marks",
+    ),
+    "a truth as text": (
+        ("points = 4", 'home = "true"'),
+        "parts[1].home",
+        "without quotation marks",
+    ),
+    "a truth as a number": (("points = 4", "home = 1"), "parts[1].home", "write true or false"),
     "points of nothing": (("points = 4", "points = 0"), "parts[1].points", "greater than 0"),
     "points below nothing": (("points = 4", "points = -1"), "parts[1].points", "greater than 0"),
     "points beyond bounds": (("points = 4", "points = 1e9"), "parts[1].points", "1000"),
@@ -164,6 +191,32 @@ def test_a_fault_is_refused_where_it_is(name: str, tmp_path: Path) -> None:
     assert {fault.file for fault in faults} == {file}
     assert [f for f in faults if field in f.field and re.search(reason, f.reason)], faults
     assert str(caught.value).startswith(f"{file}: {faults[0].field}".removesuffix(": "))
+
+
+@pytest.mark.parametrize(
+    "name", ["Bad Name", "Arm", "arm-", "-arm", "1arm", "a--b", "a.b", "ärm", "arm\n", "a" * 61]
+)
+def test_the_name_of_a_file_is_an_id(name: str, tmp_path: Path) -> None:
+    write(tmp_path, VALID, f"{name}.toml")
+    with pytest.raises(CatalogueError, match=r"write small letters and digits"):
+        load_catalogue(tmp_path)
+
+
+MODELS = [*SPECS.values(), ExerciseSpec, RobotSpec, ScrewRobotSpec, SymbolSpec, CheckSpec]
+
+
+@pytest.mark.parametrize("model", [*MODELS, ExpectSpec], ids=lambda model: model.__name__)
+def test_no_value_is_taken_for_one_of_another_type(model: type[BaseModel]) -> None:
+    for name, field in model.model_fields.items():
+        adapter = TypeAdapter[Any](field.rebuild_annotation())
+        for value in ("1", "0.5", "true", "yes", 0, 1, 0.5, True, False):
+            try:
+                found = adapter.validate_python(value)
+            except ValidationError:
+                continue
+            assert found == value, (name, value)
+            assert isinstance(found, bool) is isinstance(value, bool), (name, value)
+            assert isinstance(found, str) is isinstance(value, str), (name, value)
 
 
 def test_the_file_without_faults_loads(tmp_path: Path) -> None:

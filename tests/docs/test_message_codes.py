@@ -75,6 +75,8 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
         (
             "grading/kinds/dh_table.py",
             "grading/judging/table.py",
+            "grading/judging/convention.py",
+            "grading/judging/row_places.py",
             "grading/judging/own_frames/written_table.py",
             f"{DIAGNOSIS}table_freedom.py",
             f"{DIAGNOSIS}whole_table.py",

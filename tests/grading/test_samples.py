@@ -1,6 +1,8 @@
 """The values that answers are compared at."""
 
+import tomllib
 from collections.abc import Mapping
+from datetime import date, time
 
 import numpy as np
 import pytest
@@ -49,6 +51,45 @@ def test_every_submission_and_every_version_has_its_own_draw(
     draws = [draw(exercise, answers).values["a1"][0] for answers in range(500)]
     assert len(set(draws)) == 500
     assert draw(catalogue["rrrp"], 0).values["q1"][0] != draw(exercise, 0).values["theta1"][0]
+
+
+def _nested(inside: object) -> object:
+    for _ in range(5_000):
+        inside = [inside]
+    return inside
+
+
+HUGE = tomllib.loads(f"x = 0x{'f' * 5_000}")["x"]
+REFUSED = [
+    HUGE, -HUGE, HUGE - 1, date(2024, 2, 29), time(12, 30), _nested("q1"), {1: 2, "1": 3},
+    {"q1", "q2"},
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("refused", REFUSED, ids=range(len(REFUSED)))
+def test_what_json_refuses_has_a_draw_and_so_has_what_stands_beside_it(
+    refused: object, catalogue: Mapping[str, Exercise]
+) -> None:
+    exercise = catalogue["scara"]
+
+    def drawn(*answers: object) -> float:
+        return float(draw(exercise, [*answers, refused]).values["a1"][0])
+
+    assert drawn() == drawn()
+    assert drawn({"a": 1, "b": 2}) == drawn({"b": 2, "a": 1})
+    beside = [*range(30), "1", None, True, 1.5, [1], [[1]], [], {}, {"1": 1}]
+    assert len({drawn(answer) for answer in beside}) == len(beside)
+
+
+def test_numbers_of_thousands_of_digits_differ(catalogue: Mapping[str, Exercise]) -> None:
+    draws = {draw(catalogue["scara"], each).values["a1"][0] for each in (HUGE, -HUGE, HUGE - 1)}
+    assert len(draws) == 3
+
+
+def test_answers_in_a_circle_have_a_draw(catalogue: Mapping[str, Exercise]) -> None:
+    circle: list[object] = ["q1"]
+    circle.append(circle)
+    assert draw(catalogue["scara"], circle).values["a1"][0] > 0
 
 
 def test_the_values_fill_their_range(catalogue: Mapping[str, Exercise]) -> None:

@@ -51,7 +51,7 @@ class DhTableSpec(TablePartSpec):
     kind: Literal["dh_table"]
     convention: Convention | Literal["either"]
     """"standard" (distal) or "modified" (proximal); with "either" the answer says which it
-    uses."""
+    uses, and one that does not is read in the convention that fits it best."""
     frames: GivenOrFree = "given"
     """Whose choice the frames on the joints are: "given" accepts those of the reference only,
     "free" every valid choice."""

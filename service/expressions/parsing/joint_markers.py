@@ -1,9 +1,22 @@
-r"""The star that marks a joint variable, as tables print it, and the star that multiplies it."""
+r"""The star behind a joint variable: the marker that tables print, or a product.
+
+Nothing behind it    θ1*, (d3*), atan2(q1*, k)    the marker
++ behind it          θ1* + 90°, d3*+l1            the marker: nobody writes a product so
+- behind it          θ1* - 90°, θ1*-π/2           the marker, with a note
+                     d3*-l1                       a product, with a note
+anything else        q1*k                         a product
+
+A marked variable is the first factor of its term. Behind another factor (k*q1*), or behind a blank
+(q1 * + k), the star of the first three rows has no one reading; a raised star always marks.
+"""
 
 import re
-from typing import Final
+from typing import Final, Literal
 
 from service.expressions.characters.unicode import CLOSE, OPEN
+
+# How a star was read; "noted" where the sign behind it allows for another reading.
+Star = Literal["marker", "noted_marker", "product", "noted_product", "ambiguous"]
 
 # Behind a marked joint variable, an angle is subtracted as often as added: θ1*-π/2, θ1*-90°,
 # θ1*-\frac{\pi}{2}.
@@ -11,18 +24,29 @@ _ANGLE_SUBTRACTED: Final = (
     rf"\s*-[\s({{{OPEN}]*(?:pi\b|π|[0-9.]+\s*\*?\s*(?:pi\b|π)|[0-9.]+\s*(?:°|deg)|"
     rf"[0-9{{}}/ ]+{CLOSE}\s*\*?\s*(?:pi\b|π))|\s*-\s*[0-9]{{2,}}\s*$"
 )
-_MARKER: Final = re.compile(rf"\s*(?:\+|\)|,|$)|\s+-\s|{_ANGLE_SUBTRACTED}")
-_SPACED_MARKER: Final = re.compile(r"\s*(?:\+|\)|,|$)")
+_NOTHING: Final = re.compile(r"\s*(?:[)\]},]|$)")
+_PLUS: Final = re.compile(r"\s*\+")
+_MINUS: Final = re.compile(r"\s*-")
+_SUBTRACTED: Final = re.compile(rf"\s+-\s|{_ANGLE_SUBTRACTED}")
 # These are read as stars, but mark nothing.
 _DOTS: Final = frozenset({"·", "⋅", "×", r"\cdot", r"\times"})
 
 
-def is_marker(text: str, start: int, end: int, typed: str) -> bool:
-    """Whether the * at text[start:end], right behind a joint variable, marks it.
+def read_star(text: str, start: int, end: int, typed: str, *, first: bool) -> Star:
+    """How the * at text[start:end], right behind a joint variable, is read.
 
-    ``typed`` is the star as typed: a dot multiplies, whatever follows.
+    ``typed`` is the star as typed: a dot multiplies, whatever follows. ``first`` tells whether the
+    joint variable is the first factor of its term.
     """
     if typed in _DOTS:
-        return False
-    pattern = _SPACED_MARKER if text[start - 1].isspace() else _MARKER
-    return pattern.match(text, end) is not None
+        return "product"
+    spaced = text[start - 1].isspace()
+    if _NOTHING.match(text, end):
+        return "marker" if first else "product"
+    if _PLUS.match(text, end):
+        return "marker" if first and not spaced else "ambiguous"
+    if spaced or not _MINUS.match(text, end):
+        return "product"
+    if _SUBTRACTED.match(text, end):
+        return "noted_marker" if first else "ambiguous"
+    return "noted_product"

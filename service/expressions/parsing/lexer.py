@@ -9,7 +9,7 @@ from service.expressions.characters.unicode import CLOSE, MARKER, OPEN
 from service.expressions.errors import Note, Span, UnreadableError
 from service.expressions.parsing.brackets import WRAPPING, Brackets
 from service.expressions.parsing.indices import INDEX, Indexed, indexed, is_family
-from service.expressions.parsing.joint_markers import is_marker
+from service.expressions.parsing.joint_markers import read_star
 from service.expressions.parsing.notes import WordNotes
 from service.expressions.parsing.words import RUN, Piece, split
 from service.expressions.tree import Binary, Call, Node, Number, Pi, SymbolNode
@@ -40,6 +40,9 @@ _NUMERIC_FRACTION: Final = re.compile(rf"{OPEN}\{{?\s*[0-9]+\s*\}}?/\{{?\s*[0-9]
 # An operand ends with one of these; it begins with NUMBER, NAME, FUNCTION, ROOT, LEFT or OPEN.
 OPERAND_ENDS: Final = frozenset({"NUMBER", "NAME", "RIGHT", "CLOSE", "UNIT"})
 _TIGHT_STARTS: Final = frozenset({"NAME", "LEFT", "OPEN"})
+_SIGNS: Final = frozenset({"PLUS", "MINUS"})
+_TERM_STARTS: Final = frozenset({"LEFT", "OPEN", "COMMA"})
+_FACTOR_OPERATORS: Final = frozenset({"STAR", "SLASH", "POWER"})
 
 
 class Lexer:
@@ -162,8 +165,8 @@ class Lexer:
             self._open(text, start, span)
         elif text in ")]}":
             self._close(text, span)
-        elif text == "*" and self._is_marker(start, end):
-            self.notes.marker(span)
+        elif text == "*" and self._is_joint():
+            self._star(start, end, span)
         elif text in _TERMINALS:
             self._emit(_TERMINALS[text], None, *span)
         elif text == "°":
@@ -236,16 +239,30 @@ class Lexer:
         value = self.tokens[-1][1] if self.last == "NAME" else None
         return type(value) is SymbolNode and value.symbol.joint is not None
 
-    def _is_marker(self, start: int, end: int) -> bool:
-        """Whether the * at ``start`` marks a joint variable, as tables print it."""
-        typed = self.source[slice(*self._span(start, end))]
-        return self._is_joint() and is_marker(self.text, start, end, typed)
+    def _star(self, start: int, end: int, span: Span) -> None:
+        """Read the * right behind a joint variable: its marker, or a product."""
+        typed = self.source[slice(*span)]
+        star = read_star(self.text, start, end, typed, first=self._is_first_factor())
+        if star == "ambiguous":
+            variable = self.tokens[-1][2]
+            raise UnreadableError("ambiguous_star", (variable, span[1]), star=span)
+        if star in {"product", "noted_product"}:
+            self._emit("STAR", None, *span)
+        self.notes.star(star, span)
+
+    def _is_first_factor(self) -> bool:
+        """Whether the last operand begins a term: nothing, a bracket or a sign is before it."""
+        before = [token[0] for token in self.tokens[-3:-1]]
+        if before and before[-1] in _SIGNS:
+            before.pop()
+            return not before or before[-1] not in _FACTOR_OPERATORS
+        return not before or before[-1] in _TERM_STARTS
 
     def _marker(self, span: Span) -> None:
         """Read a raised star, which marks a joint variable and nothing else."""
         if not self._is_joint():
             raise UnreadableError("character", span)
-        self.notes.marker(span)
+        self.notes.star("marker", span)
 
     # --- words
 

@@ -3,6 +3,7 @@
 from typing import Final
 
 from service.expressions.errors import Note, Span
+from service.expressions.parsing.joint_markers import Star
 from service.expressions.parsing.words import Piece
 from service.expressions.vocabulary.functions import CAPITALS, IN_DEGREES, OF_DEGREES, PI_CAPITALS
 from service.expressions.vocabulary.symbols import Symbol, Vocabulary
@@ -12,6 +13,10 @@ _INDEXING: Final = {
     "index without brackets.",
     "(": "This was read as {name}, counting from 1.",
 }
+_MARKER: Final = "The * behind the joint variable was read as its marker, not as a product."
+_PRODUCT: Final = (
+    "The * behind the joint variable was read as a product; if it marks the variable, leave it out."
+)
 
 
 class WordNotes:
@@ -27,10 +32,12 @@ class WordNotes:
     def _add(self, code: str, message: str, span: Span) -> None:
         self.notes.append(Note(code, message, span))
 
-    def marker(self, span: Span) -> None:
-        """Note a star that marks a joint variable."""
-        message = "The * behind the joint variable was read as its marker, not as a product."
-        self._add("joint_marker", message, span)
+    def star(self, star: Star, span: Span) -> None:
+        """Note a star that marks a joint variable, or that stands where a marker may stand."""
+        if star == "product":
+            return
+        code = "joint_marker" if star == "marker" else "marker_or_product"
+        self._add(code, _PRODUCT if star == "noted_product" else _MARKER, span)
 
     def index(self, style: str, symbol: Symbol, span: Span) -> None:
         """Note how q[0] or q(1) was counted."""

@@ -9,15 +9,15 @@ from typing import Final
 from service.expressions.errors import ExpressionError
 
 from service.expressions.repairs import (  # isort: skip
-    ambiguous_number, ambiguous_shorthand, ambiguous_unit, beyond_limits, braced_stem,
-    chained_power, comment, cube_root, dash, decimal_comma, degrees_function, detached_index, empty,
-    equation, euler_and_imaginary, function_of_time, function_power, function_without_argument,
-    index, interval, invisible_character, length_unit, letter_x, look_alike_character,
-    malformed_number, mismatched_bracket, missing_operand, mixed_number, not_a_number, not_finite,
-    not_revolute, plus_minus, prose, quotes, raised_zero, repeated_joint, subscript, tan_of_two,
-    trailing_operator, trailing_punctuation, transpose, two_units, two_values, unbalanced_bracket,
-    unexpected_character, unit_on_variable, unknown_command, unknown_function, unknown_joint,
-    unknown_symbol, wrong_case, wrong_number_of_arguments,
+    ambiguous_number, ambiguous_shorthand, ambiguous_star, ambiguous_unit, beyond_limits,
+    braced_stem, chained_power, comment, cube_root, dash, decimal_comma, degrees_function,
+    detached_index, empty, equation, euler_and_imaginary, function_of_time, function_power,
+    function_without_argument, index, interval, invisible_character, length_unit, letter_x,
+    look_alike_character, malformed_number, mismatched_bracket, missing_operand, mixed_number,
+    not_a_number, not_finite, not_revolute, plus_minus, prose, quotes, raised_zero, repeated_joint,
+    subscript, tan_of_two, trailing_operator, trailing_punctuation, transpose, two_units,
+    two_values, unbalanced_bracket, unexpected_character, unit_on_variable, unknown_command,
+    unknown_function, unknown_joint, unknown_symbol, wrong_case, wrong_number_of_arguments,
 )  # fmt: skip
 from service.expressions.repairs.failure import Failure, RepairRule
 
@@ -30,10 +30,10 @@ RULES: Final[tuple[RepairRule, ...]] = (
     cube_root, unknown_command, subscript, braced_stem, raised_zero, function_of_time, length_unit,
     letter_x, detached_index, unknown_joint, index, wrong_case, euler_and_imaginary, tan_of_two,
     unknown_function, unknown_symbol, not_revolute, repeated_joint, ambiguous_shorthand,
-    ambiguous_number, ambiguous_unit, degrees_function, unit_on_variable, two_units, function_power,
-    wrong_number_of_arguments, mismatched_bracket, function_without_argument, decimal_comma,
-    trailing_punctuation, trailing_operator, unbalanced_bracket, chained_power, missing_operand,
-    malformed_number, two_values, unexpected_character,
+    ambiguous_number, ambiguous_star, ambiguous_unit, degrees_function, unit_on_variable, two_units,
+    function_power, wrong_number_of_arguments, mismatched_bracket, function_without_argument,
+    decimal_comma, trailing_punctuation, trailing_operator, unbalanced_bracket, chained_power,
+    missing_operand, malformed_number, two_values, unexpected_character,
 )  # fmt: skip
 
 

@@ -88,8 +88,8 @@ def shares_of(judged: Judged, marking: Marking) -> Shares:
     total = sum(shares.earned) - slip_cost * judged.slips
     if judged.whole_cost is not None and marking != "whole":
         total = max(total, 1 - judged.whole_cost)
-    if judged.without_extra is not None:
-        total = min(total, sum(shares_of(judged.without_extra, marking).earned))
+    if judged.at_most is not None:
+        total = min(total, sum(shares_of(judged.at_most, marking).earned))
     if judged.stands_still:
         total = 0.0
     return shares.with_total(max(0.0, total))

@@ -16,12 +16,13 @@ from service.catalogue.parts.dh_table import DhTableSpec
 from service.expressions import Expression
 from service.grading.comparison import Match, difference, entry_matches, nearly_equal
 from service.grading.feedback import Finding
-from service.grading.judging.own_frames.best_roles import best_roles, without_idle_rows
+from service.grading.judging.own_frames.best_roles import best_roles, roles_in, without_idle_rows
+from service.grading.judging.own_frames.completion import completed
 from service.grading.judging.own_frames.few_cells import NearestTable, frames_from_reference
 from service.grading.judging.own_frames.nearest_table import parallel_neighbours
 from service.grading.judging.own_frames.reference import reference_values
 from service.grading.judging.own_frames.remarks import remarks_on
-from service.grading.judging.own_frames.row_roles import Role, pair_in_order
+from service.grading.judging.own_frames.row_roles import Role, freedom_of, pair_in_order
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE, StudentRow, values_of
 from service.grading.samples import SAMPLES
@@ -74,6 +75,23 @@ class Judgement:
         """How many cells are not right."""
         return int(np.count_nonzero(self.matches < Match.ROUNDED))
 
+    @property
+    def unread(self) -> NDArray[np.bool_]:
+        """Which cells ``(rows, 4)`` of the rows handed in have no value."""
+        return np.array(
+            [
+                np.zeros(len(COLUMNS), np.bool_)
+                if judged.row is None
+                else ~np.isfinite(judged.row.values).all(axis=-1)
+                for judged in self.rows
+            ]
+        )
+
+    @property
+    def wrong_as_read(self) -> int:
+        """How many cells are not right, but for those that were not read."""
+        return int(np.count_nonzero((self.matches < Match.ROUNDED) & ~self.unread))
+
 
 def judged_table(
     part: DhTableSpec, rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
@@ -84,12 +102,12 @@ def judged_table(
         return _judged_by_nearest(part, rows, convention, grading)
     if part.frames == "given" or not _plainly_differs(rows, reference, grading):
         judgement = _judged_by_reference(rows, reference, grading)
-        if part.frames == "given" or not (judgement.wrong or judgement.extra):
+        if part.frames == "given" or not (judgement.wrong_as_read or judgement.extra):
             return judgement
     judgement = _judged_by_nearest(part, rows, convention, grading)
     # If most of a table is wrong, nobody can say which frames were intended; to judge it by the
     # nearest table would reward cells that any number fits.
-    if judgement.wrong > judgement.matches.size / 2:
+    if judgement.wrong_as_read > np.count_nonzero(~judgement.unread) / 2:
         return replace(_judged_by_reference(rows, reference, grading), departures=np.inf)
     return judgement
 
@@ -140,10 +158,32 @@ def _judged_by_nearest(
     """The table judged by the valid table nearest to it."""
     roles, nearest = best_roles(part, rows, convention, grading)
     judgement = _judged_by(nearest, roles, convention, grading)
+    if not all(np.isfinite(row.values).all() for row in rows):
+        return _judged_as_read(part, rows, judgement, convention, grading)
     if nearest.cost - WRONG_CELL * judgement.wrong < NO_SUCH_CELL - WRONG_CELL / 2:
         return judgement
     # Nothing can be said of frames that do not lead to the tool.
     return replace(judgement, findings=(_UNREACHED,), reached=bool(judgement.wrong))
+
+
+def _judged_as_read(
+    part: DhTableSpec,
+    rows: tuple[StudentRow, ...],
+    judgement: Judgement,
+    convention: Convention,
+    grading: Grading,
+) -> Judgement:
+    """The judgement of a table not all of which was read.
+
+    What was not read may have been right: where it can make the table valid, no other cell is
+    wrong. Nothing is said of the frames, for nobody knows them.
+    """
+    if judgement.wrong_as_read or len(judgement.rows) != len(rows):
+        roles = roles_in(rows, convention, grading, in_order=True)
+        valid = completed(roles, convention, freedom_of(part), grading)
+        if valid is not None:
+            judgement = _judged_by(valid, roles, convention, grading)
+    return replace(judgement, findings=())
 
 
 _UNREACHED = Finding(

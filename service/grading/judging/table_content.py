@@ -1,7 +1,7 @@
 """The cells of a table that one has to know something for."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
@@ -10,12 +10,19 @@ from service.catalogue import Exercise, Joint
 from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.feedback import FeedbackLevel
 from service.grading.judging.content import KnownCells, known_cells, of_rows
+from service.grading.judging.own_frames.best_roles import roles_in
 from service.grading.judging.own_frames.nearest_table import nearest_for_roles
 from service.grading.judging.own_frames.row_roles import Role, freedom_of, joint_variables
 from service.grading.judging.table import Judgement, column_scales
 from service.grading.part import Content, Grading
 from service.grading.reading.entry import Reader
-from service.grading.reading.table import IS_ANGLE, computed_row
+from service.grading.reading.table import (
+    COMPUTED,
+    IS_ANGLE,
+    StudentRow,
+    StudentTable,
+    computed_row,
+)
 from service.grading.samples import draw
 from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
@@ -69,3 +76,22 @@ def _fewest(task: _Task) -> int:
     roles = tuple(Role(computed_row(row), joint) for row, joint in zip(lazy, joints, strict=True))
     nearest = nearest_for_roles(roles, task.convention, freedom_of(task.part), grading)
     return int(np.count_nonzero(_differs_from_lazy(nearest.expected, joints, grading)))
+
+
+def with_lazy_cells(answer: StudentTable, convention: Convention, grading: Grading) -> StudentTable:
+    """The table with the lazy entry in each cell that has no value."""
+    roles = roles_in(answer.rows, convention, grading, in_order=True)
+    lazy = joint_variables([role.joint for role in roles], grading.samples)[: len(answer.rows)]
+    unread: KnownCells = np.isnan(answer.values).any(axis=-1)
+    values = np.where(unread[..., None], lazy, answer.values)
+    rows = tuple(
+        StudentRow(
+            tuple(
+                COMPUTED if is_unread else entry
+                for entry, is_unread in zip(row.entries, unread[i].tolist(), strict=True)
+            ),
+            values[i],
+        )
+        for i, row in enumerate(answer.rows)
+    )
+    return replace(answer, rows=rows, values=values)

@@ -4,16 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from service.catalogue import Exercise
 from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.diagnosis.table_cell import diagnose_cells
 from service.grading.diagnosis.table_explained import explained, freedom_lost
 from service.grading.feedback import Finding
 from service.grading.follow_through import stands_still
+from service.grading.judging.convention import judged_in_convention
 from service.grading.judging.own_frames.best_roles import roles_in, rows_of_mechanism
 from service.grading.judging.report_rows import cell_report
-from service.grading.judging.table import JudgedRow, Judgement, judged_table
-from service.grading.judging.table_content import table_content
+from service.grading.judging.row_places import row_places
+from service.grading.judging.table import JudgedRow, Judgement
+from service.grading.judging.table_content import table_content, with_lazy_cells
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.column_headers import QUANTITIES
 from service.grading.reading.table import StudentTable, read_table
@@ -39,38 +40,52 @@ def read(part: DhTableSpec, answer: object, grading: Grading) -> StudentTable | 
 def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     """The table row by row and cell by cell.
 
-    A wrong table earns no more than it would without the rows too many: the points belong to the
-    rows of the mechanism.
+    A wrong table earns no more than it would without the rows too many, for the points belong to
+    the rows of the mechanism; and no more than with lazy entries in the cells that were not read,
+    for what they would have to be is not known.
     """
-    judged = _judged(part, answer, grading)
+    convention, first, findings = judged_in_convention(part, answer, grading)
+    judged = _judged(part, answer, convention, first, findings, grading)
     if judged.is_right:
         return judged
-    convention, _ = _convention(part, answer, grading.exercise)
+    fixed = replace(answer, convention=convention)
     kept = rows_of_mechanism(answer.rows, convention, grading)
-    if len(kept) == len(answer.rows):
-        return judged
-    extra = [i for i, row in enumerate(answer.rows) if i not in kept and not row.is_zero]
+    if len(kept) < len(answer.rows):
+        return _with_rows_too_many(part, fixed, kept, judged, grading)
+    if np.isnan(answer.values).any():
+        filled = with_lazy_cells(fixed, convention, grading)
+        return replace(judged, at_most=judge(part, filled, grading))
+    return judged
+
+
+def _with_rows_too_many(
+    part: DhTableSpec, answer: StudentTable, kept: list[int], judged: Judged, grading: Grading
+) -> Judged:
+    """A wrong table with more rows than the mechanism has; ``kept`` are the places of those."""
     rows = tuple(answer.rows[i] for i in kept)
-    without = _judged(part, replace(answer, rows=rows, values=answer.values[kept]), grading)
+    without = judge(part, replace(answer, rows=rows, values=answer.values[kept]), grading)
+    extra = [i for i, row in enumerate(answer.rows) if i not in kept and not row.is_zero]
     messages = grading.visible(tuple(map(_row_too_many, extra)))
     of_mechanism = {row.label for row in without.rows}
-    wrong = [
-        row
-        for row in judged.rows
-        if row.label not in of_mechanism and row.verdict is not Verdict.CORRECT
-    ]
+    beside = [row for row in judged.rows if row.label not in of_mechanism]
+    wrong = [row for row in beside if row.verdict is not Verdict.CORRECT]
     return replace(
         judged,
         feedback=(*judged.feedback, *messages),
         slips=judged.slips + len(wrong),
-        without_extra=without,
+        at_most=without,
     )
 
 
-def _judged(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
-    convention, findings = _convention(part, answer, grading.exercise)
-    first = judged_table(part, answer.rows, convention, grading)
-    judgement, found, lost = _of_the_whole(part, first, convention, grading)
+def _judged(
+    part: DhTableSpec,
+    answer: StudentTable,
+    convention: Convention,
+    first: Judgement,
+    findings: tuple[Finding, ...],
+    grading: Grading,
+) -> Judged:
+    judgement, found, lost = _of_the_whole(part, answer.rows, first, convention, grading)
     messages = grading.visible((*answer.findings, *findings, *found, *lost, *judgement.findings))
     missing = tuple(
         message
@@ -79,10 +94,11 @@ def _judged(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged
         for message in grading.visible((_missing(judged),), judged.label)
     )
     extra = grading.visible(tuple(_extra_row(i) for i in judgement.extra))
+    places = grading.visible(row_places(answer, judgement, convention, grading))
     return Judged(
         _row_reports(judgement, grading, found),
         table_content(part, judgement, convention, grading),
-        (*messages, *missing, *extra),
+        (*messages, *missing, *extra, *places),
         slips=judgement.slips,
         whole_cost=_cost_of(found) if found else None,
         stands_still=stands_still(answer.values, tuple(QUANTITIES.values()), grading),
@@ -92,6 +108,7 @@ def _judged(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged
 
 def _of_the_whole(
     part: DhTableSpec,
+    rows: tuple[StudentRow, ...],
     judgement: Judgement,
     convention: Convention,
     grading: Grading,
@@ -102,7 +119,6 @@ def _of_the_whole(
     """
     if not judgement.wrong:
         return judgement, (), ()
-    rows = tuple(judged.row for judged in judgement.rows if judged.row is not None)
     roles = judgement.roles or roles_in(rows, convention, grading)
     found: tuple[Finding, ...] = ()
     if judgement.wrong > 1:
@@ -110,24 +126,6 @@ def _of_the_whole(
         found, judgement = explained(part, roles, convention, judgement, grading, combine=combine)
     # An explained table is not the one that the student intended, so its freedom says nothing.
     return judgement, found, () if found else freedom_lost(roles, convention, grading)
-
-
-def _convention(
-    part: DhTableSpec, table: StudentTable, exercise: Exercise
-) -> tuple[Convention, tuple[Finding, ...]]:
-    """The convention that the table is read in, and the finding where the answer names another."""
-    if part.convention == "either":
-        return table.convention or exercise.robot.convention, ()
-    if table.convention in (None, part.convention):
-        return part.convention, ()
-    return part.convention, (
-        Finding(
-            "convention_not_asked_for",
-            f"This part asks for the {part.convention.value} convention and was graded in it, but "
-            f"the answer says {table.convention.value if table.convention else ''}.",
-            severity=Severity.WARNING,
-        ),
-    )
 
 
 def _chain(

@@ -23,7 +23,7 @@ from service.grading.tolerances import LINK_TRANSFORM
 from service.kinematics.chain import links, products
 from service.kinematics.dh import link_transforms
 from service.kinematics.dh_row import row as dh_row
-from service.kinematics.transforms import Matrices, Numbers
+from service.kinematics.transforms import Matrices, Numbers, inverse
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,10 +123,24 @@ def _nearest_links(part: LinkTransformsSpec, answer: StudentLinks, grading: Grad
     joints = grading.exercise.robot.joints
     roles = tuple(
         Role(_row(matrix, part), joints[i] if i < len(joints) else None)
-        for i, matrix in enumerate(answer.values)
+        for i, matrix in enumerate(_completed(answer.values, part, grading))
     )
     reading = nearest_with_tool_row(roles, part.convention, FrameFreedom(), grading)
     return links(reading.expected, part.convention)
+
+
+def _completed(values: Matrices, part: LinkTransformsSpec, grading: Grading) -> Matrices:
+    """The matrices; one of which not all was read follows from the others and the tool frame."""
+    unread = np.flatnonzero(np.isnan(values).any(axis=(1, 2, 3)))
+    if len(unread) != 1:
+        return values
+    reference = grading.exercise.robot.tables[part.convention]
+    tool = products(links(reference.values(grading.samples.values, SAMPLES), part.convention))[-1]
+    [i] = unread
+    completed = values.copy()
+    before, after = products(values[:i])[-1], products(values[i + 1 :])[-1]
+    completed[i] = inverse(before) @ tool @ inverse(after)
+    return completed
 
 
 def _row(matrix: Matrices, part: LinkTransformsSpec) -> StudentRow | None:

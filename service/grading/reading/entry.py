@@ -26,7 +26,7 @@ from service.grading.samples import SAMPLES, Samples
 from service.kinematics.transforms import Numbers
 
 # Textbooks mark the joint variable so in every table: six notes on it would hide the others.
-EXPECTED_NOTES = frozenset({"joint_marker"})
+EXPECTED_IN_TABLES = frozenset({"joint_marker"})
 
 # Beyond these nobody measures a robot, and an angle has lost its digits to whole turns.
 BOUNDS: Mapping[Kind, float] = {"angle": 1e6, "length": 1e9, "number": 1e9}
@@ -74,8 +74,11 @@ class Reader:
         unit = units.pop() if len(units) == 1 else None
         return cls(exercise.vocabulary, samples, angle_unit, unit)
 
-    def read(self, raw: object, quantity: Kind) -> Entry:
-        """The entry for a JSON value. Whatever it is, the worst that comes back is unreadable."""
+    def read(self, raw: object, quantity: Kind, *, in_table: bool = False) -> Entry:
+        """The entry for a JSON value. Whatever it is, the worst that comes back is unreadable.
+
+        ``in_table`` says that it is a cell of a DH table, where a star marks the joint variable.
+        """
         budget = self.budget
         if isinstance(raw, str):
             if not raw.strip():
@@ -101,8 +104,14 @@ class Reader:
             return unreadable(_from_error(error))
         if not expression.notes:
             return Entry(expression)
-        notes = (note for note in expression.notes if note.code not in EXPECTED_NOTES)
-        return Entry(expression, findings=tuple(map(from_note, notes)))
+        untold = self._untold(expression) if in_table else frozenset()
+        told = (note for note in expression.notes if note.code not in untold)
+        return Entry(expression, findings=tuple(map(from_note, told)))
+
+    def _untold(self, expression: Expression) -> frozenset[str]:
+        """The codes of notes that are not told of a cell of a table."""
+        joints = [self.vocabulary.by_name[name].joint for name in expression.symbols]
+        return EXPECTED_IN_TABLES if len(joints) - joints.count(None) < 2 else frozenset()
 
 
 def entry_values(entries: Sequence[Entry], quantities: Sequence[Kind], samples: Samples) -> Numbers:

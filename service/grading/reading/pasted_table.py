@@ -87,7 +87,7 @@ def table_entry(cell: GridCell, column: str, header: Header, reader: Reader) -> 
     """One cell of a table, in the unit that its header names."""
     if header.angle_unit:
         reader = replace(reader, angle_unit=header.angle_unit)
-    entry = reader.read(cell.text, QUANTITIES[column])
+    entry = reader.read(cell.text, QUANTITIES[column], in_table=True)
     if header.metres and header.metres != METRES.get(reader.length_unit or ""):
         entry = in_unit(entry, header, reader)
     return placed(entry, cell)
@@ -187,8 +187,8 @@ def _convention_hint(
         return ()
     names = " and ".join(quoted(cell.text) for cell in shifted)
     message = (
-        f"Headers such as {names} belong to the modified (proximal) convention. The table was "
-        "read in the convention of this part, whatever its headers."
+        f"Headers such as {names} belong to the modified (proximal) convention. Headers do not "
+        "decide in which convention the table is read."
     )
     return (_note("convention_hint", message, shifted[0]),)
 

@@ -137,12 +137,12 @@ def _table(
 
 
 # A number that was computed stands for a cell that was read.
-_COMPUTED = Entry(read_expression(0, Vocabulary([])))
+COMPUTED = Entry(read_expression(0, Vocabulary([])))
 
 
 def computed_row(values: Table) -> StudentRow:
     """A row as if somebody had handed in these numbers, ``(4, SAMPLES)``."""
-    return StudentRow((_COMPUTED,) * len(COLUMNS), values)
+    return StudentRow((COMPUTED,) * len(COLUMNS), values)
 
 
 _NO_ROWS: Table = np.empty((0, len(COLUMNS), 0))
@@ -185,7 +185,7 @@ def _entries(row: object, reader: Reader) -> tuple[Entry, ...]:
     return tuple(
         unreadable(_NO_ROW)
         if stray and column not in row
-        else reader.read(row.get(column), QUANTITIES[column])
+        else reader.read(row.get(column), QUANTITIES[column], in_table=True)
         for column in COLUMNS
     )
 

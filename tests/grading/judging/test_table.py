@@ -21,7 +21,8 @@ NOTHING: Row = ("0", "0", "0", "0")
 
 
 def codes(report: PartReport) -> list[str]:
-    return [message.code for message in report.feedback]
+    """The codes of the part's messages but for infos."""
+    return [each.code for each in report.feedback if each.severity is not Severity.INFO]
 
 
 def verdicts(report: PartReport) -> list[Verdict]:

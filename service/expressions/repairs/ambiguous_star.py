@@ -1,0 +1,15 @@
+"""A star behind a joint variable that may mark it or multiply it: k*q1*+s1."""
+
+from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+
+
+@answers("ambiguous_star")
+def repair(failure: Failure) -> Repair:
+    """Name both readings, and offer the one without the star."""
+    (start, end) = failure.details["star"]
+    variable = failure.source[failure.span[0] : start].strip()
+    message = (
+        f"The * behind {quoted(variable)} may mark the joint variable, or multiply what follows. "
+        f"Leave it out if it is a mark; write {variable}*(…) for the product."
+    )
+    return error(failure, "ambiguous_star", message, failure.replaced("", (start, end)))

@@ -1,0 +1,70 @@
+"""The convention that a handed-in table is read in."""
+
+from service.catalogue.parts.dh_table import DhTableSpec
+from service.grading.feedback import Finding
+from service.grading.judging.table import Judgement, judged_table
+from service.grading.part import Grading
+from service.grading.reading.table import StudentTable
+from service.grading.report import Severity
+from service.kinematics.chain import COLUMNS
+from service.kinematics.dh import Convention
+
+_NAMES = {Convention.STANDARD: "standard (distal)", Convention.MODIFIED: "modified (proximal)"}
+
+
+def judged_in_convention(
+    part: DhTableSpec, table: StudentTable, grading: Grading
+) -> tuple[Convention, Judgement, tuple[Finding, ...]]:
+    """The table judged in the convention that it is read in, and the findings on that convention.
+
+    Where either will do and the answer names none, it is the one with fewer wrong cells, and that
+    of the reference where both have as many.
+    """
+    if part.convention == "either" and table.convention is None:
+        convention, judgement = _fitting(part, table, grading)
+        return convention, judgement, (_taken(convention),)
+    asked = table.convention if part.convention == "either" else part.convention
+    assert asked is not None
+    findings = _not_asked_for(asked, table)
+    return asked, judged_table(part, table.rows, asked, grading), findings
+
+
+def _fitting(
+    part: DhTableSpec, table: StudentTable, grading: Grading
+) -> tuple[Convention, Judgement]:
+    own = grading.exercise.robot.convention
+    first = judged_table(part, table.rows, own, grading)
+    if not _misfit(first):
+        return own, first
+    [other] = set(Convention) - {own}
+    second = judged_table(part, table.rows, other, grading)
+    return (other, second) if _misfit(second) < _misfit(first) else (own, first)
+
+
+def _misfit(judgement: Judgement) -> int:
+    """The cells that are wrong, missing or too many; frames off the tool's count as one."""
+    return judgement.wrong + len(COLUMNS) * len(judgement.extra) + (not judgement.reached)
+
+
+def _taken(convention: Convention) -> Finding:
+    return Finding(
+        "convention_taken",
+        f"The answer names no convention. It was read in the {_NAMES[convention]} one, which fits "
+        f'it best; to decide yourself, write "convention": "{convention.value}" beside the rows.',
+        severity=Severity.INFO,
+    )
+
+
+def _not_asked_for(asked: Convention, table: StudentTable) -> tuple[Finding, ...]:
+    """The finding on an answer that names another convention than the part."""
+    if table.convention in (None, asked):
+        return ()
+    named = table.convention.value
+    return (
+        Finding(
+            "convention_not_asked_for",
+            f"This part asks for the {asked.value} convention and was graded in it, but the answer "
+            f"says {named}.",
+            severity=Severity.WARNING,
+        ),
+    )

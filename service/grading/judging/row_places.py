@@ -1,0 +1,44 @@
+"""Which of the student's rows is graded as which: told where the numbers differ."""
+
+from service.grading.feedback import Finding
+from service.grading.judging.table import JudgedRow, Judgement
+from service.grading.part import Grading
+from service.grading.reading.table import StudentTable
+from service.grading.report import Severity
+from service.kinematics.dh import Convention
+
+
+def row_places(
+    table: StudentTable, judgement: Judgement, convention: Convention, grading: Grading
+) -> tuple[Finding, ...]:
+    """The finding on rows that are graded under another number than they have in the answer."""
+    robot = grading.exercise.robot
+    reference = robot.tables.get(convention)
+    labels = [str(joint.index) for joint in robot.joints]
+    if reference is not None:
+        labels = list(reference.labels)
+    handed_in = [row.entries for row in table.rows]
+    graded = [judged.row and judged.row.entries for judged in judgement.rows]
+    if graded == handed_in and [judged.label for judged in judgement.rows] == labels:
+        return ()
+    # Rounded angles made exact make a new row of the same entries.
+    places = {id(row.entries): i for i, row in enumerate(table.rows)}
+    moved = [
+        f"your row {place + 1} as {_of(judged)}"
+        for judged in judgement.rows
+        if judged.row is not None
+        for place in [places[id(judged.row.entries)]]
+        if judged.label != (labels[place] if place < len(labels) else "e")
+    ]
+    if not moved:
+        return ()
+    *others, last = moved
+    listed = f"{', '.join(others)} and {last}" if others else last
+    message = f"Rows were graded under the numbers of the joints that they fit: {listed}."
+    return (Finding("rows_matched", message, severity=Severity.INFO),)
+
+
+def _of(judged: JudgedRow) -> str:
+    if judged.joint is not None:
+        return f"that of joint {judged.joint.index}"
+    return f"the fixed row {judged.label}"

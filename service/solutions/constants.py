@@ -1,0 +1,56 @@
+"""Constants without a closed form, such as cos 0.3: each product or sum of them is one number.
+
+A robot of numbers has one in each twist, and six of them multiplied out would fill a page. They are
+computed with more digits than are printed, so that what cancels is 0.
+"""
+
+from decimal import ROUND_HALF_EVEN, Context, Decimal
+
+import sympy
+
+# The digits that are printed, and those that are computed.
+_DIGITS = 15
+_WORKING_DIGITS = 40
+# Smaller numbers are what is left of a difference of equal ones.
+_NOTHING = sympy.Float("1e-25", _WORKING_DIGITS)
+# More decimals are not printed.
+DECIMALS = 20
+_LAST_DECIMAL = Decimal(1).scaleb(-DECIMALS)
+_EXACT = Context(prec=400)
+_ROUNDED = Context(prec=_DIGITS, rounding=ROUND_HALF_EVEN)
+
+
+def folded(expression: sympy.Expr) -> sympy.Expr:
+    """The number of a sine or cosine that has no closed form; anything else as it is."""
+    has_none = expression.is_number and expression.has(sympy.sin, sympy.cos)
+    return expression.evalf(_WORKING_DIGITS) if has_none else expression
+
+
+def is_unwieldy(expression: sympy.Expr) -> bool:
+    """Whether there are numbers without a closed form, or with more decimals than are printed."""
+    return expression.has(sympy.Float) or any(
+        number.q > 10**DECIMALS for number in expression.atoms(sympy.Rational)
+    )
+
+
+def rounded(expression: sympy.Expr) -> sympy.Expr:
+    """The same with one number of 15 digits in place of each constant, but in angles."""
+    values = _evaluated(expression)
+    return values.xreplace({each: _rational(each) for each in values.atoms(sympy.Float)})
+
+
+def _evaluated(expression: sympy.Expr) -> sympy.Expr:
+    if expression.is_number:
+        return expression.evalf(_WORKING_DIGITS)
+    if isinstance(expression, sympy.Add | sympy.Mul):
+        return expression.func(*map(_evaluated, expression.args))
+    if isinstance(expression, sympy.Pow):
+        return _evaluated(expression.base) ** expression.exp
+    return expression
+
+
+def _rational(number: sympy.Float) -> sympy.Rational:
+    if abs(number) < _NOTHING:
+        return sympy.S.Zero
+    digits = _ROUNDED.create_decimal(str(number))
+    return sympy.Rational(str(digits.quantize(_LAST_DECIMAL, context=_EXACT)))
