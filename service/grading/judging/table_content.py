@@ -82,7 +82,7 @@ def with_lazy_cells(answer: StudentTable, convention: Convention, grading: Gradi
     """The table with the lazy entry in each cell that has no value."""
     roles = roles_in(answer.rows, convention, grading, in_order=True)
     lazy = joint_variables([role.joint for role in roles], grading.samples)[: len(answer.rows)]
-    unread: KnownCells = np.isnan(answer.values).any(axis=-1)
+    unread = np.asarray(np.isnan(answer.values).any(axis=-1))
     values = np.where(unread[..., None], lazy, answer.values)
     rows = tuple(
         StudentRow(

@@ -17,7 +17,7 @@ from service.grading.judging.table import JudgedRow, Judgement
 from service.grading.judging.table_content import table_content, with_lazy_cells
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.column_headers import QUANTITIES
-from service.grading.reading.table import StudentTable, read_table
+from service.grading.reading.table import StudentRow, StudentTable, read_table
 from service.grading.report import CellReport, RowReport, Severity, Verdict, row_report
 from service.grading.samples import Samples
 from service.kinematics.chain import COLUMNS, frames, links
