@@ -10,10 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from service.catalogue import Joint
 from service.expressions import Expression
+from service.expressions.printing.spelling import PLAIN, Spelling
 from service.grading.comparison import Match, difference, matches, same
 from service.grading.diagnosis.wording import MEASURED, SYMBOLS
-from service.grading.feedback import Finding
+from service.grading.feedback import EXPECTED, YOURS, Finding
 from service.grading.misconception import AnyHypothesis, Hypothesis, Index, Repaired, Written
+from service.grading.report import Correction
 from service.grading.samples import Samples
 from service.kinematics.transforms import Numbers
 
@@ -21,21 +23,23 @@ Mask = NDArray[np.bool_]
 Hypotheses = Iterator[Hypothesis[Numbers]]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class WrongValue:
     """A value that was handed in and is not the expected one.
 
-    ``actual`` and ``expected`` are ``(SAMPLES,)``, angles in radians. ``expected_text`` is the
-    right answer as the student would write it, or empty where it is not known as a formula.
+    ``actual`` and ``expected`` are ``(SAMPLES,)``, angles in radians. ``correction`` is the
+    right answer as the student would write it, None where it is not known as a formula or is not
+    told. ``spelling`` is the student's.
     """
 
     expression: Expression
     actual: Numbers
     expected: Numbers
-    expected_text: str
     samples: Samples
     scale: float
     angle: bool
+    correction: Correction | None = None
+    spelling: Spelling = PLAIN
 
     @property
     def constants(self) -> tuple[Numbers, Numbers]:
@@ -63,14 +67,18 @@ class WrongValue:
 
 
 def finding_on(
-    case: WrongValue, code: str, hint: str, values: dict[str, float | str] | None = None
+    case: WrongValue,
+    code: str,
+    hint: str,
+    values: dict[str, float | str] | None = None,
+    *,
+    otherwise: str = "",
 ) -> Finding:
-    """A finding with the correction of the wrong value."""
-    correction = f"It should be {case.expected_text}." if case.expected_text else ""
-    return Finding(code, hint, correction, values=values)
+    """A finding with the correction of the wrong value; ``otherwise`` where none is known."""
+    return Finding(code, hint, case.correction or otherwise, values=values)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class WrongCell(WrongValue):
     """A wrong table cell. ``joint`` is the row's joint, or None in a fixed row.
 
@@ -94,6 +102,10 @@ class WrongCell(WrongValue):
     def measured(self) -> str:
         """How that parameter is measured: along or about x or z."""
         return MEASURED[self.column]
+
+    def name(self, joint: Joint) -> str:
+        """The joint's variable as the student writes it."""
+        return self.spelling.names.get(joint.variable, joint.variable)
 
     @property
     def same_motion(self) -> bool:
@@ -176,4 +188,5 @@ def undefined(case: WrongValue) -> Finding | None:
 def differs(case: WrongValue, hint: str) -> Finding:
     """``hint`` and one counterexample, for a value that no known misconception explains."""
     at = case.samples.at(0, case.expression.symbols)
-    return finding_on(case, UNEXPLAINED, hint, {**at, "yours": float(f"{case.actual[0]:.4g}")})
+    yours, expected = (float(f"{values[0]:.4g}") for values in (case.actual, case.expected))
+    return finding_on(case, UNEXPLAINED, hint, {**at, YOURS: yours, EXPECTED: expected})

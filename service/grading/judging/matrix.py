@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from service.expressions import Kind
 from service.grading.comparison import matches
 from service.grading.reading.matrix import StudentMatrix
-from service.grading.tolerances import PRINTED_NUMBER
 from service.kinematics.transforms import Numbers
 
 
@@ -33,10 +32,3 @@ class ExpectedMatrix:
         """The Match of each entry, ``(rows, columns)``."""
         scale = self.scale(length_scale)
         return matches(student.values, self.values, scale, rounded=student.rounded)
-
-
-def constant_text(values: Numbers) -> str:
-    """An entry ``(SAMPLES,)`` that is a plain number everywhere, as text; empty where it varies."""
-    if np.ptp(values) > PRINTED_NUMBER:
-        return ""
-    return f"{values[0] + 0.0:.4g}"

@@ -15,7 +15,7 @@ from service.grading.judging.report_rows import cell_report
 from service.grading.judging.table import JudgedRow, Judgement, judged_table
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.table import StudentRow, StudentTable, read_table
-from service.grading.report import CellReport, RowReport, Severity, Verdict, row_report
+from service.grading.report import CellReport, Place, RowReport, Severity, Verdict, row_report
 from service.grading.samples import Samples
 from service.kinematics.chain import COLUMNS, frames, links
 from service.kinematics.dh import Convention
@@ -41,7 +41,7 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
         message
         for judged in judgement.rows
         if judged.row is None
-        for message in grading.visible((_missing(judged),), judged.label)
+        for message in grading.visible((_missing(judged),), (Place(judged.label),))
     )
     extra = grading.visible(tuple(_extra_row(i) for i in judgement.extra))
     return Judged(
@@ -143,7 +143,7 @@ def _cell(
     label = COLUMNS[column]
     if judged.row is None:
         return CellReport(label, Verdict.MISSING)
-    return cell_report(judged.row.entries[column], (judged.label, label), match, slip, grading)
+    return cell_report(judged.row.entries[column], label, match, slip, grading)
 
 
 _PART_OF_IT = "This belongs to what is said of the table as a whole."
