@@ -6,8 +6,8 @@ from enum import StrEnum
 class FeedbackLevel(StrEnum):
     """How much a report tells, from the most to the least.
 
-    ``full``: hints and corrections. ``hints``: what to look at, never the value. ``verdicts``: right
-    and wrong, and what could not be read. ``score``: bare marks, and what could not be read.
+    ``full``: hints and corrections. ``hints``: what to look at, never the value. ``verdicts``:
+    right and wrong, and what could not be read. ``score``: bare marks, and what could not be read.
     """
 
     FULL = "full"

@@ -133,13 +133,21 @@ class Report:
     parts: tuple[PartReport, ...]
 
 
-def messages_of(part: PartReport) -> Iterator[tuple[Feedback, Verdict]]:
-    """The messages on a part, its rows and their cells, each with the verdict on its subject."""
-    yield from ((message, part.verdict) for message in part.feedback)
+def messages_of(part: PartReport) -> Iterator[tuple[Feedback, tuple[Place, ...], Verdict]]:
+    """The messages on a part, its rows and cells, with their places and the verdict there."""
+    verdicts: dict[Place, Verdict] = {}
     for row in part.rows:
-        yield from ((message, row.verdict) for message in row.feedback)
+        verdicts[Place(row.label)] = row.verdict
+        verdicts |= {Place(row.label, cell.label): cell.verdict for cell in row.cells}
+    for message in part.feedback:
+        places = message.places or ()
+        verdict = verdicts.get(places[0], part.verdict) if places else part.verdict
+        yield message, places, verdict
+    for row in part.rows:
+        yield from ((message, (Place(row.label),), row.verdict) for message in row.feedback)
         for cell in row.cells:
-            yield from ((message, cell.verdict) for message in cell.feedback)
+            at = (Place(row.label, cell.label),)
+            yield from ((message, at, cell.verdict) for message in cell.feedback)
 
 
 def combined(verdicts: Iterable[Verdict]) -> Verdict:

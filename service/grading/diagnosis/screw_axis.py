@@ -92,7 +92,7 @@ def sliding_as_turning(case: WrongScrew) -> Hypotheses:
     """The direction of a sliding joint was written in ω: infinite pitch is ω = 0."""
     finding = Finding(
         "infinite_pitch",
-        "This joint slides, so its pitch is infinite: look which of ω and v holds the direction then.",
+        "This joint slides, so its pitch is infinite: look which of ω and v holds its direction.",
         "ω is 0, and v is the unit vector of the direction.",
     )
     if not case.turns:
@@ -105,8 +105,7 @@ def turning_as_sliding(case: WrongScrew) -> Hypotheses:
     """The axis of a turning joint was written in v."""
     finding = Finding(
         "infinite_pitch",
-        "This joint turns, so its pitch is finite: look which of ω and v holds the direction of the "
-        "axis then.",
+        "This joint turns, so its pitch is finite: look which of ω and v holds its direction.",
         "ω is the unit vector along the axis, and v = −ω × q.",
     )
     if case.turns:

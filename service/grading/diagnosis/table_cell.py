@@ -71,8 +71,8 @@ def joint_variable_index(case: WrongCell) -> Finding | None:
     return finding_on(
         case,
         "joint_variable_index",
-        f"This is the row of joint {case.joint.index}, but the cell contains {case.name(other)}, the "
-        f"variable of joint {other.index}.",
+        f"This is the row of joint {case.joint.index}, but the cell contains {case.name(other)}, "
+        f"the variable of joint {other.index}.",
     )
 
 
@@ -84,8 +84,8 @@ def joint_variable_doubled(case: WrongCell) -> Finding | None:
     return finding_on(
         case,
         "joint_variable_doubled",
-        f"The joint variable is contained more than once: the joint {_motion(joint)} by its variable, "
-        f"neither more nor less.",
+        f"The joint variable is contained more than once: the joint {_motion(joint)} by its "
+        f"variable, neither more nor less.",
     )
 
 
@@ -110,7 +110,7 @@ def joint_variable_extra(case: WrongCell) -> Finding | None:
     return finding_on(
         case,
         "joint_variable_extra",
-        f"The cell contains {listed(extra)}: check which cells of a table change when a joint moves.",
+        f"The cell contains {listed(extra)}: check which cells of a table change with the joints.",
     )
 
 
@@ -144,8 +144,8 @@ def distance_extra(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         "distance_extra",
-        f"Check the distance in {case.symbol}{_beside(case)}: look along which axis of which frame it "
-        f"is measured.",
+        f"Check the distance in {case.symbol}{_beside(case)}: look along which axis of which frame "
+        f"it is measured.",
     )
     yield Repaired(0 * case.actual, finding)
 
@@ -156,7 +156,10 @@ def _beside(case: WrongCell) -> str:
 
 def degrees_as_radians(case: WrongCell) -> Hypotheses:
     """A number in degrees was handed in where radians are read."""
-    hint = "This number was read in radians, but it fits in degrees: write the unit behind it (deg or °)."
+    hint = (
+        "This number was read in radians, but it fits in degrees: write the unit behind it "
+        "(deg or °)."
+    )
     in_degrees = np.radians(case.constants[0])
     for value, also in ((-in_degrees, " The sign is wrong, too."), (in_degrees, "")):
         yield Repaired(value, finding_on(case, "degrees_as_radians", hint + also))
@@ -177,8 +180,8 @@ def quarter_turn(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         "quarter_turn",
-        f"{case.symbol} is not right: compare the two axes that it is measured between, in the home "
-        f"configuration.",
+        f"{case.symbol} is not right: compare the two axes that it is measured between, in the "
+        f"home configuration.",
         otherwise="It is off by a quarter turn (90°).",
     )
     for turn in (np.pi / 2, -np.pi / 2):
