@@ -12,7 +12,16 @@ from rich.table import Table
 from rich.text import Text
 
 from service.formats import GradedFile
-from service.grading import Feedback, PartReport, Place, Report, RowReport, Severity, Verdict
+from service.grading import (
+    Correction,
+    Feedback,
+    PartReport,
+    Place,
+    Report,
+    RowReport,
+    Severity,
+    Verdict,
+)
 from service.grading.feedback import EXPECTED, YOURS
 from service.grading.report import messages_of
 
@@ -102,7 +111,7 @@ class _Page:
         if any(cell.read for row in part.rows for cell in row.cells):
             self._print(Padding(self._read(part), (0, 0, 0, 2), expand=False))
         for places, message, verdict in _messages(part):
-            self._message(places, message, verdict)
+            self._message(places, message, verdict, part.rows)
         self._print(Text())
 
     def _table(self, part: PartReport) -> Table:
@@ -129,12 +138,14 @@ class _Page:
             table.add_row(row.label, *map(Text, read))
         return table
 
-    def _message(self, places: str, message: Feedback, verdict: Verdict) -> None:
+    def _message(
+        self, places: str, message: Feedback, verdict: Verdict, rows: Sequence[RowReport]
+    ) -> None:
         """A message, its lines beneath each other to the right of its mark."""
         costs = message.severity is Severity.ERROR
         mark = self._mark(verdict) if costs else Text(message.severity.value, "cyan")
         text = Text.assemble((f"{places}: " if places else "", "bold"), visible(message.message))
-        for offered in filter(None, (_suggestion(message), _correction(message))):
+        for offered in filter(None, (_suggestion(message), _correction(message, rows))):
             text.append(f" {visible(offered)}")
         if message.values:
             text.append(f" {_counterexample(message.values)}", "dim")
@@ -185,12 +196,19 @@ def _suggestion(message: Feedback) -> str:
     return "" if message.suggestion is None or question in message.message else question
 
 
-def _correction(message: Feedback) -> str:
-    """The right entry in a sentence, or the instruction."""
-    if message.correction is None:
-        return ""
-    text = message.correction.text
-    return text if message.correction.latex is None else f"It should be {text}."
+def _correction(message: Feedback, rows: Sequence[RowReport]) -> str:
+    """The instruction, or the right entry in a sentence: the one, or one for each place."""
+    found = [] if message.correction is None else [_told(message.correction)]
+    at: dict[Correction, list[Place]] = {}
+    for place in message.places or ():
+        if place.correction is not None:
+            at.setdefault(place.correction, []).append(place)
+    told = [f"{_places(places, rows)}: {_told(correction)}" for correction, places in at.items()]
+    return " ".join([*found, *told])
+
+
+def _told(correction: Correction) -> str:
+    return correction.text if correction.latex is None else f"It should be {correction.text}."
 
 
 def _columns(labels: Sequence[str]) -> str:

@@ -1,6 +1,6 @@
 """Findings: the messages of a grading, before the feedback level decides what is visible."""
 
-from collections.abc import Iterable, Set
+from collections.abc import Iterable, Sequence, Set
 from dataclasses import dataclass, replace
 
 from service.catalogue import FeedbackLevel
@@ -89,8 +89,8 @@ def visible_messages(
     return tuple(message for message in feedback if message is not None)
 
 
-# What a message says: its code, its sentence, what it offers.
-_Said = tuple[str, str, str | None, Correction | None]
+# What a message says: its code, its sentence, the repaired text.
+_Said = tuple[str, str, str | None]
 
 
 def told_once(report: PartReport) -> PartReport:
@@ -99,31 +99,35 @@ def told_once(report: PartReport) -> PartReport:
     Messages are the same where they say the same; of their counterexamples the first is kept. One
     with a span stays with its cell, whose text the span is in.
     """
-    in_cells: dict[_Said, list[Place]] = {}
-    first: dict[_Said, Feedback] = {}
+    in_cells: dict[_Said, list[tuple[Place, Feedback]]] = {}
     for row in report.rows:
         for cell in row.cells:
             for message in cell.feedback:
                 if message.span is None:
                     place = Place(row.label, cell.label)
-                    in_cells.setdefault(_said(message), []).append(place)
-                    first.setdefault(_said(message), message)
-    shared = {said: places for said, places in in_cells.items() if len(places) > 1}
-    rows = report.rows
-    if shared:
-        rows = tuple(
-            replace(row, cells=tuple(_without(cell, shared.keys()) for cell in row.cells))
-            for row in rows
-        )
+                    in_cells.setdefault(_said(message), []).append((place, message))
+    shared = {said: told for said, told in in_cells.items() if len(told) > 1}
     if not shared and len(report.feedback) < 2:
         return report
-    together = [replace(first[said], places=tuple(places)) for said, places in shared.items()]
-    feedback = _joined((*report.feedback, *together))
-    return replace(report, rows=rows, feedback=feedback)
+    rows = tuple(
+        replace(row, cells=tuple(_without(cell, shared.keys()) for cell in row.cells))
+        for row in report.rows
+    )
+    messages = (*report.feedback, *map(_together, shared.values()))
+    return replace(report, rows=rows, feedback=_joined(messages))
 
 
 def _said(message: Feedback) -> _Said:
-    return message.code, message.message, message.suggestion, message.correction
+    return message.code, message.message, message.suggestion
+
+
+def _together(told: Sequence[tuple[Place, Feedback]]) -> Feedback:
+    """The first of the messages with the places of all."""
+    _, first = told[0]
+    if len({message.correction for _, message in told}) == 1:
+        return replace(first, places=tuple(place for place, _ in told))
+    places = tuple(replace(place, correction=message.correction) for place, message in told)
+    return replace(first, places=places, correction=None)
 
 
 def _without(cell: CellReport, shared: Set[_Said]) -> CellReport:
@@ -134,11 +138,10 @@ def _without(cell: CellReport, shared: Set[_Said]) -> CellReport:
 
 def _joined(messages: Iterable[Feedback]) -> tuple[Feedback, ...]:
     """The messages on a part, those with the same words as one with all their places."""
-    found: dict[_Said | int, Feedback] = {}
+    found: dict[object, Feedback] = {}
     for i, message in enumerate(messages):
-        key = i if message.places is None or message.span is not None else _said(message)
-        if key in found:
-            places = (*(found[key].places or ()), *(message.places or ()))
-            message = replace(found[key], places=tuple(dict.fromkeys(places)))
-        found[key] = message
+        is_placed = message.places is not None and message.span is None
+        key: object = (_said(message), message.correction) if is_placed else i
+        places = (*((key in found and found[key].places) or ()), *(message.places or ()))
+        found[key] = replace(found.get(key, message), places=tuple(dict.fromkeys(places)) or None)
     return tuple(found.values())

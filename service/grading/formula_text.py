@@ -97,8 +97,8 @@ def number_formula(values: Numbers, figures: int = 4) -> Correction | None:
     """An entry ``(SAMPLES,)`` that is a plain number everywhere; None where it varies."""
     if np.ptp(values) > PRINTED_NUMBER:
         return None
-    sign, number = _number(float(values[0]), figures)
-    node = _sum([(sign, number)])
+    value = float(values[0])
+    node = _sum([] if abs(value) < PRINTED_NUMBER else [_number(value, figures)])
     return Correction(to_text(node), to_latex(node))
 
 

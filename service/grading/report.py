@@ -30,14 +30,6 @@ class Severity(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
-    """A row of the report, or one of its cells, by their labels."""
-
-    row: str
-    cell: str | None = None
-
-
-@dataclass(frozen=True, slots=True)
 class Correction:
     """The right entry, as the student would write it.
 
@@ -46,6 +38,18 @@ class Correction:
 
     text: str
     latex: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A row of the report, or one of its cells, by their labels.
+
+    ``correction`` is that of the place, where a message has another for each.
+    """
+
+    row: str
+    cell: str | None = None
+    correction: Correction | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,14 +139,14 @@ class Report:
 
 def messages_of(part: PartReport) -> Iterator[tuple[Feedback, tuple[Place, ...], Verdict]]:
     """The messages on a part, its rows and cells, with their places and the verdict there."""
-    verdicts: dict[Place, Verdict] = {}
+    verdicts: dict[tuple[str, str | None], Verdict] = {}
     for row in part.rows:
-        verdicts[Place(row.label)] = row.verdict
-        verdicts |= {Place(row.label, cell.label): cell.verdict for cell in row.cells}
+        verdicts[row.label, None] = row.verdict
+        verdicts |= {(row.label, cell.label): cell.verdict for cell in row.cells}
     for message in part.feedback:
         places = message.places or ()
-        verdict = verdicts.get(places[0], part.verdict) if places else part.verdict
-        yield message, places, verdict
+        found = [verdicts.get((place.row, place.cell), part.verdict) for place in places[:1]]
+        yield message, places, found[0] if found else part.verdict
     for row in part.rows:
         yield from ((message, (Place(row.label),), row.verdict) for message in row.feedback)
         for cell in row.cells:

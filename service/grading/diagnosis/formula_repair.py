@@ -37,13 +37,9 @@ class Rewritten(Repaired[Node]):
 
 @dataclass(frozen=True, kw_only=True)
 class WrongEntry(WrongValue):
-    """A wrong entry of a matrix or a list. ``turning`` are the turning joints by their number.
-
-    ``corrects`` says that the right formula is told.
-    """
+    """A wrong entry of a matrix or a list. ``turning`` are the turning joints by their number."""
 
     turning: Mapping[int, Symbol]
-    corrects: bool = True
 
     @cached_property
     def tree(self) -> Node:

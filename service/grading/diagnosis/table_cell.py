@@ -272,6 +272,7 @@ def diagnose_cells(judgement: Judgement, grading: Grading) -> dict[tuple[int, in
                 actual=actual,
                 expected=wanted[k],
                 correction=correction,
+                corrects=grading.corrects,
                 spelling=spelling,
                 samples=samples,
                 scale=scales[column],

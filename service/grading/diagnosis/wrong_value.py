@@ -1,5 +1,6 @@
 """A wrong value, a wrong table cell and a wrong array of numbers, with all that explains them."""
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,6 +18,7 @@ from service.grading.feedback import EXPECTED, YOURS, Finding
 from service.grading.misconception import AnyHypothesis, Hypothesis, Index, Repaired, Written
 from service.grading.report import Correction
 from service.grading.samples import Samples
+from service.grading.tolerances import PRINTED_NUMBER
 from service.kinematics.transforms import Numbers
 
 Mask = NDArray[np.bool_]
@@ -29,7 +31,7 @@ class WrongValue:
 
     ``actual`` and ``expected`` are ``(SAMPLES,)``, angles in radians. ``correction`` is the
     right answer as the student would write it, None where it is not known as a formula or is not
-    told. ``spelling`` is the student's.
+    told; ``corrects`` says that it is told. ``spelling`` is the student's.
     """
 
     expression: Expression
@@ -39,6 +41,7 @@ class WrongValue:
     scale: float
     angle: bool
     correction: Correction | None = None
+    corrects: bool = True
     spelling: Spelling = PLAIN
 
     @property
@@ -187,6 +190,20 @@ def undefined(case: WrongValue) -> Finding | None:
 
 def differs(case: WrongValue, hint: str) -> Finding:
     """``hint`` and one counterexample, for a value that no known misconception explains."""
-    at = case.samples.at(0, case.expression.symbols)
-    yours, expected = (float(f"{values[0]:.4g}") for values in (case.actual, case.expected))
-    return finding_on(case, UNEXPLAINED, hint, {**at, YOURS: yours, EXPECTED: expected})
+    # A right number without its formula can be checked only with the values of all symbols.
+    alone = case.corrects and case.correction is None
+    symbols = case.samples.values.keys() if alone else case.expression.symbols
+    values: dict[str, float | str] = {
+        **case.samples.at(0, symbols),
+        YOURS: _number(case, case.actual),
+    }
+    if case.corrects:
+        values[EXPECTED] = _number(case, case.expected)
+    return finding_on(case, UNEXPLAINED, hint, values)
+
+
+def _number(case: WrongValue, values: Numbers) -> float:
+    """The first of the values, short enough to be read, and in degrees where the student is."""
+    in_degrees = case.angle and case.samples.in_degrees
+    number = math.degrees(values[0]) if in_degrees else float(values[0])
+    return 0.0 if abs(number) < PRINTED_NUMBER else float(f"{number:.4g}")

@@ -113,6 +113,7 @@ def _slip(
             actual=actual,
             expected=expected,
             correction=correction,
+            corrects=grading.corrects,
             spelling=spelling,
             samples=grading.samples,
             scale=1.0 if angle else grading.exercise.length_scale,

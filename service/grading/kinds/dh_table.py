@@ -1,7 +1,5 @@
 """Answer kind ``dh_table``: a Denavit-Hartenberg table of the exercise's robot."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from service.catalogue import Exercise
@@ -11,11 +9,19 @@ from service.grading.diagnosis.table_explained import explained, freedom_lost
 from service.grading.feedback import Finding
 from service.grading.follow_through import stands_still
 from service.grading.judging.own_frames.best_roles import roles_in
-from service.grading.judging.report_rows import cell_report
+from service.grading.judging.report_rows import Slips, cell_report
 from service.grading.judging.table import JudgedRow, Judgement, judged_table
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.table import StudentRow, StudentTable, read_table
-from service.grading.report import CellReport, Place, RowReport, Severity, Verdict, row_report
+from service.grading.report import (
+    CellReport,
+    Correction,
+    Place,
+    RowReport,
+    Severity,
+    Verdict,
+    row_report,
+)
 from service.grading.samples import Samples
 from service.kinematics.chain import COLUMNS, frames, links
 from service.kinematics.dh import Convention
@@ -36,7 +42,16 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     convention, findings = _convention(part, answer, grading.exercise)
     first = judged_table(part, answer.rows, convention, grading)
     judgement, found, lost = _of_the_whole(part, answer.rows, first, convention, grading)
-    messages = grading.visible((*answer.findings, *findings, *found, *lost, *judgement.findings))
+    slips = diagnose_cells(judgement, grading)
+    places = tuple(
+        Place(judgement.rows[i].label, COLUMNS[column], _formula(slip, grading))
+        for (i, column), slip in slips.items()
+    )
+    messages = (
+        *grading.visible((*answer.findings, *findings)),
+        *grading.visible(found, places),
+        *grading.visible((*lost, *judgement.findings)),
+    )
     missing = tuple(
         message
         for judged in judgement.rows
@@ -45,7 +60,7 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     )
     extra = grading.visible(tuple(_extra_row(i) for i in judgement.extra))
     return Judged(
-        _row_reports(judgement, part.points, grading, found),
+        _row_reports(judgement, part.points, grading, {} if found else slips),
         (*messages, *missing, *extra),
         lost=judgement.lost,
         stands_still=stands_still(answer.values),
@@ -111,17 +126,16 @@ def _chain(
     )
 
 
+def _formula(slip: Finding, grading: Grading) -> Correction | None:
+    """The correction of a cell whose slip is that of the whole table."""
+    return slip.correction if grading.corrects and isinstance(slip.correction, Correction) else None
+
+
 def _row_reports(
-    judgement: Judgement, points: float, grading: Grading, of_the_whole: tuple[Finding, ...]
+    judgement: Judgement, points: float, grading: Grading, slips: Slips
 ) -> tuple[RowReport, ...]:
-    """The rows with their cells, which belong to the slip of the whole table if there is one."""
+    """The rows with their cells."""
     share = points / len(judgement.rows)
-    slips = diagnose_cells(judgement, grading)
-    if of_the_whole:
-        belongs = replace(of_the_whole[0], hint=_PART_OF_IT)
-        slips = {
-            place: replace(belongs, correction=slip.correction) for place, slip in slips.items()
-        }
     return tuple(
         row_report(
             judged.label,
@@ -144,9 +158,6 @@ def _cell(
     if judged.row is None:
         return CellReport(label, Verdict.MISSING)
     return cell_report(judged.row.entries[column], label, match, slip, grading)
-
-
-_PART_OF_IT = "This belongs to what is said of the table as a whole."
 
 
 def _missing(judged: JudgedRow) -> Finding:
