@@ -47,16 +47,13 @@ def test_a_thief_gains_nothing(
             assert after == before, (exercise.id, thief.part.id, thief.stolen)
 
 
-@pytest.mark.parametrize("exercise_id", ["planar-rr", "planar-rrr", "spatial-rrr"])
-def test_at_full_a_thief_gets_the_table(
-    exercise_id: str, catalogue: Mapping[str, Exercise]
-) -> None:
+def test_at_full_a_thief_gets_the_table(catalogue: Mapping[str, Exercise]) -> None:
     """So that the test above could fail."""
-    table, *_ = thieves(catalogue[exercise_id], FULL, "seven")
+    table, *_ = thieves(catalogue["planar-rr"], FULL, "seven")
     before, after = table.steal()
     assert before == 0
-    assert after >= table.part.points / 4
-    assert table.stolen
+    assert after > table.part.points / 2
+    assert {"theta1", "theta2", "a1", "a2"} <= set(table.stolen)
 
 
 def test_what_can_be_stolen_from_a_sentence(catalogue: Mapping[str, Exercise]) -> None:

@@ -67,6 +67,11 @@ def is_trivial(text: str) -> bool:
     return re.fullmatch(r"-?[01](\.0*)?", text) is not None
 
 
+def shortened(text: str) -> str:
+    """The text without the zeros behind its point: 7.0 is 7."""
+    return re.sub(r"\.0*$", "", text)
+
+
 @dataclass
 class Thief:
     """A thief at work on one part, at one level.
@@ -98,17 +103,17 @@ class Thief:
         report = self.report(self.grid)
         first = report.points
         for _ in range(ROUNDS):
+            before = report.points
             found = [
                 text
                 for saying in dict.fromkeys(said(report))
                 for text in expressions_in(saying, self.exercise.vocabulary)
-                if text not in self.known and not is_trivial(text)
+                if not is_trivial(text) and shortened(text) not in self.known
             ]
-            if not found:
-                break
             for text in dict.fromkeys(found):
-                self.known.add(text)
                 report = self._copied(text, report)
+            if report.points == before:
+                break
         return first, report.points
 
     def _copied(self, text: str, report: PartReport) -> PartReport:
@@ -123,13 +128,14 @@ class Thief:
                 [new if self._is_right(trial, i, j) else own for j, (own, new) in enumerate(pairs)]
                 for i, pairs in enumerate(map(zip, self.grid, everywhere))
             ]
-            return self._kept(helped, text, report)
-        # Without verdicts on cells, the points must tell, cell by cell.
+            report = self._kept(helped, text, report)
+        # Where frames are free, or cells have no verdicts, the points must tell, cell by cell.
         for i, row in enumerate(self.grid):
             for j in range(len(row)):
-                alone = [list(other) for other in self.grid]
-                alone[i][j] = text
-                report = self._kept(alone, text, report)
+                if not self._is_right(report, i, j):
+                    alone = [list(other) for other in self.grid]
+                    alone[i][j] = text
+                    report = self._kept(alone, text, report)
         return report
 
     def _kept(self, grid: Grid, text: str, report: PartReport) -> PartReport:
