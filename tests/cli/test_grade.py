@@ -131,6 +131,12 @@ def test_the_feedback_level_comes_from_the_command_or_else_from_the_file(
     assert "row" not in table_only(run, save(full), "--feedback", "score").stdout
 
 
+def test_echo_shows_how_each_cell_was_read(run: Run, save: Save) -> None:
+    answer = save({"answers": {"table": HALF}})
+    assert "read  a" in table_only(run, answer, "--echo").stdout
+    assert "read  a" not in table_only(run, answer).stdout
+
+
 @pytest.mark.parametrize("output_format", ["text", "json"])
 def test_the_output_goes_to_a_file(
     run: Run, save: Save, tmp_path: Path, output_format: str
