@@ -14,7 +14,12 @@ def create() -> FastAPI:
     try:
         settings = load_settings()
         catalogue = open_catalogue(settings.exercises_dir, reload=settings.reload_exercises)
-        return application(catalogue, settings.cors_origins, solutions=settings.solutions)
+        return application(
+            catalogue,
+            settings.cors_origins,
+            solutions=settings.solutions,
+            feedback=settings.feedback,
+        )
     except (SettingsError, CatalogueError) as error:
         raise SystemExit(f"dh-grader cannot start:\n{error}") from error
 

@@ -8,7 +8,7 @@ from urllib.parse import urlsplit
 from pydantic import Field, ValidationError, field_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
-from service.catalogue import shipped_folder
+from service.catalogue import FeedbackLevel, shipped_folder
 
 PREFIX = "DH_GRADER_"
 # Stands for the folder of the exercises that come with the program.
@@ -41,6 +41,11 @@ class Settings(BaseSettings):
         description="Whether GET /v1/exercises/{id}/solution shows the model solutions, to whoever "
         "can reach the service.",
     )
+    feedback: FeedbackLevel = Field(
+        FeedbackLevel.FULL,
+        description="The most that a report over HTTP tells: full, hints, verdicts or score. An "
+        "exercise may allow less, and a caller may ask for less.",
+    )
     cors_origins: Annotated[tuple[str, ...], NoDecode] = Field(
         (),
         description="Web pages that may call from a browser, as origins with commas between them "
@@ -50,7 +55,7 @@ class Settings(BaseSettings):
         "info", description="What is logged."
     )
 
-    @field_validator("log_level", mode="before")
+    @field_validator("feedback", "log_level", mode="before")
     @classmethod
     def _lowered(cls, value: object) -> object:
         return value.lower() if isinstance(value, str) else value

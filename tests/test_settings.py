@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from service.catalogue import shipped_folder
+from service.catalogue import FeedbackLevel, shipped_folder
 from service.settings import Settings, SettingsError, load_settings
 
 
@@ -18,6 +18,7 @@ def test_the_defaults_listen_here_only_and_let_no_other_page_call() -> None:
     assert (settings.host, settings.port) == ("127.0.0.1", 8000)
     assert settings.cors_origins == ()
     assert settings.exercises_dir == (shipped_folder(),)
+    assert settings.feedback is FeedbackLevel.FULL
 
 
 def test_the_environment_decides(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -25,11 +26,13 @@ def test_the_environment_decides(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", str(tmp_path))
     monkeypatch.setenv("DH_GRADER_CORS_ORIGINS", "https://a.example, http://b.example:8080")
     monkeypatch.setenv("DH_GRADER_LOG_LEVEL", "WARNING")
+    monkeypatch.setenv("DH_GRADER_FEEDBACK", "Verdicts")
     settings = load_settings()
     assert settings.port == 0
     assert settings.exercises_dir == (tmp_path,)
     assert settings.cors_origins == ("https://a.example", "http://b.example:8080")
     assert settings.log_level == "warning"
+    assert settings.feedback is FeedbackLevel.VERDICTS
 
 
 @pytest.mark.parametrize(
@@ -38,6 +41,7 @@ def test_the_environment_decides(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
         ("DH_GRADER_PORT", "http"),
         ("DH_GRADER_PORT", "70000"),
         ("DH_GRADER_LOG_LEVEL", "loud"),
+        ("DH_GRADER_FEEDBACK", "everything"),
         ("DH_GRADER_CORS_ORIGINS", "course.example"),
         ("DH_GRADER_CORS_ORIGINS", "https://course.example/page"),
     ],

@@ -15,6 +15,7 @@ from service.api import solutions as model_solutions
 from service.api.boundary import BoundaryMiddleware
 from service.api.lookup import Catalogue
 from service.api.openapi import any_other_failure, with_problem_schema
+from service.catalogue import FeedbackLevel
 from service.submissions.strict_json import MAX_BODY_SIZE
 
 DESCRIPTION = """
@@ -70,16 +71,25 @@ class _Api(FastAPI):
 
 
 def application(
-    catalogue: Catalogue, cors_origins: tuple[str, ...] = (), *, solutions: bool = False
+    catalogue: Catalogue,
+    cors_origins: tuple[str, ...] = (),
+    *,
+    solutions: bool = False,
+    feedback: FeedbackLevel = FeedbackLevel.FULL,
 ) -> FastAPI:
     """The HTTP service for these exercises; pages of ``cors_origins`` may call it.
 
-    With ``solutions`` it shows the model solutions to whoever asks.
+    With ``solutions`` it shows the model solutions to whoever asks. Reports tell no more than
+    ``feedback``, nor than their exercise allows.
     """
     app = _Api(cors_origins)
     problems.install(app)
-    for module in (exercises, grading, preview, health):
-        app.include_router(module.routes(catalogue), responses=any_other_failure())
-    shown = model_solutions.routes(catalogue, shown=solutions)
-    app.include_router(shown, responses=any_other_failure())
+    for router in (
+        exercises.routes(catalogue, feedback),
+        grading.routes(catalogue, feedback),
+        preview.routes(catalogue),
+        health.routes(catalogue),
+        model_solutions.routes(catalogue, shown=solutions),
+    ):
+        app.include_router(router, responses=any_other_failure())
     return app

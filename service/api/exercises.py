@@ -8,6 +8,7 @@ from pydantic import BaseModel, Field
 
 from service.api.lookup import Catalogue, exercise_or_404
 from service.api.openapi import refusals
+from service.catalogue import FeedbackLevel, least
 from service.catalogue.fields import Marking
 from service.catalogue.parts import AnyShape
 from service.expressions import Kind
@@ -74,12 +75,15 @@ class ExerciseView(BaseModel):
     source: str
     structure: str | None = Field(None, description="Left out where there is no robot.")
     statement: str
+    feedback: FeedbackLevel = Field(
+        description="The most that a report on it tells: `full`, `hints`, `verdicts` or `score`."
+    )
     symbols: list[SymbolView]
     parts: list[PartView]
 
 
-def routes(catalogue: Catalogue) -> APIRouter:
-    """The routes that show the catalogue."""
+def routes(catalogue: Catalogue, feedback: FeedbackLevel) -> APIRouter:
+    """The routes that show the catalogue; ``feedback`` is the most that any report tells."""
     router = APIRouter(prefix="/v1/exercises", tags=["exercises"])
 
     # The models pick from the exercises, by attribute, the fields that are public.
@@ -99,6 +103,7 @@ def routes(catalogue: Catalogue) -> APIRouter:
         exercise = exercise_or_404(catalogue, exercise_id)
         fields = {name: getattr(exercise, name, None) for name in ExerciseView.model_fields}
         parts = [{**dict(part), "shape": part.shape(exercise.reference)} for part in exercise.parts]
-        return {**fields, "symbols": exercise.variables, "parts": parts}
+        ceiling = least(exercise.feedback, feedback)
+        return {**fields, "feedback": ceiling, "symbols": exercise.variables, "parts": parts}
 
     return router

@@ -103,7 +103,7 @@ def _differences(expected: ExpectSpec, report: PartReport) -> Iterator[str]:
         yield f"should be {expected.verdict}"
     if expected.points is not None and abs(expected.points - report.points) > _SAME_POINTS:
         yield f"should get {expected.points:g} points"
-    codes = sorted({message.code for message, _ in messages_of(report)})
+    codes = sorted({message.code for message, *_ in messages_of(report)})
     missing = [code for code in expected.codes or () if code not in codes]
     if missing:
         had = f"the codes {', '.join(codes)}" if codes else "no code at all"
@@ -156,6 +156,6 @@ def _graded(
 def _in_words(report: PartReport) -> str:
     """Verdict, points and the first message of a part, for a remark."""
     # A message on a single cell tells more than one on the whole part.
-    message = next((f": {each.message}" for each, _ in reversed([*messages_of(report)])), "")
+    message = next((f": {each.message}" for each, *_ in reversed([*messages_of(report)])), "")
     points = f"{round(report.points, 2):g} of {report.max_points:g} points"
     return f"{report.verdict.value}, {points}{message}"

@@ -1,6 +1,7 @@
 """Exercise files, validated and compiled. Knows nothing of answers."""
 
 from service.catalogue.exercise import Exercise
+from service.catalogue.feedback_level import FeedbackLevel, least
 from service.catalogue.formulas import FormulaGrid, grid_values
 from service.catalogue.live import open_catalogue
 from service.catalogue.load import (
@@ -25,6 +26,7 @@ __all__ = [
     "CheckSpec",
     "Exercise",
     "Fault",
+    "FeedbackLevel",
     "FormulaGrid",
     "Joint",
     "PartSpec",
@@ -36,6 +38,7 @@ __all__ = [
     "exercise_files",
     "grid_values",
     "is_exercise_id",
+    "least",
     "load_catalogue",
     "load_exercise",
     "open_catalogue",

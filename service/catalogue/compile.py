@@ -68,6 +68,7 @@ def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
         parts=tuple(spec.parts),
         length_scale=_length_scale(variables, reference),
         checks=tuple(spec.checks),
+        feedback=spec.feedback,
     )
 
 
@@ -118,10 +119,11 @@ def _length_scale(variables: tuple[Variable, ...], reference: Reference | None) 
 def _version(spec: ExerciseSpec) -> str:
     """A digest of the file's content; comments, layout and checks do not change it.
 
+    Nor does ``feedback``: it changes what is told of a grading, not the grading.
     What the file leaves to the default is left out, so that a new field of the schema does not
     give every exercise a new version.
     """
-    written = spec.model_dump(mode="json", exclude_defaults=True, exclude={"checks"})
+    written = spec.model_dump(mode="json", exclude_defaults=True, exclude={"checks", "feedback"})
     content = json.dumps(written, sort_keys=True)
     return hashlib.blake2b(content.encode(), digest_size=6).hexdigest()
 

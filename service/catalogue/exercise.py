@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from service.catalogue.feedback_level import FeedbackLevel
 from service.catalogue.formulas import FormulaField, FormulaGrid, fields_of
 from service.catalogue.part import PartSpec
 from service.catalogue.robot import Joint, Robot
@@ -14,8 +15,10 @@ from service.expressions import Vocabulary
 
 @dataclass(frozen=True, slots=True)
 class Exercise:
-    """One exercise of the catalogue; ``version`` changes with anything in its file but its checks.
+    """One exercise of the catalogue.
 
+    ``version`` changes with anything in its file but its checks and ``feedback``, the most that a
+    student is told.
     ``reference`` is the robot, None where there is none; ``formulas`` holds the answers that the
     file gives, by the part's id. ``length_scale`` is the longest length, the scale of small
     differences.
@@ -33,6 +36,7 @@ class Exercise:
     parts: tuple[PartSpec, ...]
     length_scale: float
     checks: tuple[CheckSpec, ...] = ()
+    feedback: FeedbackLevel = FeedbackLevel.HINTS
 
     @property
     def robot(self) -> Robot:

@@ -12,6 +12,7 @@ from pydantic import (
     model_validator,
 )
 
+from service.catalogue.feedback_level import FeedbackLevel
 from service.catalogue.fields import Formula, Four, Homogeneous, Screw, StrictModel, Text, advice
 from service.catalogue.parts import SPECS, AnyPartSpec
 from service.expressions import Kind
@@ -169,6 +170,10 @@ class ExerciseSpec(StrictModel):
     """The reference robot; without one every part holds its answer."""
     symbols: dict[Text, SymbolSpec] = Field({})
     """The letters that may stand in an answer, by their names."""
+    feedback: FeedbackLevel = FeedbackLevel.HINTS
+    """The most that a student is told: "full" (hints and corrections), "hints" (what to look at,
+    never the value), "verdicts" (right and wrong, and what could not be read) or "score" (bare
+    marks, and what could not be read)."""
     parts: Annotated[list[AnyPartSpec], Field(min_length=1)]
     """The questions, one ``[[parts]]`` for each."""
     checks: list[CheckSpec] = Field([])

@@ -55,10 +55,12 @@ def command(
     feedback: Annotated[
         FeedbackLevel | None,
         typer.Option(
-            help="How much to tell: everything, all but the correction, or only marks and what "
-            "could not be read. By default what the file asks for, else full."
+            help="How much to tell: hints and corrections, what to look at, right and wrong, or "
+            "bare marks. What could not be read is told in any case. By default what the file asks "
+            "for, else full."
         ),
     ] = None,
+    echo: Annotated[bool, typer.Option("--echo", help="Tell how each cell was read.")] = False,
 ) -> None:
     """Grade submissions: JSON or TOML files of the same shape as the HTTP body.
 
@@ -69,7 +71,7 @@ def command(
     Exit code 2: a file, exercise or part is unusable; other files are graded all the same.
     """
     chosen = _restricted(find_exercise(installed(), exercise), part)
-    graded = [_graded(file, chosen, part, feedback) for file in files]
+    graded = [_graded(file, chosen, part, feedback, echo=echo) for file in files]
     for result in graded:
         if result.error:
             complain(f"{result.file}: {result.error}")
@@ -99,12 +101,18 @@ def _restricted(exercise: Exercise, part_id: str | None) -> Exercise:
 
 
 def _graded(
-    file: Path, exercise: Exercise, part: str | None, feedback: FeedbackLevel | None
+    file: Path,
+    exercise: Exercise,
+    part: str | None,
+    feedback: FeedbackLevel | None,
+    *,
+    echo: bool,
 ) -> GradedFile:
+    """The file with its report: these are a tutor's own files, so nothing need be kept back."""
     try:
-        submission = read_submission(file, part).submission()
-        if feedback is not None:
-            submission = replace(submission, feedback=feedback)
+        submission = read_submission(file, part).submission(FeedbackLevel.FULL)
+        feedback = submission.feedback if feedback is None else feedback
+        submission = replace(submission, feedback=feedback, echo=echo or submission.echo)
         return GradedFile(file, grade(exercise, submission))
     except UnusableFileError as error:
         return GradedFile(file, None, str(error))

@@ -25,7 +25,12 @@ def command(
     from service.api.application import application
 
     uvicorn.run(
-        application(catalogue, settings.cors_origins, solutions=settings.solutions),
+        application(
+            catalogue,
+            settings.cors_origins,
+            solutions=settings.solutions,
+            feedback=settings.feedback,
+        ),
         host=settings.host if host is None else host,
         port=settings.port if port is None else port,
         log_level=settings.log_level,

@@ -18,6 +18,7 @@ from service.expressions.parsing.parser import parse
 from service.expressions.parsing.tree_builder import Builder
 from service.expressions.printing.latex import to_latex
 from service.expressions.printing.mathml import to_mathml
+from service.expressions.printing.spelling import TypedFormula
 from service.expressions.printing.text import to_text
 from service.expressions.repairs import Failure, explain
 from service.expressions.tree import Binary, Node, Number, SymbolNode, children
@@ -93,6 +94,11 @@ class Expression:
             return self._tree
         assert self._vocabulary is not None
         return _parsed(self.source, self._vocabulary, self._is_angle, self._degrees).tree
+
+    @property
+    def typed(self) -> TypedFormula:
+        """The text with its tree, as a spelling is found in it."""
+        return TypedFormula(self.source, self.tree, self._degrees)
 
     def evaluate(
         self, values: SymbolValues, memo: dict[str, Any] | None = None

@@ -12,7 +12,17 @@ from rich.table import Table
 from rich.text import Text
 
 from service.formats import GradedFile
-from service.grading import Feedback, PartReport, Report, Severity, Verdict
+from service.grading import (
+    Correction,
+    Feedback,
+    PartReport,
+    Place,
+    Report,
+    RowReport,
+    Severity,
+    Verdict,
+)
+from service.grading.feedback import EXPECTED, YOURS
 from service.grading.report import messages_of
 
 # The mark of each verdict, and its colour.
@@ -53,8 +63,11 @@ def visible(text: str) -> str:
 
 
 def points(earned: float, most: float) -> str:
-    """Points out of the most there are: ``1.5 / 2``."""
-    return f"{_number(earned)} / {_number(most)}"
+    """Points out of the most there are: ``1.5 / 2``, never rounded up to the most."""
+    shown = _number(earned)
+    if earned < most and shown == _number(most):
+        shown = _number(int(earned * 100) / 100)
+    return f"{shown} / {_number(most)}"
 
 
 def _number(value: float) -> str:
@@ -95,8 +108,10 @@ class _Page:
         )
         if part.rows:
             self._print(Padding(self._table(part), (0, 0, 0, 2), expand=False))
+        if any(cell.read for row in part.rows for cell in row.cells):
+            self._print(Padding(self._read(part), (0, 0, 0, 2), expand=False))
         for places, message, verdict in _messages(part):
-            self._message(places, message, verdict)
+            self._message(places, message, verdict, part.rows)
         self._print(Text())
 
     def _table(self, part: PartReport) -> Table:
@@ -112,11 +127,26 @@ class _Page:
             table.add_row(row.label, *marks, *blanks, points(row.points, row.max_points))
         return table
 
-    def _message(self, places: str, message: Feedback, verdict: Verdict) -> None:
+    def _read(self, part: PartReport) -> Table:
+        """The entries as they were understood."""
+        table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), style="dim")
+        table.add_column("read")
+        for cell in max((row.cells for row in part.rows), key=len):
+            table.add_column(cell.label)
+        for row in part.rows:
+            read = (visible(cell.read.text) if cell.read else "" for cell in row.cells)
+            table.add_row(row.label, *map(Text, read))
+        return table
+
+    def _message(
+        self, places: str, message: Feedback, verdict: Verdict, rows: Sequence[RowReport]
+    ) -> None:
         """A message, its lines beneath each other to the right of its mark."""
         costs = message.severity is Severity.ERROR
         mark = self._mark(verdict) if costs else Text(message.severity.value, "cyan")
         text = Text.assemble((f"{places}: " if places else "", "bold"), visible(message.message))
+        for offered in filter(None, (_suggestion(message), _correction(message, rows))):
+            text.append(f" {visible(offered)}")
         if message.values:
             text.append(f" {_counterexample(message.values)}", "dim")
         grid = Table.grid(padding=(0, 1))
@@ -134,41 +164,67 @@ class _Page:
 
 
 def _messages(part: PartReport) -> Iterator[tuple[str, Feedback, Verdict]]:
-    """The part's messages, those that say the same drawn together with all their places."""
+    """The part's messages with their places and the verdict there."""
     if part.verdict is Verdict.MISSING and not part.feedback and not part.rows:
         nothing = Feedback("missing", Severity.ERROR, "Nothing was handed in.")
         yield "", nothing, Verdict.MISSING
-    together: dict[tuple[str, str], tuple[list[Feedback], Verdict]] = {}
-    for message, verdict in messages_of(part):
-        key = (message.message, str(message.values))
-        together.setdefault(key, ([], verdict))[0].append(message)
-    for messages, verdict in together.values():
-        yield _places(messages), messages[0], verdict
+    for message, places, verdict in messages_of(part):
+        yield _places(places, part.rows), message, verdict
 
 
-def _places(messages: Iterable[Feedback]) -> str:
-    """The places of the messages: ``row 1 d, theta; row 2``."""
+def _places(places: Iterable[Place], rows: Sequence[RowReport]) -> str:
+    """The places in few words: ``row 1 d, theta; rows 2, 3``."""
+    complete = {row.label: [cell.label for cell in row.cells] for row in rows}
     cells: dict[str, list[str]] = {}
-    for message in messages:
-        if message.row is not None:
-            named = cells.setdefault(visible(message.row), [])
-            if message.cell is not None:
-                named.append(visible(message.cell))
-    return "; ".join(f"row {row}{_columns(named)}" for row, named in cells.items())
+    for place in places:
+        named = cells.setdefault(place.row, [])
+        if place.cell is not None:
+            named.append(place.cell)
+    alike: dict[tuple[str, ...], list[str]] = {}
+    for row, named in cells.items():
+        columns = () if len(named) > 1 and named == complete.get(row) else tuple(named)
+        alike.setdefault(columns, []).append(visible(row))
+    return "; ".join(
+        f"row{'s' if len(labels) > 1 else ''} {', '.join(labels)}{_columns(columns)}"
+        for columns, labels in alike.items()
+    )
 
 
-def _columns(labels: list[str]) -> str:
+def _suggestion(message: Feedback) -> str:
+    """The repaired text as a question, unless the message asks it itself."""
+    question = f"Did you mean {message.suggestion}?"
+    return "" if message.suggestion is None or question in message.message else question
+
+
+def _correction(message: Feedback, rows: Sequence[RowReport]) -> str:
+    """The instruction, or the right entry in a sentence: the one, or one for each place."""
+    found = [] if message.correction is None else [_told(message.correction)]
+    at: dict[Correction, list[Place]] = {}
+    for place in message.places or ():
+        if place.correction is not None:
+            at.setdefault(place.correction, []).append(place)
+    told = [f"{_places(places, rows)}: {_told(correction)}" for correction, places in at.items()]
+    return " ".join([*found, *told])
+
+
+def _told(correction: Correction) -> str:
+    return correction.text if correction.latex is None else f"It should be {correction.text}."
+
+
+def _columns(labels: Sequence[str]) -> str:
     if not labels:
         return ""
     noun = "" if not labels[0].isdigit() else "column " if len(labels) == 1 else "columns "
-    return f" {noun}{', '.join(labels)}"
+    return f" {noun}{visible(', '.join(labels))}"
 
 
 def _counterexample(values: Mapping[str, float | str]) -> str:
-    """``(with q1 = 0.4, yours gives 1.2)``, from the values of one sample."""
-    at = ", ".join(f"{name} = {value}" for name, value in values.items() if name != "yours")
-    yours = f"yours gives {values['yours']}" if "yours" in values else ""
-    return visible(f"({', '.join(filter(None, [at and f'with {at}', yours]))})")
+    """``(with q1 = 0.4, yours gives 1.2, not 0.9)``, from the values of one sample."""
+    given = [f"{name} = {value}" for name, value in values.items() if name not in (YOURS, EXPECTED)]
+    at = f"with {', '.join(given)}" if given else ""
+    yours = f"yours gives {values[YOURS]}" if YOURS in values else ""
+    right = f"not {values[EXPECTED]}" if EXPECTED in values else ""
+    return visible(f"({', '.join(filter(None, [at, yours, right]))})")
 
 
 def _can_write(text: str, encoding: str) -> bool:

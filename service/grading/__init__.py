@@ -1,11 +1,14 @@
 """Answers and an exercise in, a report out. Pure: no clock, no disk, no network."""
 
-from service.grading.feedback import FeedbackLevel
+from service.catalogue import FeedbackLevel
 from service.grading.grade import Submission, UnknownPartError, grade
 from service.grading.report import (
     CellReport,
+    Correction,
     Feedback,
     PartReport,
+    Place,
+    ReadEntry,
     Report,
     RowReport,
     Severity,
@@ -14,9 +17,12 @@ from service.grading.report import (
 
 __all__ = [
     "CellReport",
+    "Correction",
     "Feedback",
     "FeedbackLevel",
     "PartReport",
+    "Place",
+    "ReadEntry",
     "Report",
     "RowReport",
     "Severity",

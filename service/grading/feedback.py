@@ -1,54 +1,56 @@
 """Findings: the messages of a grading, before the feedback level decides what is visible."""
 
-from dataclasses import dataclass
-from enum import StrEnum
+from collections.abc import Iterable, Sequence, Set
+from dataclasses import dataclass, replace
 
-from service.grading.report import Feedback, Severity
+from service.catalogue import FeedbackLevel
+from service.grading.report import CellReport, Correction, Feedback, PartReport, Place, Severity
 
-
-class FeedbackLevel(StrEnum):
-    """The amount that a report tells: all, all but the correction, or only the reading."""
-
-    FULL = "full"
-    VERDICTS = "verdicts"
-    SCORE = "score"
+# In a counterexample, what the entry gives, and the right number, which only a tutor is told.
+YOURS = "yours"
+EXPECTED = "expected"
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A message in two sentences: a hint where to look, and the correction itself.
+    """A message: a hint where to look, which never holds the value, and the correction itself.
 
-    ``code`` is stable, so that a class can be counted. ``values`` is a counterexample. ``reading``
+    ``code`` is stable, so that a class can be counted. ``correction`` is a formula, or an
+    instruction in words; empty where there is none. ``values`` is a counterexample. ``reading``
     marks a finding on the reading of a text and not on its worth: it gives nothing away and is
     visible at every level. ``suggestion`` is the repaired text of one that cannot be read.
     """
 
     code: str
     hint: str
-    correction: str = ""
+    correction: Correction | str = ""
     severity: Severity = Severity.ERROR
     span: tuple[int, int] | None = None
     values: dict[str, float | str] | None = None
     reading: bool = False
     suggestion: str | None = None
 
-    def visible(
-        self, level: FeedbackLevel, row: str | None = None, cell: str | None = None
-    ) -> Feedback | None:
+    def visible(self, level: FeedbackLevel, places: tuple[Place, ...] = ()) -> Feedback | None:
         """The message at this level, or None where the level keeps it back."""
-        if level is FeedbackLevel.SCORE and not self.reading:
+        if level in _VERDICTS_ONLY and not self.reading:
             return None
-        tells_all = level is FeedbackLevel.FULL or self.reading
-        message = f"{self.hint} {self.correction}" if tells_all and self.correction else self.hint
+        correction, values = self.correction or None, self.values
+        if level is not FeedbackLevel.FULL:
+            correction = None
+            values = values and {name: values[name] for name in values if name != EXPECTED}
         return Feedback(
             code=self.code,
             severity=self.severity,
-            message=message,
-            row=row,
-            cell=cell,
+            message=self.hint,
+            places=places or None,
             span=self.span,
-            values=self.values if level is FeedbackLevel.FULL else None,
+            suggestion=self.suggestion,
+            correction=Correction(correction) if isinstance(correction, str) else correction,
+            values=values,
         )
+
+
+_VERDICTS_ONLY = (FeedbackLevel.VERDICTS, FeedbackLevel.SCORE)
 
 
 def reading_error(code: str, message: str, span: tuple[int, int] | None = None) -> Finding:
@@ -71,19 +73,75 @@ class UnreadableAnswerError(Exception):
 
 ROUNDED = Finding(
     "rounded",
-    "Accepted, though rounded: write it exactly (pi/2, sqrt(2)/2) and nothing can be lost.",
+    "Accepted, though rounded: write the number exactly, as a fraction or a root, and nothing can "
+    "be lost.",
     severity=Severity.INFO,
 )
 
 
 def visible_messages(
-    findings: tuple[Finding, ...],
-    level: FeedbackLevel,
-    row: str | None = None,
-    cell: str | None = None,
+    findings: tuple[Finding, ...], level: FeedbackLevel, places: tuple[Place, ...] = ()
 ) -> tuple[Feedback, ...]:
-    """The messages that the level lets through."""
+    """The messages that the level lets through, all of them about the same ``places``."""
     if not findings:
         return ()
-    feedback = (finding.visible(level, row, cell) for finding in findings)
+    feedback = (finding.visible(level, places) for finding in findings)
     return tuple(message for message in feedback if message is not None)
+
+
+# What a message says: its code, its sentence, the repaired text.
+_Said = tuple[str, str, str | None]
+
+
+def told_once(report: PartReport) -> PartReport:
+    """The report with each message that several places share told once, with the part.
+
+    Messages are the same where they say the same; of their counterexamples the first is kept. One
+    with a span stays with its cell, whose text the span is in.
+    """
+    in_cells: dict[_Said, list[tuple[Place, Feedback]]] = {}
+    for row in report.rows:
+        for cell in row.cells:
+            for message in cell.feedback:
+                if message.span is None:
+                    place = Place(row.label, cell.label)
+                    in_cells.setdefault(_said(message), []).append((place, message))
+    shared = {said: told for said, told in in_cells.items() if len(told) > 1}
+    if not shared and len(report.feedback) < 2:
+        return report
+    rows = tuple(
+        replace(row, cells=tuple(_without(cell, shared.keys()) for cell in row.cells))
+        for row in report.rows
+    )
+    messages = (*report.feedback, *map(_together, shared.values()))
+    return replace(report, rows=rows, feedback=_joined(messages))
+
+
+def _said(message: Feedback) -> _Said:
+    return message.code, message.message, message.suggestion
+
+
+def _together(told: Sequence[tuple[Place, Feedback]]) -> Feedback:
+    """The first of the messages with the places of all."""
+    _, first = told[0]
+    if len({message.correction for _, message in told}) == 1:
+        return replace(first, places=tuple(place for place, _ in told))
+    places = tuple(replace(place, correction=message.correction) for place, message in told)
+    return replace(first, places=places, correction=None)
+
+
+def _without(cell: CellReport, shared: Set[_Said]) -> CellReport:
+    """The cell with the messages that are its own."""
+    own = tuple(m for m in cell.feedback if m.span is not None or _said(m) not in shared)
+    return cell if len(own) == len(cell.feedback) else replace(cell, feedback=own)
+
+
+def _joined(messages: Iterable[Feedback]) -> tuple[Feedback, ...]:
+    """The messages on a part, those with the same words as one with all their places."""
+    found: dict[object, Feedback] = {}
+    for i, message in enumerate(messages):
+        is_placed = message.places is not None and message.span is None
+        key: object = (_said(message), message.correction) if is_placed else i
+        places = (*((key in found and found[key].places) or ()), *(message.places or ()))
+        found[key] = replace(found.get(key, message), places=tuple(dict.fromkeys(places)) or None)
+    return tuple(found.values())

@@ -5,46 +5,63 @@ from fractions import Fraction
 import numpy as np
 
 from service.catalogue import Exercise
+from service.expressions.printing.latex import to_latex
+from service.expressions.printing.spelling import Spelling
+from service.expressions.printing.text import to_text
+from service.expressions.tree import Binary, Negation, Node, Number, Pi, SymbolNode, Unit
 from service.grading.comparison import difference
 from service.grading.joint_motion import coefficients
+from service.grading.report import Correction
 from service.grading.samples import HALF, Samples
-from service.grading.tolerances import CONSTANT, WHOLE_MULTIPLE
+from service.grading.tolerances import CONSTANT, PRINTED_NUMBER, WHOLE_MULTIPLE
 from service.kinematics.transforms import Numbers
 
+# A term of a sum and its sign.
+_Term = tuple[int, Node]
 
-def formula_text(values: Numbers, angle: bool, exercise: Exercise, samples: Samples) -> str:
+
+def spelled(formula: Node, spelling: Spelling) -> Correction:
+    """A right formula in the student's spelling."""
+    return Correction(to_text(formula, spelling), to_latex(spelling.renamed(formula)))
+
+
+def value_formula(
+    values: Numbers, angle: bool, exercise: Exercise, samples: Samples, spelling: Spelling
+) -> Correction | None:
     """``values`` ``(SAMPLES,)`` as a sum of multiples of the exercise's letters and a constant.
 
-    That is the form of table cells: ``theta2 + pi/2``, ``-d2``, ``l1 + l2``. The text is empty if
-    the values are of another form.
+    That is the form of table cells: ``theta2 + pi/2``, ``-d2``, ``l1 + l2``. None if the values are
+    of another form.
     """
     (counts,) = coefficients(values[None], exercise.joints, samples, np.array([angle]))
-    return sum_text(values, counts, angle, exercise, samples)
+    return sum_formula(values, counts, angle, exercise, samples, spelling)
 
 
-def sum_text(
+def sum_formula(
     values: Numbers,
     counts: tuple[int, ...] | None,
     angle: bool,
     exercise: Exercise,
     samples: Samples,
-) -> str:
-    """``formula_text`` where the multiples of the joint variables are known, or are none (None)."""
+    spelling: Spelling,
+) -> Correction | None:
+    """``value_formula`` where the multiples of the joint variables are known, or none (None)."""
     if counts is None:
-        return ""
+        return None
     moving = [joint.variable for joint in exercise.joints]
     motion = sum(n * samples.values[name] for n, name in zip(counts, moving, strict=True) if n)
     found = multiples((values - motion)[:HALF], angle, exercise, samples)
     if found is None:
-        return ""
+        return None
     shares, remainder = found
+    symbols = exercise.vocabulary.by_name
     terms = [
-        {1: name, -1: f"-{name}"}.get(count, f"{count}*{name}")
+        _multiple(count, SymbolNode(symbols[name]))
         for count, name in (*zip(counts, moving, strict=True), *shares)
         if count
     ]
-    constant = _constant(remainder, angle)
-    return " + ".join([*terms, constant] if constant else terms).replace(" + -", " - ") or "0"
+    constant = _angle(remainder, spelling) if angle else _length(remainder)
+    return spelled(_sum([*terms, constant] if constant else terms), spelling)
 
 
 def multiples(
@@ -76,17 +93,62 @@ def multiples(
     return [(share, letter) for share, letter in found if share], float(rest.mean())
 
 
-def _constant(value: float, angle: bool) -> str:
-    """A number as text, an angle as a fraction of pi or else in degrees; empty if it is 0."""
-    if not angle:
-        return "" if abs(value) < WHOLE_MULTIPLE else f"{value:.6g}"
+def number_formula(values: Numbers, figures: int = 4) -> Correction | None:
+    """An entry ``(SAMPLES,)`` that is a plain number everywhere; None where it varies."""
+    if np.ptp(values) > PRINTED_NUMBER:
+        return None
+    value = float(values[0])
+    node = _sum([] if abs(value) < PRINTED_NUMBER else [_number(value, figures)])
+    return Correction(to_text(node), to_latex(node))
+
+
+def _sum(terms: list[_Term]) -> Node:
+    """The sum of the terms, 0 where there are none."""
+    total: Node | None = None
+    for sign, term in terms:
+        if total is None:
+            total = term if sign > 0 else _negated(term)
+        else:
+            total = Binary("+" if sign > 0 else "-", total, term)
+    return Number(0.0, "0") if total is None else total
+
+
+def _negated(term: Node) -> Node:
+    """The term with a minus sign in front of its first factor: -2*l1, -3*pi/4."""
+    if isinstance(term, Binary):
+        return Binary(term.operator, _negated(term.left), term.right)
+    return Negation(term)
+
+
+def _multiple(count: int, factor: Node) -> _Term:
+    times = abs(count)
+    product = factor if times == 1 else Binary("*", Number(float(times), str(times)), factor)
+    return (1 if count > 0 else -1), product
+
+
+def _number(value: float, figures: int) -> _Term:
+    return (1 if value >= 0 else -1), Number(abs(value), f"{abs(value):.{figures}g}")
+
+
+def _length(value: float) -> _Term | None:
+    """A constant length; None if it is 0."""
+    return None if abs(value) < WHOLE_MULTIPLE else _number(value, 6)
+
+
+def _angle(value: float, spelling: Spelling) -> _Term | None:
+    """A constant angle in degrees or as a fraction of π, None if it is 0.
+
+    What is no fraction of π by twelve is in degrees in any case.
+    """
     turned = float(difference(np.array(value), np.array(0.0), angle=True))
     if abs(turned) < WHOLE_MULTIPLE:
-        return ""
+        return None
     share = Fraction(turned / np.pi).limit_denominator(12)
-    if abs(float(share) * np.pi - turned) > WHOLE_MULTIPLE:
-        return f"{np.degrees(turned):.6g}deg"
     if share == -1:
-        share = Fraction(1)
-    top = {1: "pi", -1: "-pi"}.get(share.numerator, f"{share.numerator}*pi")
-    return top if share.denominator == 1 else f"{top}/{share.denominator}"
+        share, turned = Fraction(1), -turned
+    if spelling.in_degrees or abs(float(share) * np.pi - turned) > WHOLE_MULTIPLE:
+        sign, number = _number(float(np.degrees(turned)), 6)
+        return sign, Unit(number, "deg")
+    sign, turn = _multiple(share.numerator, Pi())
+    below = share.denominator
+    return sign, turn if below == 1 else Binary("/", turn, Number(float(below), str(below)))

@@ -3,26 +3,35 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from importlib.metadata import version
+from typing import Final
 
-from service.catalogue import Exercise, PartSpec
+from service.catalogue import Exercise, FeedbackLevel, PartSpec
 from service.expressions import AngleUnit
-from service.grading.feedback import FeedbackLevel, UnreadableAnswerError
+from service.grading.feedback import UnreadableAnswerError, told_once
 from service.grading.follow_through import STANDS_STILL, can_carry, follows_from
 from service.grading.judging.marks import part_report, share_by_content, unjudged_report
 from service.grading.kinds import KINDS
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.entry import Reader
-from service.grading.report import PartReport, Report, Verdict, rounded_points
+from service.grading.report import PartReport, Place, Report, Verdict, rounded_points
 from service.grading.samples import draw
+
+# The program's version, as it is installed.
+VERSION: Final = version("dh-grader")
 
 
 @dataclass(frozen=True, slots=True)
 class Submission:
-    """The answers that were handed in: one JSON value for each part answered."""
+    """The answers that were handed in: one JSON value for each part answered.
+
+    ``feedback`` is how much the report tells, ``echo`` whether it tells how each cell was read.
+    """
 
     answers: Mapping[str, object]
     angle_unit: AngleUnit = "radians"
     feedback: FeedbackLevel = FeedbackLevel.FULL
+    echo: bool = False
 
 
 class UnknownPartError(ValueError):
@@ -48,11 +57,11 @@ def grade(exercise: Exercise, submission: Submission) -> Report:
     degrees = submission.angle_unit == "degrees"
     samples = draw(exercise, submission.answers, degrees=degrees)
     reader = Reader.of(exercise, samples, submission.angle_unit)
-    grading = Grading(exercise, samples, reader, submission.feedback)
+    grading = Grading(exercise, samples, reader, submission.feedback, submission.echo)
     graded: dict[str, _Graded] = {}
     for part in exercise.parts:
         graded[part.id] = _graded(part, submission.answers, graded, grading)
-    parts = [each.report for each in graded.values()]
+    parts = [told_once(each.report) for each in graded.values()]
     if grading.level is FeedbackLevel.SCORE:
         parts = [_without_rows(part) for part in parts]
     points = rounded_points(sum(part.points for part in parts))
@@ -60,6 +69,8 @@ def grade(exercise: Exercise, submission: Submission) -> Report:
     return Report(
         exercise=exercise.id,
         version=exercise.version,
+        grader=VERSION,
+        feedback=submission.feedback,
         gradable=any(_was_read(each.report) for each in graded.values()),
         points=points,
         max_points=max_points,
@@ -146,7 +157,10 @@ def _followed(
 def _without_rows(report: PartReport) -> PartReport:
     """The bare mark, with what could not be read: that is no hint, and a student must know it."""
     reading = tuple(
-        message for row in report.rows for cell in row.cells for message in cell.feedback
+        replace(message, places=(Place(row.label, cell.label),))
+        for row in report.rows
+        for cell in row.cells
+        for message in cell.feedback
     )
     return replace(report, rows=(), feedback=(*report.feedback, *reading))
 

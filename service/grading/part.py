@@ -1,13 +1,14 @@
 """An answer kind: how answers of it are read and judged. One file of ``kinds`` holds each."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from service.catalogue import Exercise
-from service.grading.feedback import FeedbackLevel, Finding, visible_messages
-from service.grading.reading.entry import Reader
-from service.grading.report import Feedback, RowReport, Verdict
+from service.catalogue import Exercise, FeedbackLevel
+from service.expressions.printing.spelling import Spelling, spelling_of
+from service.grading.feedback import Finding, visible_messages
+from service.grading.reading.entry import Entry, Reader
+from service.grading.report import Feedback, Place, RowReport, Verdict
 from service.grading.samples import Samples
 from service.kinematics.transforms import Matrices, inverse
 
@@ -36,7 +37,8 @@ class StudentChain:
 class Grading:
     """One submission being graded: everything that an answer kind may use.
 
-    ``student_chain`` is the earlier answer that the part follows from, where there is one. With
+    ``echo`` says that each cell is reported as it was understood. ``student_chain`` is the earlier
+    answer that the part follows from, where there is one. With
     ``following`` the part is judged by that answer and not by the reference.
     """
 
@@ -44,14 +46,29 @@ class Grading:
     samples: Samples
     reader: Reader
     level: FeedbackLevel
+    echo: bool = False
     student_chain: StudentChain | None = None
     following: bool = False
 
     def visible(
-        self, findings: tuple[Finding, ...], row: str | None = None, cell: str | None = None
+        self, findings: tuple[Finding, ...], places: tuple[Place, ...] = ()
     ) -> tuple[Feedback, ...]:
-        """The findings as messages, as far as the feedback level lets them through."""
-        return visible_messages(findings, self.level, row, cell)
+        """The findings as messages, as far as the feedback level lets them through.
+
+        ``places`` are those that they are about, where they do not stand with them.
+        """
+        return visible_messages(findings, self.level, places)
+
+    def spelling(self, entries: Iterable[Entry]) -> Spelling:
+        """The spelling of the entries of a part, in which the student is answered."""
+        typed = [entry.expression.typed for entry in entries if entry.expression is not None]
+        degrees = self.reader.angle_unit == "degrees"
+        return spelling_of(typed, self.exercise.vocabulary, degrees=degrees)
+
+    @property
+    def corrects(self) -> bool:
+        """Whether corrections are told, so that they need to be worked out."""
+        return self.level is FeedbackLevel.FULL
 
 
 def _no_chain() -> StudentChain | None:

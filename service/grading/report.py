@@ -7,6 +7,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 
+from service.catalogue import FeedbackLevel
+
 
 class Verdict(StrEnum):
     """The verdict on a cell, a row or a part."""
@@ -28,28 +30,66 @@ class Severity(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Feedback:
-    """One message. ``values`` is a counterexample.
+class Correction:
+    """The right entry, as the student would write it.
 
-    ``span`` is [from, to) in the text of the cell, or in the whole text where it was pasted.
+    One without ``latex`` is an instruction in words: "Exchange a and d."
+    """
+
+    text: str
+    latex: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A row of the report, or one of its cells, by their labels.
+
+    ``correction`` is that of the place, where a message has another for each.
+    """
+
+    row: str
+    cell: str | None = None
+    correction: Correction | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Feedback:
+    """One message, which never holds the right value.
+
+    ``places`` are the rows and cells that it is about, where it does not stand with the one that it
+    is about. ``span`` is [from, to) in the text of the cell, or in the whole text where it was
+    pasted. ``suggestion`` is the student's own text, repaired where it cannot be read.
+    ``correction`` is told at the level full only. ``values`` is a counterexample, for the first of
+    the places: the values of the symbols, and "yours", the value of the entry there; at the level
+    full "expected", too.
     """
 
     code: str
     severity: Severity
     message: str
-    row: str | None = None
-    cell: str | None = None
+    places: tuple[Place, ...] | None = None
     span: tuple[int, int] | None = None
+    suggestion: str | None = None
+    correction: Correction | None = None
     values: dict[str, float | str] | None = None
 
 
 @dataclass(frozen=True, slots=True)
+class ReadEntry:
+    """An entry as it was understood."""
+
+    text: str
+    latex: str
+
+
+@dataclass(frozen=True, slots=True)
 class CellReport:
-    """One table cell or matrix entry."""
+    """One table cell or matrix entry; ``read`` is there where it was asked for."""
 
     label: str
     verdict: Verdict
     feedback: tuple[Feedback, ...] = ()
+    read: ReadEntry | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,11 +122,14 @@ class PartReport:
 class Report:
     """The whole grading. ``score`` is points / max_points, 0..1.
 
-    ``gradable`` is false when nothing could be read, so that a site need not count the attempt.
+    ``grader`` is the program's version, ``feedback`` how much the report tells. ``gradable`` is
+    false when nothing could be read, so that a site need not count the attempt.
     """
 
     exercise: str
     version: str
+    grader: str
+    feedback: FeedbackLevel
     gradable: bool
     points: float
     max_points: float
@@ -94,13 +137,21 @@ class Report:
     parts: tuple[PartReport, ...]
 
 
-def messages_of(part: PartReport) -> Iterator[tuple[Feedback, Verdict]]:
-    """The messages on a part, its rows and their cells, each with the verdict on its subject."""
-    yield from ((message, part.verdict) for message in part.feedback)
+def messages_of(part: PartReport) -> Iterator[tuple[Feedback, tuple[Place, ...], Verdict]]:
+    """The messages on a part, its rows and cells, with their places and the verdict there."""
+    verdicts: dict[tuple[str, str | None], Verdict] = {}
     for row in part.rows:
-        yield from ((message, row.verdict) for message in row.feedback)
+        verdicts[row.label, None] = row.verdict
+        verdicts |= {(row.label, cell.label): cell.verdict for cell in row.cells}
+    for message in part.feedback:
+        places = message.places or ()
+        found = [verdicts.get((place.row, place.cell), part.verdict) for place in places[:1]]
+        yield message, places, found[0] if found else part.verdict
+    for row in part.rows:
+        yield from ((message, (Place(row.label),), row.verdict) for message in row.feedback)
         for cell in row.cells:
-            yield from ((message, cell.verdict) for message in cell.feedback)
+            at = (Place(row.label, cell.label),)
+            yield from ((message, at, cell.verdict) for message in cell.feedback)
 
 
 def combined(verdicts: Iterable[Verdict]) -> Verdict:

@@ -4,10 +4,9 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from service.catalogue import FeedbackLevel, least
 from service.catalogue.parts import posted_forms
-from service.grading import FeedbackLevel, Submission
-
-FeedbackName = Literal["full", "verdicts", "score"]
+from service.grading import Submission
 
 
 class GradeRequest(BaseModel):
@@ -23,12 +22,18 @@ class GradeRequest(BaseModel):
     angle_unit: Literal["radians", "degrees"] = Field(
         "radians", description="What a bare number means where an angle is asked for."
     )
-    feedback: FeedbackName = Field(
-        "full",
-        description="`full` tells the correction, `verdicts` what to look at, "
-        "`score` only the marks and what could not be read.",
+    feedback: Literal["full", "hints", "verdicts", "score"] | None = Field(
+        None,
+        description="The most that the report may tell: `full` hints and corrections, `hints` what "
+        "to look at, `verdicts` right and wrong and what could not be read, `score` bare marks and "
+        "what could not be read. The exercise and the service have ceilings of their own, and the "
+        "report says which level it has. Without it, as much as they allow.",
+    )
+    echo: bool = Field(
+        False, description="Whether the report tells how each cell was read, in its `read`."
     )
 
-    def submission(self) -> Submission:
-        """The same as the grading takes it."""
-        return Submission(self.answers, self.angle_unit, FeedbackLevel(self.feedback))
+    def submission(self, ceiling: FeedbackLevel) -> Submission:
+        """The same as the grading takes it, with a report that tells no more than ``ceiling``."""
+        asked = ceiling if self.feedback is None else FeedbackLevel(self.feedback)
+        return Submission(self.answers, self.angle_unit, least(asked, ceiling), self.echo)

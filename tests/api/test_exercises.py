@@ -86,6 +86,7 @@ def test_an_exercise_shows_exactly_what_a_student_may_see(secretive: httpx.Clien
         "source": "none",
         "structure": "RP",
         "statement": "An arm.",
+        "feedback": "hints",
         "symbols": [
             {
                 "name": "q1",

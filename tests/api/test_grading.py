@@ -1,13 +1,18 @@
 """POST /v1/exercises/{id}/grade."""
 
 import json
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import httpx
 import pytest
+from fastapi import FastAPI
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from service.api.application import application
+from service.catalogue import Exercise, FeedbackLevel, least
 from service.grading import Verdict
 
 URL = "/v1/exercises/planar-rrr/grade"
@@ -56,7 +61,7 @@ def test_a_wrong_cell_is_named_and_fields_that_say_nothing_are_left_out(
     result = report(client, {"answers": {**RIGHT, "table": {"rows": rows}}})
     cell = result["parts"][0]["rows"][1]["cells"][0]
     assert (cell["label"], cell["verdict"]) == ("a", "incorrect")
-    assert (cell["feedback"][0]["row"], cell["feedback"][0]["cell"]) == ("2", "a")
+    assert [message["code"] for message in cell["feedback"]] == ["value"]
     assert result["score"] < 1
     assert "null" not in post(client, {"answers": RIGHT}).text
 
@@ -76,17 +81,57 @@ def test_the_angle_unit_is_heeded(client: httpx.Client) -> None:
 def test_the_feedback_level_is_heeded(client: httpx.Client) -> None:
     rows = [*TABLE[:1], {**TABLE[1], "a": "-l1"}, *TABLE[2:]]
     answers = {"table": {"rows": rows}}
-    full, verdicts, score = (
+    hints, verdicts, score = (
         report(client, {"answers": answers, "feedback": level})["parts"][0]
-        for level in ("full", "verdicts", "score")
+        for level in ("hints", "verdicts", "score")
     )
-    long, short = (
-        part["rows"][1]["cells"][0]["feedback"][0]["message"] for part in (full, verdicts)
-    )
-    assert long.startswith(short)
-    assert len(long) > len(short)
+    wrong = hints["rows"][1]["cells"][0]
+    assert [message["code"] for message in wrong["feedback"]] == ["sign"]
+    assert verdicts["rows"][1]["cells"][0] == {**wrong, "feedback": []}
     assert score["rows"] == []
-    assert score["points"] == full["points"]
+    assert score["points"] == hints["points"]
+
+
+@pytest.mark.parametrize("asked", ["full", None])
+def test_no_caller_gets_more_than_the_exercise_allows(
+    client: httpx.Client, asked: str | None
+) -> None:
+    rows = [*TABLE[:1], {**TABLE[1], "a": "-l1"}, *TABLE[2:]]
+    result = report(client, {"answers": {"table": {"rows": rows}}, "feedback": asked})
+    assert result["feedback"] == "hints"
+    assert "correction" not in json.dumps(result)
+
+
+@pytest.mark.parametrize(
+    ("exercise", "service", "asked", "told"),
+    [
+        ("full", "full", None, "full"),
+        ("full", "full", "hints", "hints"),
+        ("full", "verdicts", None, "verdicts"),
+        ("full", "verdicts", "full", "verdicts"),
+        ("verdicts", "full", "full", "verdicts"),
+        ("verdicts", "score", "hints", "score"),
+        ("score", "full", "hints", "score"),
+    ],
+)
+def test_the_least_of_what_is_asked_and_allowed_is_told(
+    exercise: str, service: str, asked: str | None, told: str,
+    catalogue: Mapping[str, Exercise], client_of: Callable[[FastAPI], httpx.Client],
+) -> None:  # fmt: skip
+    allowed = replace(catalogue["planar-rrr"], feedback=FeedbackLevel(exercise))
+    app = application({"planar-rrr": allowed}, feedback=FeedbackLevel(service))
+    with client_of(app) as client:
+        ceiling = client.get("/v1/exercises/planar-rrr").json()["feedback"]
+        assert ceiling == least(FeedbackLevel(exercise), FeedbackLevel(service))
+        assert report(client, {"answers": RIGHT, "feedback": asked})["feedback"] == told
+
+
+def test_echo_tells_how_each_cell_was_read(client: httpx.Client) -> None:
+    answers = {"table": {"rows": [{**TABLE[0], "theta": "θ_1"}, *TABLE[1:]]}}
+    result = report(client, {"answers": answers, "echo": True})
+    read = [cell["read"] for cell in result["parts"][0]["rows"][0]["cells"]]
+    assert read[3] == {"text": "q1", "latex": "q_{1}"}
+    assert '"read"' not in json.dumps(report(client, {"answers": answers}))
 
 
 def test_nothing_handed_in_is_not_gradable(client: httpx.Client) -> None:
@@ -102,7 +147,7 @@ def test_nothing_handed_in_is_not_gradable(client: httpx.Client) -> None:
         "q1" * 249, "9^9^9^9^9",
     ],
 )  # fmt: skip
-@pytest.mark.parametrize("level", ["full", "verdicts", "score"])
+@pytest.mark.parametrize("level", ["full", "hints", "verdicts", "score"])
 def test_no_cell_fails_the_request_or_the_rest(
     client: httpx.Client, cell: object, level: str
 ) -> None:

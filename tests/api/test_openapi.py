@@ -59,7 +59,7 @@ def test_every_refusal_is_documented_as_a_problem(document: dict[str, Any]) -> N
 def test_every_reference_in_the_document_leads_somewhere(document: dict[str, Any]) -> None:
     text = json.dumps(document)
     names = {part.split('"')[0] for part in text.split('"#/components/schemas/')[1:]}
-    assert {"Report", "PartReport", "ProblemDocument", "Reason"} <= names
+    assert {"Report", "PartReport", "Correction", "Place", "ProblemDocument", "Reason"} <= names
     assert names <= set(document["components"]["schemas"])
 
 
@@ -67,5 +67,5 @@ def test_the_request_is_described_field_by_field(document: dict[str, Any]) -> No
     operation = document["paths"][ROUTES["grade"]]["post"]
     schema = operation["requestBody"]["content"]["application/json"]["schema"]
     assert schema["required"] == ["answers"]
-    assert set(schema["properties"]) == {"answers", "angle_unit", "feedback"}
+    assert set(schema["properties"]) == {"answers", "angle_unit", "feedback", "echo"}
     assert all(field["description"] for field in schema["properties"].values())

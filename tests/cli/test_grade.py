@@ -127,8 +127,14 @@ def test_the_feedback_level_comes_from_the_command_or_else_from_the_file(
     full = {"answers": {"table": HALF}}
     short = save(full | {"feedback": "score"}, "short.json")
     assert "row" not in table_only(run, short).stdout
-    assert "row 3 a" in table_only(run, short, "--feedback", "full").stdout
+    assert "rows 3, e a" in table_only(run, short, "--feedback", "full").stdout
     assert "row" not in table_only(run, save(full), "--feedback", "score").stdout
+
+
+def test_echo_shows_how_each_cell_was_read(run: Run, save: Save) -> None:
+    answer = save({"answers": {"table": HALF}})
+    assert "read  a" in table_only(run, answer, "--echo").stdout
+    assert "read  a" not in table_only(run, answer).stdout
 
 
 @pytest.mark.parametrize("output_format", ["text", "json"])

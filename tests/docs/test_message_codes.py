@@ -171,11 +171,12 @@ def test_a_line_of_the_page_without_its_example() -> None:
 
 def codes_of(exercise: Exercise, part_id: str, answer: object) -> tuple[set[str], set[str]]:
     """The codes that an answer draws, at the level full and at the level score."""
-    full, verdicts, score = (
+    full, hints, verdicts, score = (
         all_codes(part(handed_in(exercise, {part_id: answer}, feedback=level), part_id))
-        for level in (FeedbackLevel.FULL, FeedbackLevel.VERDICTS, FeedbackLevel.SCORE)
+        for level in FeedbackLevel
     )
-    assert full == verdicts
+    assert full == hints
+    assert verdicts == score
     return full, score
 
 

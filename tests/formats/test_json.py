@@ -9,8 +9,11 @@ from service.formats import FORMATS, GradedFile
 from service.formats.json import rendered
 from service.grading import (
     CellReport,
+    Correction,
     Feedback,
+    FeedbackLevel,
     PartReport,
+    Place,
     Report,
     RowReport,
     Severity,
@@ -18,12 +21,18 @@ from service.grading import (
 )
 
 MESSAGE = Feedback(
-    "sign", Severity.ERROR, "Vorzeichen: −θ₁", "1", None, (0, 2), {"q1": 0.5, "w": "x"}
+    "sign",
+    Severity.ERROR,
+    "Vorzeichen: −θ₁",
+    places=(Place("1"),),
+    span=(0, 2),
+    correction=Correction("q1", "q_{1}"),
+    values={"q1": 0.5, "w": "x"},
 )
 CELL = CellReport("a", Verdict.INCORRECT, (MESSAGE,))
 ROW = RowReport("1", Verdict.INCORRECT, 0.0, 1.0, (CELL,))
 PART = PartReport("table", "dh_table", Verdict.INCORRECT, 0.0, 1.0, False, (ROW,))
-REPORT = Report("arm", "v1", True, 0.0, 1.0, 0.0, (PART,))
+REPORT = Report("arm", "v1", "1.0", FeedbackLevel.HINTS, True, 0.0, 1.0, 0.0, (PART,))
 
 
 def test_the_report_has_the_shape_of_the_contract_without_empty_fields() -> None:
@@ -35,8 +44,9 @@ def test_the_report_has_the_shape_of_the_contract_without_empty_fields() -> None
                 "code": "sign",
                 "severity": "error",
                 "message": "Vorzeichen: −θ₁",
-                "row": "1",
+                "places": [{"row": "1"}],
                 "span": [0, 2],
+                "correction": {"text": "q1", "latex": "q_{1}"},
                 "values": {"q1": 0.5, "w": "x"},
             }
         ],
@@ -50,8 +60,8 @@ def test_the_report_has_the_shape_of_the_contract_without_empty_fields() -> None
         "max_points": 1.0, "follow_through": False, "rows": [row], "feedback": [],
     }  # fmt: skip
     expected = {
-        "exercise": "arm", "version": "v1", "gradable": True, "points": 0.0,
-        "max_points": 1.0, "score": 0.0, "parts": [part],
+        "exercise": "arm", "version": "v1", "grader": "1.0", "feedback": "hints",
+        "gradable": True, "points": 0.0, "max_points": 1.0, "score": 0.0, "parts": [part],
     }  # fmt: skip
     assert json.loads(rendered(REPORT)) == expected
     assert json.loads(rendered(REPORT, indent=2)) == expected
@@ -61,7 +71,8 @@ def test_the_report_has_the_shape_of_the_contract_without_empty_fields() -> None
 def test_a_value_that_json_does_not_have_is_still_json() -> None:
     undefined = Feedback("u", Severity.ERROR, "m", values={"yours": float("nan")})
     part = PartReport("t", "k", Verdict.INCORRECT, 0, 1, False, (), (undefined,))
-    content = rendered(Report("arm", "v1", True, 0, 1, 0, (part,)))
+    report = Report("arm", "v1", "1.0", FeedbackLevel.HINTS, True, 0, 1, 0, (part,))
+    content = rendered(report)
     assert b"NaN" not in content
     json.loads(content, parse_constant=pytest.fail)
 

@@ -8,8 +8,12 @@ from rich.console import Console
 from service.formats.text import points, visible, write
 from service.grading import (
     CellReport,
+    Correction,
     Feedback,
+    FeedbackLevel,
     PartReport,
+    Place,
+    ReadEntry,
     Report,
     RowReport,
     Severity,
@@ -18,14 +22,18 @@ from service.grading import (
 
 V = Verdict
 WRONG_TWIST = Feedback(
-    "sign", Severity.ERROR, "Wrong sign.", "1", "alpha", None, {"q1": 0.5, "yours": 2.0}
+    "sign",
+    Severity.ERROR,
+    "Wrong sign.",
+    correction=Correction("-90°", r"-90^{\circ}"),
+    values={"q1": 0.5, "yours": 2.0, "expected": -2.0},
 )
-EMPTY = tuple(Feedback("missing", Severity.ERROR, "Nothing here.", "2", c) for c in ("a", "alpha"))
-ROUNDED = Feedback("rounded", Severity.INFO, "Rounded.", "1", "d")
+ROUNDED = Feedback("rounded", Severity.INFO, "Rounded.")
+EMPTY = Feedback("missing", Severity.ERROR, "Nothing here.", (Place("2", "a"), Place("2", "alpha")))
 
 
 def report(*parts: PartReport, gradable: bool = True) -> Report:
-    return Report("arm", "v1", gradable, 2.5, 8.0, 0.3125, parts)
+    return Report("arm", "v1", "1.0", FeedbackLevel.FULL, gradable, 2.5, 8.0, 0.3125, parts)
 
 
 def part(*rows: RowReport, feedback: tuple[Feedback, ...] = ()) -> PartReport:
@@ -45,10 +53,11 @@ TABLE = part(
     RowReport(
         "2", V.MISSING, 0.0, 2.0,
         (
-            CellReport("a", V.MISSING, EMPTY[:1]), CellReport("alpha", V.MISSING, EMPTY[1:]),
+            CellReport("a", V.MISSING), CellReport("alpha", V.MISSING),
             CellReport("d", V.CORRECT), CellReport("theta", V.CORRECT),
         ),
     ),
+    feedback=(EMPTY,),
 )  # fmt: skip
 
 
@@ -87,22 +96,59 @@ def test_each_row_is_a_line_of_marks_with_its_points() -> None:
 def test_messages_stand_beneath_with_their_place_and_counterexample() -> None:
     page = text(report(TABLE))
     assert line(page, "✗ row 1 alpha:").strip() == (
-        "✗ row 1 alpha: Wrong sign. (with q1 = 0.5, yours gives 2.0)"
+        "✗ row 1 alpha: Wrong sign. It should be -90°. (with q1 = 0.5, yours gives 2.0,"
     )
     assert line(page, "info row 1 d:").strip() == "info row 1 d: Rounded."
+    assert "not -2.0)" in page
     assert page.index("2    –") < page.index("Wrong sign.")
 
 
-def test_a_message_said_twice_is_written_once_with_both_places() -> None:
+def test_a_message_has_the_mark_and_the_names_of_its_places() -> None:
     assert line(text(report(TABLE)), "– row 2").strip() == "– row 2 a, alpha: Nothing here."
 
 
-def test_matrix_entries_are_called_columns() -> None:
-    entries = tuple(Feedback("x", Severity.ERROR, "Bad.", "3", str(j)) for j in (1, 4))
-    matrix = part(
-        RowReport("3", V.PARTIAL, 0, 1, (CellReport("1", V.INCORRECT, entries),)),
+def said(*places: Place, correction: Correction | None = None) -> str:
+    """The line of a message with these places of a matrix of three rows."""
+    cells = tuple(CellReport(str(j), V.INCORRECT) for j in (1, 2, 3))
+    rows = [RowReport(label, V.INCORRECT, 0, 1, cells) for label in ("1", "2", "3")]
+    message = Feedback("x", Severity.ERROR, "Bad.", places, correction=correction)
+    return line(text(report(part(*rows, feedback=(message,)))), "✗ row").strip()
+
+
+def cells_of(row: str, *columns: int) -> list[Place]:
+    return [Place(row, str(j)) for j in columns]
+
+
+def test_places_in_few_words() -> None:
+    assert said(*cells_of("3", 1, 2)) == "✗ row 3 columns 1, 2: Bad."
+    assert said(*cells_of("1", 2), *cells_of("3", 2)) == "✗ rows 1, 3 column 2: Bad."
+    assert said(*cells_of("1", 1, 2, 3), *cells_of("2", 1, 2, 3)) == "✗ rows 1, 2: Bad."
+    assert said(*cells_of("1", 1, 2, 3), Place("2", "1")) == "✗ row 1; row 2 column 1: Bad."
+    assert said(Place("2")) == "✗ row 2: Bad."
+
+
+def test_a_correction_for_each_place() -> None:
+    one, other = Correction("1", "1"), Correction("0", "0")
+    places = [Place("1", "1", one), Place("2", "2", one), Place("3", "3", other)]
+    message = Feedback("x", Severity.ERROR, "Bad.", tuple(places))
+    page = " ".join(text(report(part(*TABLE.rows, feedback=(message,)))).split())
+    assert "Bad. row 1 column 1; row 2 column 2: It should be 1. row 3 column 3: It" in page
+    assert said(Place("1"), correction=Correction("Exchange a and d.")) == (
+        "✗ row 1: Bad. Exchange a and d."
     )
-    assert "row 3 columns 1, 4: Bad." in text(report(matrix))
+
+
+def test_a_repaired_text_is_offered_once() -> None:
+    for asked in ("Bad.", "Bad. Did you mean q1?"):
+        unread = Feedback("x", Severity.ERROR, asked, suggestion="q1")
+        assert text(report(part(feedback=(unread,)))).count("Did you mean q1?") == 1
+
+
+def test_entries_are_shown_as_they_were_read() -> None:
+    cells = (CellReport("a", V.CORRECT, read=ReadEntry("l1", "l_{1}")), CellReport("d", V.MISSING))
+    page = text(report(part(RowReport("1", V.PARTIAL, 1, 2, cells))))
+    assert line(page, "read").split() == ["read", "a", "d"]
+    assert line(page, "1     l1").split() == ["1", "l1"]
 
 
 def test_a_part_that_was_not_handed_in_says_so() -> None:
@@ -115,7 +161,7 @@ def test_a_part_that_was_not_handed_in_says_so() -> None:
 
 @pytest.mark.parametrize("width", [40, 80, 200])
 def test_no_line_is_wider_than_the_terminal_or_than_reads_well(width: int) -> None:
-    long = Feedback("x", Severity.ERROR, "A word and another. " * 20, "1", "a")
+    long = Feedback("x", Severity.ERROR, "A word and another. " * 20, (Place("1", "a"),))
     page = text(report(part(*TABLE.rows, feedback=(long,))), width=width)
     assert max(len(each) for each in page.splitlines()) <= min(width, 100)
 
@@ -131,7 +177,7 @@ def test_an_encoding_without_the_marks_gets_plain_ones() -> None:
 
 
 def test_student_text_reaches_neither_the_terminal_nor_the_markup() -> None:
-    hostile = Feedback("x", Severity.ERROR, "[red]\x1b[2J\x07[/red] \u202e\r", "1", "a", None)
+    hostile = Feedback("x", Severity.ERROR, "[red]\x1b[2J\x07[/red] \u202e\r")
     page = text(report(part(*TABLE.rows, feedback=(hostile,))))
     assert "[red]\ufffd[2J\ufffd[/red] \ufffd\ufffd" in page
     assert visible("θ₁ + 1") == "θ₁ + 1"
@@ -140,3 +186,8 @@ def test_student_text_reaches_neither_the_terminal_nor_the_markup() -> None:
 def test_points_are_written_short() -> None:
     assert points(1.5, 2.0) == "1.5 / 2"
     assert points(10 / 3, 10.0) == "3.33 / 10"
+
+
+def test_points_are_not_rounded_up_to_all_of_them() -> None:
+    assert points(7.999, 8.0) == "7.99 / 8"
+    assert points(8.0, 8.0) == "8 / 8"

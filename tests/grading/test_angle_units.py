@@ -10,6 +10,7 @@ from tests.grading.support.robots import EXACT, PLANAR_RRR, SPELLINGS, STANFORD
 from tests.grading.support.submitting import (
     cell,
     codes,
+    codes_at,
     full_marks,
     graded_pose,
     graded_table,
@@ -24,7 +25,7 @@ def test_bare_degrees_where_radians_are_set_are_named(catalogue: Mapping[str, Ex
     turned = {(label, "alpha") for label in ("1", "2", "4", "5")}
     assert not_correct(report) == dict.fromkeys(turned, Verdict.INCORRECT)
     for place in turned:
-        assert codes(cell(report, *place)) == ["degrees_as_radians"]
+        assert codes_at(report, *place) == ["degrees_as_radians"]
 
 
 def test_bare_radians_where_degrees_are_set_are_named(catalogue: Mapping[str, Exercise]) -> None:

@@ -12,7 +12,14 @@ from sympy import Matrix
 from service.catalogue import Exercise
 from service.grading import FeedbackLevel, PartReport, Severity, Verdict
 from tests.grading.support.robots import PLANAR_RRR, SCARA, STANFORD, Robot
-from tests.grading.support.submitting import codes, full_marks, graded_pose, handed_in, part
+from tests.grading.support.submitting import (
+    codes,
+    codes_at,
+    full_marks,
+    graded_pose,
+    handed_in,
+    part,
+)
 
 
 def turn_z(angle: sp.Expr) -> Matrix:
@@ -272,8 +279,13 @@ def test_a_misconception_explains_its_matrix(slip: Slip, catalogue: Mapping[str,
     report = graded_pose(catalogue[robot.exercise], text(matrix))
     assert [message.code for message in report.feedback] == expected
     assert all(message.severity is Severity.ERROR for message in report.feedback)
-    assert words in " ".join(message.message for message in report.feedback)
+    told = [(message.message, message.correction) for message in report.feedback]
+    assert words in " ".join(f"{hint} {better.text if better else ''}" for hint, better in told)
     wrong = wrong_entries(report)
+    places = {
+        (int(p.row) - 1, int(p.cell or 0) - 1) for m in report.feedback for p in m.places or ()
+    }
+    assert places == wrong
     assert wrong
     assert wrong <= explained
     assert all(not codes(report.rows[i].cells[j]) for i, j in wrong)
@@ -291,9 +303,11 @@ def test_a_correct_matrix_draws_nothing(robot: Robot, catalogue: Mapping[str, Ex
 def test_the_correction_is_kept_back(catalogue: Mapping[str, Exercise]) -> None:
     answers = {"pose": text(product(STANFORD_LINKS[::-1]))}
     exercise = catalogue[STANFORD.exercise]
-    [told] = part(handed_in(exercise, answers, feedback=FeedbackLevel.VERDICTS), "pose").feedback
+    [told] = part(handed_in(exercise, answers, feedback=FeedbackLevel.HINTS), "pose").feedback
     assert "Multiply" not in told.message
-    assert part(handed_in(exercise, answers, feedback=FeedbackLevel.SCORE), "pose").feedback == ()
+    assert told.correction is None
+    for level in (FeedbackLevel.VERDICTS, FeedbackLevel.SCORE):
+        assert part(handed_in(exercise, answers, feedback=level), "pose").feedback == ()
 
 
 def test_a_frame_of_the_other_convention_is_named_so(catalogue: Mapping[str, Exercise]) -> None:
@@ -350,19 +364,20 @@ def test_what_is_wrong_in_places_is_said_there(
 ) -> None:
     robot, entries, of_part, of_entries = case
     report = graded_pose(catalogue[robot.exercise], changed(product(links(robot)), entries))
-    assert [message.code for message in report.feedback] == of_part
+    found = [m.code for m in report.feedback if m.severity is not Severity.ERROR]
+    assert found == of_part
     wrong = sorted(wrong_entries(report))
-    assert [codes(report.rows[i].cells[j]) for i, j in wrong] == [[code] for code in of_entries]
-    assert not any(message.severity is Severity.ERROR for message in report.feedback)
+    said = [codes_at(report, str(i + 1), str(j + 1)) for i, j in wrong]
+    assert [codes[-1:] for codes in said] == [[code] for code in of_entries]
 
 
 def test_a_rotation_says_which_column_to_check(catalogue: Mapping[str, Exercise]) -> None:
     pose = changed(SCARA_POSE, {(0, 0): "c1"})
-    [message] = graded_pose(catalogue[SCARA.exercise], pose).feedback
+    message = graded_pose(catalogue[SCARA.exercise], pose).feedback[0]
     assert message.severity is Severity.HINT
-    assert "the length of column 1 is not 1" in message.message
+    assert "column 1 is no unit vector" in message.message
     skewed = changed(SCARA_POSE, {(0, 1): "c1", (1, 1): "s1"})
-    [message] = graded_pose(catalogue[SCARA.exercise], skewed).feedback
+    message = graded_pose(catalogue[SCARA.exercise], skewed).feedback[0]
     assert "columns 1 and 2 are not at right angles" in message.message
 
 
@@ -383,7 +398,7 @@ def test_the_work_budget_ends(catalogue: Mapping[str, Exercise]) -> None:
     for long, code in (("c1", "term_sign"), (nonsense, "value")):
         early = {(i, j): long for i in range(2) for j in range(4)}
         report = graded_pose(exercise, changed(SCARA_POSE, early | late))
-        assert codes(report.rows[2].cells[3]) == [code]
+        assert codes_at(report, "3", "4")[-1:] == [code]
 
 
 def test_without_position_the_rotation_is_still_explained(

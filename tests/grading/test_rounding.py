@@ -122,4 +122,4 @@ def test_the_note_costs_nothing_and_says_what_to_write(arm: Exercise) -> None:
     assert (report.verdict, report.points) == (Verdict.CORRECT, report.max_points)
     [note] = cell(report, "2", "alpha").feedback
     assert note.severity is Severity.INFO
-    assert "pi" in note.message
+    assert "write the number exactly" in note.message

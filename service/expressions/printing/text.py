@@ -1,37 +1,41 @@
 """A tree -> normal text, which reads back to the same tree."""
 
 from service.expressions.printing.brackets import ATOM, POWER, PRODUCT, needs_brackets
+from service.expressions.printing.spelling import PLAIN, Spelling
 from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
 
 
-def to_text(node: Node) -> str:
-    """``node`` in normal text: canonical names, every product written."""
+def to_text(node: Node, spelling: Spelling = PLAIN) -> str:
+    """``node`` in normal text with every product written: in canonical names, or as spelled."""
     match node:
         case Number(literal=literal):
             return literal
         case Pi():
-            return "pi"
+            return spelling.pi
         case SymbolNode(symbol):
-            return symbol.name
+            return spelling.name(symbol)
         case Call(function, arguments):
-            return f"{function}({', '.join(map(to_text, arguments))})"
+            inside = ", ".join(to_text(argument, spelling) for argument in arguments)
+            return spelling.in_shorthand(node) or f"{function}({inside})"
         case Unit(operand, unit):
+            sign = spelling.degree if unit == "deg" else unit
             # A name and its unit would run together into one word.
-            gap = " " if isinstance(operand, Pi | SymbolNode) else ""
-            return f"{_at(operand, ATOM)}{gap}{unit}"
+            gap = " " if sign.isalpha() and isinstance(operand, Pi | SymbolNode) else ""
+            return f"{_at(operand, ATOM, spelling)}{gap}{sign}"
         case Negation(operand):
-            return f"-{_at(operand, POWER)}"
+            return f"-{_at(operand, POWER, spelling)}"
         case Binary("^", base, exponent):
             sign = "-" if type(exponent) is Negation else ""
             inner = exponent.operand if isinstance(exponent, Negation) else exponent
-            return f"{_at(base, ATOM)}^{sign}{_at(inner, ATOM)}"
+            return f"{_at(base, ATOM, spelling)}^{sign}{_at(inner, ATOM, spelling)}"
         case Binary("+" | "-" as operator, left, right):
-            return f"{to_text(left)} {operator} {_at(right, PRODUCT)}"
+            return f"{to_text(left, spelling)} {operator} {_at(right, PRODUCT, spelling)}"
         case Binary(operator, left, right):
-            return f"{_at(left, PRODUCT, first=True)}{operator}{_at(right, POWER)}"
+            first = _at(left, PRODUCT, spelling, first=True)
+            return f"{first}{operator}{_at(right, POWER, spelling)}"
 
 
-def _at(node: Node, place: int, *, first: bool = False) -> str:
-    text = to_text(node)
+def _at(node: Node, place: int, spelling: Spelling, *, first: bool = False) -> str:
+    text = to_text(node, spelling)
     signed = not first and text[0] == "-"
     return f"({text})" if needs_brackets(node, place, signed=signed, drawn=False) else text

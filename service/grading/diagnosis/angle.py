@@ -20,11 +20,10 @@ WRONG_SIGN = (
     "The sign of this angle is wrong: it counts positive by the right-hand rule about its axis."
 )
 FITS_IN_DEGREES = (
-    "This angle was read in radians, but it fits in degrees: write the unit (90deg or 90°), or "
-    "write it with pi."
+    "This angle was read in radians, but it fits in degrees: write the unit behind it (deg or °)."
 )
 FITS_IN_RADIANS = (
-    "This angle was read in degrees, but it fits in radians: write it with pi, or in degrees."
+    "This angle was read in degrees, but it fits in radians: write the unit behind it (rad)."
 )
 ARGUMENTS_SWAPPED = (
     "The arguments of atan2 seem to be exchanged: atan2(y, x) takes the sine's part first, then "
@@ -65,8 +64,8 @@ def half_turn(case: WrongValue) -> Hypotheses:
     finding = finding_on(
         case,
         "half_turn",
-        "This angle is off by half a turn (180°): the direction that it is measured to is the "
-        "opposite one.",
+        "This angle is not right: check which way the direction points that it is measured to.",
+        otherwise="It is off by half a turn (180°).",
     )
     yield Written(case.expected + np.pi, finding, tolerance=ROUNDED_VALUE)
 
@@ -90,7 +89,12 @@ def has_arctangent(tree: Node) -> bool:
 
 def quarter_turn(case: WrongValue) -> Hypotheses:
     """A turn by 90° was left out or added."""
-    finding = finding_on(case, "quarter_turn", "This angle is off by a quarter turn (90°).")
+    finding = finding_on(
+        case,
+        "quarter_turn",
+        "This angle is not right: check which directions it is measured between.",
+        otherwise="It is off by a quarter turn (90°).",
+    )
     error = difference(case.actual, case.expected, angle=True)
     yield Written(case.expected + np.copysign(np.pi / 2, error), finding, tolerance=ROUNDED_VALUE)
 

@@ -113,5 +113,8 @@ def has_a_row(convention: Convention) -> Finding:
     """The finding on the answer "none" where the transform has a row."""
     x, z = axes_named(convention)
     return Finding(
-        "dh_row_exists", f"This transform has a row: {x} is perpendicular to {z} and meets it."
+        "dh_row_exists",
+        f"Check both DH conditions: is {x} perpendicular to {z}, and does the line of {x} meet the "
+        f"line of {z}?",
+        "Both hold, so that there is a row.",
     )

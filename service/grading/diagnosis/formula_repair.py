@@ -10,10 +10,10 @@ import numpy as np
 from service.expressions import Symbol
 from service.expressions.evaluation.point import Known, known_values, value_at
 from service.expressions.evaluation.samples import compile_tree
-from service.expressions.printing.text import to_text
 from service.expressions.tree import Call, Node
 from service.grading.diagnosis.formula_rewriting import is_sine_or_cosine, negated, nodes
 from service.grading.diagnosis.wrong_value import WrongValue
+from service.grading.formula_text import spelled
 from service.grading.misconception import AnyHypothesis, Repaired
 from service.grading.tolerances import EXACT_VALUE, ROUNDED_VALUE
 from service.kinematics.transforms import Numbers
@@ -29,13 +29,13 @@ class Rewritten(Repaired[Node]):
     """The student's formula without the misconception.
 
     It explains the entry if it is right, or right but for its sign unless ``signed``. The sign and
-    the correction, where it has none, are added to the finding.
+    the correction are added to the finding.
     """
 
     signed: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class WrongEntry(WrongValue):
     """A wrong entry of a matrix or a list. ``turning`` are the turning joints by their number."""
 
@@ -67,7 +67,7 @@ class WrongEntry(WrongValue):
             if not isinstance(hypothesis, Rewritten):
                 yield from super().explained_by((hypothesis,))
             elif (sign := self._sign(hypothesis)) is not None:
-                yield _completed(hypothesis, sign)
+                yield self._completed(hypothesis, sign)
 
     def _sign(self, rewritten: Rewritten) -> int | None:
         """The sign with which the formula is right; None where it is right with neither.
@@ -108,11 +108,11 @@ class WrongEntry(WrongValue):
         with np.errstate(all="ignore"):
             return np.asarray(program(self.samples.values, {}))
 
-
-def _completed(rewritten: Any, sign: int) -> Any:
-    [finding] = rewritten.findings
-    hint = finding.hint if sign > 0 else f"{finding.hint} Its sign is wrong, too."
-    text = to_text(rewritten.answer if sign > 0 else negated(rewritten.answer))
-    formula = f"It should be {text}." if len(text) <= MAX_TEXT else ""
-    correction = finding.correction or formula
-    return replace(rewritten, finding=replace(finding, hint=hint, correction=correction))
+    def _completed(self, rewritten: Any, sign: int) -> Any:
+        [finding] = rewritten.findings
+        hint = finding.hint if sign > 0 else f"{finding.hint} The sign is wrong, too."
+        tree = rewritten.answer if sign > 0 else negated(rewritten.answer)
+        correction = spelled(tree, self.spelling) if self.corrects else None
+        if correction is None or len(correction.text) > MAX_TEXT:
+            return replace(rewritten, finding=replace(finding, hint=hint))
+        return replace(rewritten, finding=replace(finding, hint=hint, correction=correction))

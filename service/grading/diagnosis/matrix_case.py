@@ -54,14 +54,10 @@ class MatrixCase(WrongNumbers):
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """What is wrong with many entries at once, and which entries that explains.
-
-    ``row`` is the label of the row that it is about, if it is about one.
-    """
+    """What is wrong with many entries at once, and which entries that explains."""
 
     finding: Finding
     entries: Mask
-    row: str | None = None
 
 
 def as_explanations(case: MatrixCase, found: Hypothesis[Numbers] | None) -> list[Explanation]:

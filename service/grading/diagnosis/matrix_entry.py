@@ -1,10 +1,8 @@
 """Slips in a single matrix entry."""
 
 from collections.abc import Iterator, Mapping
-from functools import partial
 
 from service.expressions.parsing.degrees import in_degrees
-from service.expressions.printing.text import to_text
 from service.expressions.tree import Node, Number, Unit, children
 from service.grading.diagnosis import formula_rewriting as rewriting
 from service.grading.diagnosis.formula_repair import Rewritten, WrongEntry
@@ -26,7 +24,7 @@ Formulas = Iterator[Rewritten]
 
 def sign(case: WrongEntry) -> Iterator[Written[Numbers]]:
     """The size is right, the direction is not."""
-    yield Written(-case.expected, finding_on(case, "sign", "The sign of this entry is wrong."))
+    yield Written(-case.expected, finding_on(case, "sign", "The sign is wrong."))
 
 
 def degrees_as_radians(case: WrongEntry) -> Formulas:
@@ -34,7 +32,7 @@ def degrees_as_radians(case: WrongEntry) -> Formulas:
     finding = Finding(
         "degrees_as_radians",
         "A number in a sine or cosine was read in radians, but it fits in degrees: write the unit "
-        "(90deg or 90°), or write it with pi.",
+        "behind it (deg or °).",
     )
     if any(map(_has_bare_number, case.sines_and_cosines)):
         yield Rewritten(in_degrees(case.tree, is_angle=False, notes=[]), finding)
@@ -51,8 +49,8 @@ def radians_as_degrees(case: WrongEntry) -> Formulas:
     """A number in radians was written in a sine or cosine where degrees are read."""
     finding = Finding(
         "radians_as_degrees",
-        "A number in a sine or cosine was read in degrees, but it fits in radians: write it with "
-        "pi, or in degrees.",
+        "A number in a sine or cosine was read in degrees, but it fits in radians: write the unit "
+        "behind it (rad).",
     )
     yield Rewritten(rewriting.everywhere(case.tree, rewriting.without_degrees), finding)
 
@@ -61,19 +59,12 @@ def sine_for_cosine(case: WrongEntry) -> Formulas:
     """Sine was taken for cosine, or cosine for sine: throughout, or in one place."""
     count = len(case.sines_and_cosines)
     if count > 0:
-        finding = Finding("sine_for_cosine", "Sine and cosine are exchanged in this entry.")
+        finding = Finding("sine_for_cosine", "Sine and cosine are exchanged.")
         yield Rewritten(rewriting.at_sines_and_cosines(case.tree, rewriting.exchanged), finding)
     if count > 1:
-        for tree, place in rewriting.one_place(case.tree, rewriting.exchanged):
-            yield Rewritten(tree, partial(_exchanged_at, place))
-
-
-def _exchanged_at(place: Node) -> Finding:
-    return Finding(
-        "sine_for_cosine",
-        "Sine and cosine are exchanged in one place of this entry.",
-        f"{to_text(place)} should be {to_text(rewriting.exchanged(place))}.",
-    )
+        in_one_place = Finding("sine_for_cosine", "Sine and cosine are exchanged in one place.")
+        for tree, _ in rewriting.one_place(case.tree, rewriting.exchanged):
+            yield Rewritten(tree, in_one_place)
 
 
 def sum_of_cosines(case: WrongEntry) -> Formulas:
@@ -91,8 +82,8 @@ def product_for_sum_angle(case: WrongEntry) -> Formulas:
     """The shorthand c12 was read as c1 c2, s12 as s1 s2, in all places or for some joints."""
     finding = Finding(
         "product_for_sum_angle",
-        "The shorthand c12 is the cosine of the sum, cos(θ1 + θ2), and not the product of two "
-        "cosines; s12 likewise.",
+        "The shorthand with several joint numbers is the cosine or sine of one angle, the sum of "
+        "the joint angles, and not a product of cosines or sines.",
     )
     if len(case.sines_and_cosines) > 1:
         yield Rewritten(rewriting.products_merged(case.tree), finding)
@@ -117,7 +108,7 @@ def relative_angle(case: WrongEntry) -> Formulas:
 
 def term_sign(case: WrongEntry) -> Formulas:
     """One term of a sum has the wrong sign."""
-    finding = Finding("term_sign", "One term in this entry has the wrong sign.")
+    finding = Finding("term_sign", "One term has the wrong sign.")
     for change in (rewriting.other_operator, rewriting.first_term_negated):
         for tree, _ in rewriting.one_place(case.tree, change):
             yield Rewritten(tree, finding, signed=True)
@@ -133,7 +124,7 @@ def diagnose(case: WrongEntry, *, take_apart: bool = True) -> Finding:
     """The finding on a wrong entry; its formula is rewritten only if ``take_apart`` allows."""
     misconceptions = MISCONCEPTIONS if take_apart and case.can_be_repaired else (sign,)
     return diagnosed(case, misconceptions, CHECKS) or differs(
-        case, "This entry is not right; work it out again from the factors."
+        case, "This is not right; work it out again from the factors."
     )
 
 

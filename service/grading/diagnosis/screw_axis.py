@@ -92,7 +92,7 @@ def sliding_as_turning(case: WrongScrew) -> Hypotheses:
     """The direction of a sliding joint was written in ω: infinite pitch is ω = 0."""
     finding = Finding(
         "infinite_pitch",
-        "This joint slides, so its pitch is infinite: nothing turns.",
+        "This joint slides, so its pitch is infinite: look which of ω and v holds its direction.",
         "ω is 0, and v is the unit vector of the direction.",
     )
     if not case.turns:
@@ -105,7 +105,7 @@ def turning_as_sliding(case: WrongScrew) -> Hypotheses:
     """The axis of a turning joint was written in v."""
     finding = Finding(
         "infinite_pitch",
-        "This joint turns, so its pitch is finite: with ω = 0 it would slide.",
+        "This joint turns, so its pitch is finite: look which of ω and v holds its direction.",
         "ω is the unit vector along the axis, and v = −ω × q.",
     )
     if case.turns:
@@ -149,9 +149,7 @@ def pitch(case: WrongScrew) -> Hypotheses:
     """The advance along the axis was left out, added, or is another."""
     if not case.turns:
         return
-    hint = "Of v the part along ω is not right: it is the pitch h times ω."
-    if np.abs(case.pitch).max() < EXACT_VALUE:
-        hint = "This axis has pitch 0, it only turns: v has no part along ω."
+    hint = "The part of v along ω is not right: it is the pitch h times ω."
     along = ((case.actual[3:] - case.moment) * case.direction).sum(axis=0)
     if np.abs(along - case.pitch).max() >= ROUNDED_VALUE * case.length_scale:
         velocity = case.moment + along * case.direction

@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from service.catalogue import Joint
+from service.expressions.printing.spelling import spelling_for
 from service.grading.comparison import Match
+from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import (
     Hypotheses,
     WrongCell,
@@ -14,7 +16,7 @@ from service.grading.diagnosis.wrong_value import (
     undefined,
 )
 from service.grading.feedback import Finding
-from service.grading.formula_text import sum_text
+from service.grading.formula_text import sum_formula
 from service.grading.joint_motion import coefficients
 from service.grading.judging.table import Judgement, column_scales
 from service.grading.misconception import Repaired, Written, diagnosed
@@ -37,12 +39,15 @@ def joint_variable_missing(case: WrongCell) -> Finding | None:
     """The table was taken to describe the drawn pose, so the joint variable was left out."""
     if case.joint is None or not case.required or case.contained != {}:
         return None
-    motion = "slides along z" if case.joint.prismatic else "turns about z"
     return finding_on(
         case,
         "joint_variable_missing",
-        f"Joint {case.joint.index} {motion}, so this cell must contain its variable.",
+        f"Joint {case.joint.index} {_motion(case.joint)}, so this cell must contain its variable.",
     )
+
+
+def _motion(joint: Joint) -> str:
+    return "slides along z" if joint.prismatic else "turns about z"
 
 
 def joint_variable_sign(case: WrongCell) -> Finding | None:
@@ -66,8 +71,8 @@ def joint_variable_index(case: WrongCell) -> Finding | None:
     return finding_on(
         case,
         "joint_variable_index",
-        f"This is the row of joint {case.joint.index}, but the cell contains {other.variable}, the "
-        f"variable of joint {other.index}.",
+        f"This is the row of joint {case.joint.index}, but the cell contains {case.name(other)}, "
+        f"the variable of joint {other.index}.",
     )
 
 
@@ -79,7 +84,8 @@ def joint_variable_doubled(case: WrongCell) -> Finding | None:
     return finding_on(
         case,
         "joint_variable_doubled",
-        f"{joint.variable} is contained {abs(count)} times; it belongs here once.",
+        f"The joint variable is contained more than once: the joint {_motion(joint)} by its "
+        f"variable, neither more nor less.",
     )
 
 
@@ -98,14 +104,13 @@ def joint_variable_column(case: WrongCell) -> Finding | None:
 
 def joint_variable_extra(case: WrongCell) -> Finding | None:
     """A joint variable was added that has nothing to do with this cell."""
-    extra = [joint.variable for joint in case.contained or () if joint not in case.required]
+    extra = [case.name(joint) for joint in case.contained or () if joint not in case.required]
     if not extra:
         return None
     return finding_on(
         case,
         "joint_variable_extra",
-        f"{' and '.join(extra)} must not be in this cell: it does not change {case.symbol} of this "
-        "row.",
+        f"The cell contains {listed(extra)}: check which cells of a table change with the joints.",
     )
 
 
@@ -139,8 +144,8 @@ def distance_extra(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         "distance_extra",
-        f"There is no distance {case.measured} here{_beside(case)}: look along which axis of which "
-        f"frame it is measured.",
+        f"Check the distance in {case.symbol}{_beside(case)}: look along which axis of which frame "
+        f"it is measured.",
     )
     yield Repaired(0 * case.actual, finding)
 
@@ -152,11 +157,11 @@ def _beside(case: WrongCell) -> str:
 def degrees_as_radians(case: WrongCell) -> Hypotheses:
     """A number in degrees was handed in where radians are read."""
     hint = (
-        "This number was read in radians, but it fits in degrees: write the unit (90deg or 90°), "
-        "or write it with pi."
+        "This number was read in radians, but it fits in degrees: write the unit behind it "
+        "(deg or °)."
     )
     in_degrees = np.radians(case.constants[0])
-    for value, also in ((-in_degrees, " Its sign is wrong, too."), (in_degrees, "")):
+    for value, also in ((-in_degrees, " The sign is wrong, too."), (in_degrees, "")):
         yield Repaired(value, finding_on(case, "degrees_as_radians", hint + also))
 
 
@@ -165,7 +170,7 @@ def radians_as_degrees(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         "radians_as_degrees",
-        "This number was read in degrees, but it fits in radians: write it with pi, or in degrees.",
+        "This number was read in degrees, but it fits in radians: write the unit behind it (rad).",
     )
     yield Repaired(np.degrees(case.constants[0]), finding)
 
@@ -175,8 +180,9 @@ def quarter_turn(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         "quarter_turn",
-        f"{case.symbol} is off by a quarter turn (90°): compare the two axes that it is measured "
-        f"between, in the home configuration.",
+        f"{case.symbol} is not right: compare the two axes that it is measured between, in the "
+        f"home configuration.",
+        otherwise="It is off by a quarter turn (90°).",
     )
     for turn in (np.pi / 2, -np.pi / 2):
         yield Written(case.constants[1] + turn, finding, tolerance=ROUNDED_TURN)
@@ -187,8 +193,8 @@ def half_turn(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         "half_turn",
-        f"{case.symbol} is off by half a turn (180°): check which way the axes point that it is "
-        f"measured between.",
+        f"{case.symbol} is not right: check which way the axes point that it is measured between.",
+        otherwise="It is off by half a turn (180°).",
     )
     yield Written(case.constants[1] + np.pi, finding, tolerance=ROUNDED_TURN)
 
@@ -223,7 +229,7 @@ def diagnose(case: WrongCell) -> Finding:
 def _too_large(case: WrongCell) -> str:
     if not case.angle or not case.same_motion or np.abs(case.constants[0]).max() < 3 * np.pi:
         return ""
-    return " Its number was read in radians: write the unit (90deg or 90°) if degrees were meant."
+    return " It was read in radians: write the unit behind it (deg or °) if degrees were meant."
 
 
 def _by_joint(counts: tuple[int, ...] | None, joints: tuple[Joint, ...]) -> dict[Joint, int] | None:
@@ -249,15 +255,25 @@ def diagnose_cells(judgement: Judgement, grading: Grading) -> dict[tuple[int, in
     values = np.array([actual for *_, actual, _ in written] + wanted)
     counts = coefficients(values, joints, samples, np.array(angles * 2))
     scales = column_scales(grading).tolist()
+    spelling = grading.spelling(
+        entry for judged in judgement.rows if judged.row for entry in judged.row.entries
+    )
     slips = {}
     for k, (i, column, judged, actual, expression) in enumerate(written):
         contained, required = counts[k], counts[len(written) + k]
+        correction = None
+        if grading.corrects:
+            beside = spelling_for(expression.typed, spelling)
+            exercise = grading.exercise
+            correction = sum_formula(wanted[k], required, angles[k], exercise, samples, beside)
         slips[i, column] = diagnose(
             WrongCell(
                 expression=expression,
                 actual=actual,
                 expected=wanted[k],
-                expected_text=sum_text(wanted[k], required, angles[k], grading.exercise, samples),
+                correction=correction,
+                corrects=grading.corrects,
+                spelling=spelling,
                 samples=samples,
                 scale=scales[column],
                 angle=angles[k],

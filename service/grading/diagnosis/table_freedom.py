@@ -96,8 +96,7 @@ def _shared_axes(written: _Arm, intended: _Arm, convention: Convention) -> tuple
 
 def _lost_rank(written: _Arm, intended: _Arm) -> tuple[Finding, ...]:
     """The finding on joints of which one can do nothing that the others cannot do as well."""
-    left, possible = rank(written.screws), rank(intended.screws)
-    if left >= possible:
+    if rank(written.screws) >= rank(intended.screws):
         return ()
     involved = dependent(written.screws)
     if not involved.any():
@@ -105,8 +104,8 @@ def _lost_rank(written: _Arm, intended: _Arm) -> tuple[Finding, ...]:
     names = [str(joint.index) for joint, yes in zip(written.joints, involved, strict=True) if yes]
     finding = Finding(
         "lost_freedom",
-        f"The axes of joints {listed(names)} lie so that the arm has only {left} degrees of "
-        f"freedom in place of {possible}: check a and α between these joints.",
+        f"The axes of joints {listed(names)} lie so that the arm has fewer degrees of freedom than "
+        f"the robot: check a and α between these joints.",
     )
     return (finding,)
 

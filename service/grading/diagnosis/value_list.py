@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from service.expressions.printing.spelling import PLAIN
 from service.grading.diagnosis.angle import diagnose_angle
 from service.grading.diagnosis.formula_repair import WrongEntry
 from service.grading.diagnosis.matrix_entry import diagnose
@@ -16,6 +17,7 @@ def slips_of(
 ) -> dict[tuple[int, int], Finding]:
     """The finding on each wrong value that was read, at (its place, 0)."""
     student, scales = compared.student, compared.scales(grading)
+    spelling = grading.spelling(student.entries) if wrong.any() and grading.corrects else PLAIN
     slips: dict[tuple[int, int], Finding] = {}
     for i in np.flatnonzero(wrong).tolist():
         if (expression := student.entries[i].expression) is None:
@@ -25,11 +27,13 @@ def slips_of(
             expression=expression,
             actual=student.values[i],
             expected=compared.expected[i],
-            expected_text=compared.texts[i],
             samples=grading.samples,
             scale=float(scales[i]),
             angle=angle,
+            correction=compared.corrections[i],
+            spelling=spelling,
             turning=grading.exercise.vocabulary.turning,
+            corrects=grading.corrects,
         )
         slips[i, 0] = diagnose_angle(case) if angle else diagnose(case)
     return slips

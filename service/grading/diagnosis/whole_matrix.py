@@ -167,8 +167,8 @@ def left_handed_rotation(rotation: Numbers) -> Finding | None:
         return None
     return Finding(
         "left_handed_rotation",
-        "The columns of the rotation form a left-handed frame (the determinant is −1): x × y must "
-        "be z.",
+        "The columns of the rotation form a left-handed frame (the determinant is negative): x × y "
+        "must be z.",
         severity=Severity.WARNING,
     )
 
@@ -192,7 +192,7 @@ def _fault(rotation: Numbers) -> str | None:
     wrong = np.abs(products - np.eye(3)).max(axis=0) > 4 * ROUNDED_VALUE
     for j in range(3):
         if wrong[j, j]:
-            return f"the length of column {j + 1} is not 1"
+            return f"column {j + 1} is no unit vector"
     for i, j in ((0, 1), (0, 2), (1, 2)):
         if wrong[i, j]:
             return f"columns {i + 1} and {j + 1} are not at right angles"
@@ -208,7 +208,7 @@ def explain(case: MatrixCase) -> list[Explanation]:
     if transposed is not None or not case.rigid:
         return as_explanations(case, transposed)
     bottom = bottom_row(case)
-    explained = [Explanation(bottom, case.mask(BOTTOM_ROW), row="4")] if bottom else []
+    explained = [Explanation(bottom, case.mask(BOTTOM_ROW))] if bottom else []
     if case.wrong[UPPER_ROWS].any():
         explained += as_explanations(case, explanation(case, OF_UPPER_ROWS)) or _of_blocks(case)
     return explained

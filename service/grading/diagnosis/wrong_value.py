@@ -1,5 +1,6 @@
 """A wrong value, a wrong table cell and a wrong array of numbers, with all that explains them."""
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,32 +11,43 @@ from numpy.typing import ArrayLike, NDArray
 
 from service.catalogue import Joint
 from service.expressions import Expression
-from service.grading.comparison import difference, nearly_equal, rounding_slack, same
+from service.expressions.printing.spelling import PLAIN, Spelling
+from service.grading.comparison import (
+    difference,
+    nearly_equal,
+    rounding_slack,
+    same,
+)
 from service.grading.diagnosis.wording import MEASURED, SYMBOLS
-from service.grading.feedback import Finding
+from service.grading.feedback import EXPECTED, YOURS, Finding
 from service.grading.misconception import AnyHypothesis, Hypothesis, Index, Repaired, Written
+from service.grading.report import Correction
 from service.grading.samples import Samples
+from service.grading.tolerances import PRINTED_NUMBER
 from service.kinematics.transforms import Numbers
 
 Mask = NDArray[np.bool_]
 Hypotheses = Iterator[Hypothesis[Numbers]]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class WrongValue:
     """A value that was handed in and is not the expected one.
 
-    ``actual`` and ``expected`` are ``(SAMPLES,)``, angles in radians. ``expected_text`` is the
-    right answer as the student would write it, or empty where it is not known as a formula.
+    ``actual`` and ``expected`` are ``(SAMPLES,)``, angles in radians. ``correction`` is the
+    right answer as the student would write it, None where it is not known as a formula or is not
+    told; ``corrects`` says that it is told. ``spelling`` is the student's.
     """
 
     expression: Expression
     actual: Numbers
     expected: Numbers
-    expected_text: str
     samples: Samples
     scale: float
     angle: bool
+    correction: Correction | None = None
+    corrects: bool = True
+    spelling: Spelling = PLAIN
 
     @property
     def constants(self) -> tuple[Numbers, Numbers]:
@@ -70,14 +82,18 @@ class WrongValue:
 
 
 def finding_on(
-    case: WrongValue, code: str, hint: str, values: dict[str, float | str] | None = None
+    case: WrongValue,
+    code: str,
+    hint: str,
+    values: dict[str, float | str] | None = None,
+    *,
+    otherwise: str = "",
 ) -> Finding:
-    """A finding with the correction of the wrong value."""
-    correction = f"It should be {case.expected_text}." if case.expected_text else ""
-    return Finding(code, hint, correction, values=values)
+    """A finding with the correction of the wrong value; ``otherwise`` where none is known."""
+    return Finding(code, hint, case.correction or otherwise, values=values)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class WrongCell(WrongValue):
     """A wrong table cell. ``joint`` is the row's joint, or None in a fixed row.
 
@@ -101,6 +117,10 @@ class WrongCell(WrongValue):
     def measured(self) -> str:
         """How that parameter is measured: along or about x or z."""
         return MEASURED[self.column]
+
+    def name(self, joint: Joint) -> str:
+        """The joint's variable as the student writes it."""
+        return self.spelling.names.get(joint.variable, joint.variable)
 
     @property
     def same_motion(self) -> bool:
@@ -182,5 +202,20 @@ def undefined(case: WrongValue) -> Finding | None:
 
 def differs(case: WrongValue, hint: str) -> Finding:
     """``hint`` and one counterexample, for a value that no known misconception explains."""
-    at = case.samples.at(0, case.expression.symbols)
-    return finding_on(case, UNEXPLAINED, hint, {**at, "yours": float(f"{case.actual[0]:.4g}")})
+    # A right number without its formula can be checked only with the values of all symbols.
+    alone = case.corrects and case.correction is None
+    symbols = case.samples.values.keys() if alone else case.expression.symbols
+    values: dict[str, float | str] = {
+        **case.samples.at(0, symbols),
+        YOURS: _number(case, case.actual),
+    }
+    if case.corrects:
+        values[EXPECTED] = _number(case, case.expected)
+    return finding_on(case, UNEXPLAINED, hint, values)
+
+
+def _number(case: WrongValue, values: Numbers) -> float:
+    """The first of the values, short enough to be read, and in degrees where the student is."""
+    in_degrees = case.angle and case.samples.in_degrees
+    number = math.degrees(values[0]) if in_degrees else float(values[0])
+    return 0.0 if abs(number) < PRINTED_NUMBER else float(f"{number:.4g}")

@@ -9,7 +9,6 @@ from service.expressions import Kind
 from service.grading.comparison import entry_matches
 from service.grading.reading.matrix import StudentMatrix
 from service.grading.samples import Samples
-from service.grading.tolerances import PRINTED_NUMBER
 from service.kinematics.transforms import Numbers
 
 
@@ -36,10 +35,3 @@ class ExpectedMatrix:
         """The Match of each entry, ``(rows, columns)``."""
         scale = self.scale(length_scale)
         return entry_matches(student.expressions, student.values, self.values, scale, samples)
-
-
-def constant_text(values: Numbers) -> str:
-    """An entry ``(SAMPLES,)`` that is a plain number everywhere, as text; empty where it varies."""
-    if np.ptp(values) > PRINTED_NUMBER:
-        return ""
-    return f"{values[0] + 0.0:.4g}"

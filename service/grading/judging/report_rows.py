@@ -11,7 +11,7 @@ from service.grading.feedback import ROUNDED, Finding
 from service.grading.part import Grading
 from service.grading.reading.entry import Entry
 from service.grading.reading.value_list import StudentValues
-from service.grading.report import CellReport, RowReport, Verdict, row_report
+from service.grading.report import CellReport, ReadEntry, RowReport, Verdict, row_report
 
 _EXACT = int(Match.EXACT)
 
@@ -38,10 +38,10 @@ def entry_rows(
         row_report(
             label,
             tuple(
-                cell_report(entry, (label, str(j + 1)), match, slips.get((i, j)), grading)
+                cell_report(entry, str(j + 1), match, slips.get((i, j)), grading)
                 for j, (entry, match) in enumerate(zip(row, found[i].tolist(), strict=True))
             ),
-            grading.visible((remarks[i],), label) if remarks and i in remarks else (),
+            grading.visible((remarks[i],)) if remarks and i in remarks else (),
         )
         for i, (label, row) in enumerate(zip(names, entries, strict=True))
     )
@@ -62,19 +62,25 @@ def _right(column: str) -> CellReport:
 
 
 def cell_report(
-    entry: Entry, place: tuple[str, str], match: int, slip: Finding | None, grading: Grading
+    entry: Entry, column: str, match: int, slip: Finding | None, grading: Grading
 ) -> CellReport:
-    """The report on an entry at its place, a row and a column.
+    """The report on an entry in its column.
 
     ``match`` is its Match. Of a wrong entry without a ``slip`` of its own, the part says why.
     """
-    row, column = place
     verdict, findings = entry.verdict, entry.findings
-    if match == _EXACT and not findings and entry.expression is not None:
+    if match == _EXACT and not findings and entry.expression is not None and not grading.echo:
         return _right(column)
     if match == Match.ROUNDED:
         findings = (*findings, ROUNDED)
     elif entry.expression is not None and match < Match.ROUNDED:
         verdict = Verdict.INCORRECT
         findings = (*findings, slip) if slip else findings
-    return CellReport(column, verdict, grading.visible(findings, row, column))
+    return CellReport(column, verdict, grading.visible(findings), _read(entry, grading))
+
+
+def _read(entry: Entry, grading: Grading) -> ReadEntry | None:
+    """The entry as it was understood, where that was asked for."""
+    if not grading.echo or entry.expression is None:
+        return None
+    return ReadEntry(entry.expression.text(), entry.expression.latex())

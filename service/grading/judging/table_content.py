@@ -6,9 +6,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from service.catalogue import Exercise, Joint
+from service.catalogue import Exercise, FeedbackLevel, Joint
 from service.catalogue.parts.dh_table import DhTableSpec
-from service.grading.feedback import FeedbackLevel
 from service.grading.judging.content import KnownCells, known_cells, of_rows
 from service.grading.judging.own_frames.best_roles import roles_in
 from service.grading.judging.own_frames.nearest_table import nearest_for_roles

@@ -7,8 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.grading.comparison import entry_matches
+from service.grading.formula_text import number_formula
 from service.grading.part import Grading
 from service.grading.reading.value_list import StudentValues
+from service.grading.report import Correction
 from service.kinematics.transforms import Numbers
 
 
@@ -16,12 +18,13 @@ from service.kinematics.transforms import Numbers
 class ComparedValues:
     """A list as read and the expected values, ``(n, SAMPLES)``.
 
-    ``texts`` are the expected values as formulas, each empty where it is not known as one.
+    ``corrections`` are the expected values as formulas, each None where it is not known as one;
+    only the diagnosis needs them.
     """
 
     student: StudentValues
     expected: Numbers
-    texts: Sequence[str]
+    corrections: Sequence[Correction | None] = ()
 
     def scales(self, grading: Grading) -> Numbers:
         """The size that each value is measured against, ``(n,)``."""
@@ -35,3 +38,8 @@ class ComparedValues:
         return entry_matches(
             student.expressions, student.values, self.expected, scales, grading.samples, angle
         )
+
+
+def number_corrections(expected: Numbers, grading: Grading) -> list[Correction | None]:
+    """The expected values ``(n, SAMPLES)`` as numbers; None where one varies or none are told."""
+    return [number_formula(each) if grading.corrects else None for each in expected]

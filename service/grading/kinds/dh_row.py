@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from service.catalogue.parts.dh_row import DhRowSpec
 from service.expressions import Expression
+from service.expressions.printing.spelling import Spelling, spelling_for
 from service.grading.comparison import Match, entry_matches
 from service.grading.diagnosis.dh_row import MISCONCEPTIONS, WrongRow, has_a_row, violated
 from service.grading.diagnosis.table_cell import diagnose
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, WrongCell
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
-from service.grading.formula_text import formula_text
+from service.grading.formula_text import value_formula
 from service.grading.judging.content import known_cells, of_one_row
 from service.grading.judging.expected import given_values
 from service.grading.judging.report_rows import cell_report
@@ -59,7 +60,7 @@ def judge(part: DhRowSpec, answer: RowOrNone, grading: Grading) -> Judged:
         expected = row(transform, part.convention)
         cells, findings = _against_the_row(answer, expected, transform, part, grading)
         known = known_cells(expected, 0.0, _scale(grading), IS_ANGLE[:, None])
-    messages = grading.visible(tuple(findings), LABEL)
+    messages = grading.visible(tuple(findings))
     return Judged((row_report(LABEL, cells, messages),), of_one_row(known))
 
 
@@ -68,7 +69,7 @@ def _cells(
 ) -> tuple[CellReport, ...]:
     """The four cells; ``found`` is the Match of each."""
     return tuple(
-        cell_report(written.entries[i], (LABEL, column), match, slips.get(i), grading)
+        cell_report(written.entries[i], column, match, slips.get(i), grading)
         for i, (column, match) in enumerate(zip(COLUMNS, found.tolist(), strict=True))
     )
 
@@ -85,8 +86,9 @@ def _against_the_row(
     if (found < Match.ROUNDED).any() and np.isfinite(written.values).all():
         case = WrongRow(written.values, expected, scale, transform, part.convention)
         explained = diagnosed(case, MISCONCEPTIONS)
+    spelling = grading.spelling(written.entries)
     slips = {
-        i: _slip(i, expression, written.values[i], expected[i], grading)
+        i: _slip(i, expression, written.values[i], expected[i], spelling, grading)
         for i in np.flatnonzero(found < Match.ROUNDED).tolist()
         if (expression := written.entries[i].expression) is not None
     }
@@ -101,16 +103,28 @@ def _scale(grading: Grading) -> Numbers:
 
 
 def _slip(
-    i: int, expression: Expression, actual: Numbers, expected: Numbers, grading: Grading
+    i: int,
+    expression: Expression,
+    actual: Numbers,
+    expected: Numbers,
+    spelling: Spelling,
+    grading: Grading,
 ) -> Finding:
     """The finding on a wrong cell."""
     angle = bool(IS_ANGLE[i])
+    correction = None
+    if grading.corrects:
+        beside = spelling_for(expression.typed, spelling)
+        exercise, samples = grading.exercise, grading.samples
+        correction = value_formula(expected, angle, exercise, samples, beside)
     return diagnose(
         WrongCell(
             expression=expression,
             actual=actual,
             expected=expected,
-            expected_text=formula_text(expected, angle, grading.exercise, grading.samples),
+            correction=correction,
+            corrects=grading.corrects,
+            spelling=spelling,
             samples=grading.samples,
             scale=1.0 if angle else grading.exercise.length_scale,
             angle=angle,

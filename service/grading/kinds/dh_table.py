@@ -11,14 +11,22 @@ from service.grading.feedback import Finding
 from service.grading.follow_through import stands_still
 from service.grading.judging.convention import judged_in_convention
 from service.grading.judging.own_frames.best_roles import roles_in, rows_of_mechanism
-from service.grading.judging.report_rows import cell_report
+from service.grading.judging.report_rows import Slips, cell_report
 from service.grading.judging.row_places import row_places
 from service.grading.judging.table import JudgedRow, Judgement
 from service.grading.judging.table_content import table_content, with_lazy_cells
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.column_headers import QUANTITIES
 from service.grading.reading.table import StudentRow, StudentTable, read_table
-from service.grading.report import CellReport, RowReport, Severity, Verdict, row_report
+from service.grading.report import (
+    CellReport,
+    Correction,
+    Place,
+    RowReport,
+    Severity,
+    Verdict,
+    row_report,
+)
 from service.grading.samples import Samples
 from service.kinematics.chain import COLUMNS, frames, links
 from service.kinematics.dh import Convention
@@ -86,19 +94,28 @@ def _judged(
     grading: Grading,
 ) -> Judged:
     judgement, found, lost = _of_the_whole(part, answer.rows, first, convention, grading)
-    messages = grading.visible((*answer.findings, *findings, *found, *lost, *judgement.findings))
+    slips = diagnose_cells(judgement, grading)
+    places = tuple(
+        Place(judgement.rows[i].label, COLUMNS[column], _formula(slip, grading))
+        for (i, column), slip in slips.items()
+    )
+    messages = (
+        *grading.visible((*answer.findings, *findings)),
+        *grading.visible(found, places),
+        *grading.visible((*lost, *judgement.findings)),
+    )
     missing = tuple(
         message
         for judged in judgement.rows
         if judged.row is None
-        for message in grading.visible((_missing(judged),), judged.label)
+        for message in grading.visible((_missing(judged),), (Place(judged.label),))
     )
     extra = grading.visible(tuple(_extra_row(i) for i in judgement.extra))
-    places = grading.visible(row_places(answer, judgement, convention, grading))
+    row_messages = grading.visible(row_places(answer, judgement, convention, grading))
     return Judged(
-        _row_reports(judgement, grading, found),
+        _row_reports(judgement, grading, {} if found else slips),
         table_content(part, judgement, convention, grading),
-        (*messages, *missing, *extra, *places),
+        (*messages, *missing, *extra, *row_messages),
         slips=judgement.slips,
         whole_cost=_cost_of(found) if found else None,
         stands_still=stands_still(answer.values, tuple(QUANTITIES.values()), grading),
@@ -151,16 +168,13 @@ def _cost_of(found: tuple[Finding, ...]) -> float:
     return sum(COSTS.get(finding.code, COST) for finding in found)
 
 
-def _row_reports(
-    judgement: Judgement, grading: Grading, of_the_whole: tuple[Finding, ...]
-) -> tuple[RowReport, ...]:
-    """The rows with their cells, which belong to the slip of the whole table if there is one."""
-    slips = diagnose_cells(judgement, grading)
-    if of_the_whole:
-        belongs = replace(of_the_whole[0], hint=_PART_OF_IT)
-        slips = {
-            place: replace(belongs, correction=slip.correction) for place, slip in slips.items()
-        }
+def _formula(slip: Finding, grading: Grading) -> Correction | None:
+    """The correction of a cell whose slip is that of the whole table."""
+    return slip.correction if grading.corrects and isinstance(slip.correction, Correction) else None
+
+
+def _row_reports(judgement: Judgement, grading: Grading, slips: Slips) -> tuple[RowReport, ...]:
+    """The rows with their cells."""
     return tuple(
         row_report(
             judged.label,
@@ -181,10 +195,7 @@ def _cell(
     label = COLUMNS[column]
     if judged.row is None:
         return CellReport(label, Verdict.MISSING)
-    return cell_report(judged.row.entries[column], (judged.label, label), match, slip, grading)
-
-
-_PART_OF_IT = "This belongs to what is said of the table as a whole."
+    return cell_report(judged.row.entries[column], label, match, slip, grading)
 
 
 def _missing(judged: JudgedRow) -> Finding:

@@ -23,7 +23,7 @@ from service.grading.diagnosis.euler_triple import RepairedTriple, WrongTriple, 
 from service.grading.diagnosis.value_list import slips_of
 from service.grading.diagnosis.wrong_value import UNEXPLAINED
 from service.grading.feedback import Finding
-from service.grading.formula_text import formula_text
+from service.grading.formula_text import value_formula
 from service.grading.judging.content import known_cells, of_list
 from service.grading.judging.expected import asked_pose, formula_values
 from service.grading.judging.report_rows import value_rows
@@ -31,7 +31,7 @@ from service.grading.judging.value_list import ComparedValues
 from service.grading.part import Content, Grading, Judged
 from service.grading.reading.entry import Entry
 from service.grading.reading.value_list import StudentValues, read_list
-from service.grading.report import Severity
+from service.grading.report import Correction, Severity
 from service.grading.tolerances import EXACT_VALUE, NEAR_ANGLE
 from service.kinematics.rotations import (
     from_angles,
@@ -195,8 +195,12 @@ def _slips(
 ) -> dict[tuple[int, int], Finding]:
     """The findings on single wrong angles."""
     wrong = found < Match.ROUNDED
-    texts = [
-        formula_text(angle, True, grading.exercise, grading.samples) if is_wrong else ""
-        for angle, is_wrong in zip(expected, wrong, strict=True)
-    ]
-    return slips_of(ComparedValues(student, expected, texts), wrong, grading)
+    corrections: list[Correction | None] = [None] * len(expected)
+    if wrong.any() and grading.corrects:
+        exercise, samples = grading.exercise, grading.samples
+        spelling = grading.spelling(student.entries)
+        corrections = [
+            value_formula(angle, True, exercise, samples, spelling) if is_wrong else None
+            for angle, is_wrong in zip(expected, wrong, strict=True)
+        ]
+    return slips_of(ComparedValues(student, expected, corrections), wrong, grading)

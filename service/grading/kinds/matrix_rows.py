@@ -1,22 +1,25 @@
 """The rows of a report on a matrix, whatever the matrix stands for."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 
+from service.expressions.printing.spelling import PLAIN
 from service.grading.comparison import Match
 from service.grading.diagnosis.formula_repair import WrongEntry
 from service.grading.diagnosis.link_products import Chain
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
 from service.grading.diagnosis.matrix_entry import WORK_BUDGET, diagnose_entries
 from service.grading.diagnosis.whole_matrix import check_yourself, explain, unexplained
-from service.grading.feedback import Finding
-from service.grading.judging.matrix import ExpectedMatrix, constant_text
+from service.grading.diagnosis.wrong_value import Mask
+from service.grading.formula_text import number_formula
+from service.grading.judging.matrix import ExpectedMatrix
 from service.grading.judging.report_rows import entry_rows
 from service.grading.part import Grading
 from service.grading.reading.matrix import StudentMatrix
-from service.grading.report import Feedback, RowReport
+from service.grading.report import Feedback, Place, RowReport
 from service.grading.samples import Samples
 
 # So many samples of each half tell whole matrices apart.
@@ -69,39 +72,37 @@ def matrix_rows(
         chains=chains(grading.samples.subset(SUBSET)),
     )
     explained = explanations(case) or explain(case)
+    spelling = grading.spelling(chain(*student.entries)) if grading.corrects else PLAIN
     wrong = {
         (int(i), int(j)): WrongEntry(
             expression=expression,
             actual=student.values[i, j],
             expected=expected.values[i, j],
-            expected_text=constant_text(expected.values[i, j]),
             samples=grading.samples,
             scale=float(scale[i, j]),
             angle=False,
+            correction=number_formula(expected.values[i, j]) if grading.corrects else None,
+            spelling=spelling,
             turning=grading.exercise.vocabulary.turning,
+            corrects=grading.corrects,
         )
         for i, j in np.argwhere(unexplained(case, explained) | (found == Match.UNDEFINED))
         if (expression := student.entries[i][j].expression) is not None
     }
     slips = diagnose_entries(wrong, work_budget)
     check = check_yourself(case, slips)
-    findings = [(explanation.finding, explanation.row) for explanation in explained]
-    findings += [(check, None)] if check else []
+    findings = [(each.finding, _cells(each.entries & case.wrong, labels)) for each in explained]
+    findings += [(check, tuple(map(Place, labels[:3])))] if check else []
     return MatrixRows(
         entry_rows(student.entries, found, slips, grading, labels=labels),
         tuple(
             message
-            for finding, row in findings
-            for message in _on_the_whole(finding, row, name, grading)
+            for finding, places in findings
+            for message in grading.visible((finding,), places)
         ),
     )
 
 
-def _on_the_whole(
-    finding: Finding, row: str | None, name: str, grading: Grading
-) -> tuple[Feedback, ...]:
-    """The message on a whole matrix, or on one row of it, with the name of the matrix."""
-    if not name:
-        return grading.visible((finding,), row)
-    named = replace(finding, hint=f"{name}: {finding.hint}")
-    return grading.visible((named,), f"{name}.{row}" if row else name)
+def _cells(entries: Mask, labels: Sequence[str]) -> tuple[Place, ...]:
+    """The places of the marked entries ``(rows, columns)``."""
+    return tuple(Place(labels[i], str(j + 1)) for i, j in np.argwhere(entries).tolist())

@@ -12,9 +12,8 @@ from service.grading.diagnosis.value_list import slips_of
 from service.grading.feedback import Finding
 from service.grading.judging.content import known_cells, of_list
 from service.grading.judging.expected import as_entries, asked_pose, formula_values, is_whole_chain
-from service.grading.judging.matrix import constant_text
 from service.grading.judging.report_rows import value_rows
-from service.grading.judging.value_list import ComparedValues
+from service.grading.judging.value_list import ComparedValues, number_corrections
 from service.grading.misconception import diagnosed
 from service.grading.part import Grading, Judged
 from service.grading.reading.value_list import StudentValues, read_list
@@ -32,7 +31,7 @@ def read(part: PositionSpec, answer: object, grading: Grading) -> StudentValues:
 def judge(part: PositionSpec, answer: StudentValues, grading: Grading) -> Judged:
     """The list with one row for each coordinate."""
     expected = _expected(part, grading)
-    compared = ComparedValues(answer, expected, [constant_text(each) for each in expected])
+    compared = ComparedValues(answer, expected, number_corrections(expected, grading))
     found = compared.matches(grading)
     wrong = found < Match.ROUNDED
     explained = _explained(part, compared, grading) if wrong.any() else None

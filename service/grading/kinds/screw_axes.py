@@ -14,9 +14,8 @@ from service.grading.diagnosis.value_list import slips_of
 from service.grading.feedback import Finding
 from service.grading.judging.content import known_cells, of_rows
 from service.grading.judging.expected import formula_values
-from service.grading.judging.matrix import constant_text
 from service.grading.judging.report_rows import entry_rows
-from service.grading.judging.value_list import ComparedValues
+from service.grading.judging.value_list import ComparedValues, number_corrections
 from service.grading.part import Grading, Judged
 from service.grading.reading.matrix import StudentMatrix, read_matrix
 from service.grading.reading.value_list import StudentValues
@@ -156,5 +155,5 @@ def _slips(
 ) -> dict[tuple[int, int], Finding]:
     """The findings on single numbers of axis ``i``."""
     values = StudentValues(student.entries[i], SCREW, student.values[i])
-    texts = [constant_text(number) for number in axis]
-    return slips_of(ComparedValues(values, axis, texts), wrong, grading)
+    compared = ComparedValues(values, axis, number_corrections(axis, grading))
+    return slips_of(compared, wrong, grading)

@@ -160,11 +160,9 @@ def _wrong_type(raw: object) -> Finding:
 
 
 def _from_error(error: ExpressionError) -> Finding:
-    question = f"Did you mean {error.suggestion}?" if error.suggestion else ""
     return Finding(
         error.code,
         error.message,
-        "" if question in error.message else question,
         span=error.span,
         reading=True,
         suggestion=error.suggestion,

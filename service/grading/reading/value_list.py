@@ -128,7 +128,7 @@ def _taken_apart(
             _shifted(reader.read(part, quantity), at)
             for (at, part), quantity in zip(parts, quantities, strict=False)
         ]
-        if any(entry.readable or entry.findings[0].correction for entry in entries):
+        if any(entry.readable or entry.findings[0].suggestion for entry in entries):
             at, zero = parts[-1]
             return _with_note(entries, (at, at + len(zero))) if left_aside else entries
     return None

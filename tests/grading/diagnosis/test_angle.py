@@ -6,6 +6,7 @@ from service.expressions import Symbol, Vocabulary, read
 from service.grading.diagnosis import angle
 from service.grading.diagnosis.angle import diagnose_angle
 from service.grading.diagnosis.wrong_value import WrongValue, undefined
+from service.grading.report import Correction
 from service.grading.samples import SAMPLES, Samples
 from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
 
@@ -23,7 +24,7 @@ def wrong(text: str, expected: str) -> WrongValue:
         expression=expression,
         actual=zeros + expression.evaluate(VALUES),
         expected=zeros + right.evaluate(VALUES),
-        expected_text=expected,
+        correction=Correction(expected, expected),
         samples=Samples(VALUES),
         scale=1.0,
         angle=True,

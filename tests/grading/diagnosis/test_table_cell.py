@@ -9,6 +9,7 @@ from service.grading.diagnosis import table_cell
 from service.grading.diagnosis.table_cell import diagnose
 from service.grading.diagnosis.wrong_value import WrongCell, undefined
 from service.grading.joint_motion import coefficients
+from service.grading.report import Correction
 from service.grading.samples import HALF, SAMPLES, Samples
 from service.kinematics.chain import COLUMNS
 from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
@@ -38,7 +39,7 @@ def wrong(column: str, number: int, written: str, right: str) -> WrongCell:
         expression=expression,
         actual=values[0],
         expected=values[1],
-        expected_text=right,
+        correction=Correction(right, right),
         samples=SAMPLE,
         scale=1.0 if angle else 0.5,
         angle=angle,
@@ -105,8 +106,7 @@ PAIRS = [
 @each_pair(PAIRS)
 def test_a_misconception(pair: Pair) -> None:
     finding = assert_explains_one_case_alone(pair)
-    assert "should be" not in finding.hint  # the answer is in the correction alone
-    assert finding.correction == f"It should be {pair.explained.expected_text}."
+    assert finding.correction == pair.explained.correction
 
 
 @each_pair(PAIRS)

@@ -120,7 +120,7 @@ def test_four_joints_in_the_place_of_three(catalogue: Mapping[str, Exercise]) ->
     table[2, ALPHA] = H
     [finding] = found(exercise, table)
     assert "joints 1, 2, 3 and 4" in finding.hint
-    assert "only 3 degrees of freedom in place of 4" in finding.hint
+    assert "fewer degrees of freedom than the robot" in finding.hint
 
 
 CARTESIAN = """

@@ -20,7 +20,6 @@ def explains(
         expression=read(0, Vocabulary([])),
         actual=actual * ONES,
         expected=expected * ONES,
-        expected_text="",
         samples=Samples({}),
         scale=1.0,
         angle=angle,

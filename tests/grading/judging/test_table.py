@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import pytest
 
 from service.catalogue import Exercise
-from service.grading import PartReport, Severity, Verdict
+from service.grading import PartReport, Place, Severity, Verdict
 from tests.grading.support.robots import EXACT, PLANAR_RRR, ROBOTS, STANFORD, Robot, Row
 from tests.grading.support.submitting import (
     full_marks,
@@ -50,7 +50,7 @@ def test_a_missing_row_costs_that_row_only(
     assert [row.points for row in report.rows] == about(kept)
     label = robot.labels[missing]
     assert codes(report) == ["missing_tool_row" if label == "e" else "missing_row"]
-    assert report.feedback[0].row == label
+    assert report.feedback[0].places == (Place(label),)
     assert report.feedback[0].severity is Severity.ERROR
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from service.catalogue import Exercise
-from service.grading import FeedbackLevel, Verdict
+from service.grading import Correction, FeedbackLevel, Verdict
 from service.grading.kinds.euler_angles import nearest_triple
 from service.kinematics.rotations import PROPER, SEQUENCES
 from tests.grading.support.exercise_texts import SPATIAL_RRR, Make, all_codes, graded, one_part
@@ -64,9 +64,9 @@ def test_the_erratum_of_the_lecture(spatial: Exercise) -> None:
     assert not_correct(report) == {("2", "1"): Verdict.INCORRECT}
     assert report.points == pytest.approx(4)
     [message] = report.rows[1].cells[0].feedback
-    assert (message.code, message.row, message.cell) == ("sign", "2", "1")
+    assert message.code == "sign"
     assert "sign of this angle is wrong" in message.message
-    assert "Change its sign." in message.message
+    assert message.correction == Correction("Change its sign.")
 
 
 def test_the_erratum_in_the_shipped_exercise(catalogue: Mapping[str, Exercise]) -> None:
@@ -80,9 +80,10 @@ def test_the_erratum_in_the_shipped_exercise(catalogue: Mapping[str, Exercise]) 
 
 def test_a_hint_does_not_give_the_correction_away(spatial: Exercise) -> None:
     answers = {"it": ["theta1", "theta2 + theta3", "90deg"]}
-    report = part(handed_in(spatial, answers, feedback=FeedbackLevel.VERDICTS), "it")
+    report = part(handed_in(spatial, answers, feedback=FeedbackLevel.HINTS), "it")
     [message] = report.rows[1].cells[0].feedback
-    assert "Change its sign." not in message.message
+    assert "sign of this angle is wrong" in message.message
+    assert message.correction is None
 
 
 WRONG: dict[str, tuple[list[Any], set[str], set[str]]] = {

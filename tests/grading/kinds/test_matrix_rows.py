@@ -5,9 +5,16 @@ from collections.abc import Mapping
 import pytest
 
 from service.catalogue import Exercise
-from service.grading import Verdict
+from service.grading import Place, Verdict
+from service.grading.report import messages_of
 from tests.grading.support.robots import PLANAR_RRR
-from tests.grading.support.submitting import cell, codes, full_marks, graded_pose, not_correct, row
+from tests.grading.support.submitting import (
+    cell,
+    codes_at,
+    full_marks,
+    graded_pose,
+    not_correct,
+)
 
 POSE = [
     ["c123", "-s123", "0", "l1 c1 + l2 c12 + l3 c123"],
@@ -56,10 +63,9 @@ def test_a_bad_entry_costs_itself_only(
     cost = 1 / 2 / (2 if j == 3 else 4)
     assert report.points == pytest.approx(report.max_points * (1 - cost))
     assert sum(row.points for row in report.rows) == pytest.approx(report.points, abs=1e-5)
-    said = [*cell(report, *place).feedback, *report.feedback]
     if i == 3 and verdict is Verdict.INCORRECT and code == "value":
-        code, place = "bottom_row", ("4", "")
-    assert (code, *place) in [(m.code, m.row, m.cell or "") for m in said]
+        code = "bottom_row"
+    assert (code, (Place(*place),)) in [(m.code, places) for m, places, _ in messages_of(report)]
 
 
 SLIPS = [
@@ -108,7 +114,7 @@ def test_three_rows_leave_the_fourth_missing(arm: Exercise) -> None:
 def test_a_row_of_another_length_costs_that_row(entries: object, arm: Exercise) -> None:
     report = graded_pose(arm, [*POSE[:3], entries])
     assert [row.verdict for row in report.rows] == [Verdict.CORRECT] * 3 + [Verdict.UNREADABLE]
-    assert codes(row(report, "4").cells[0]) == ["row_length"]
+    assert codes_at(report, "4", "1") == ["row_length"]
 
 
 @pytest.mark.parametrize("matrix", [[*POSE, ["0", "0", "0", "1"]], [[*line, "0"] for line in POSE]])
@@ -127,7 +133,8 @@ def test_a_counterexample_shows_the_students_own_number(arm: Exercise) -> None:
     report = graded_pose(arm, with_entry(2, 3, "l1 + 2"))
     [feedback] = cell(report, "3", "4").feedback
     assert feedback.values is not None
-    assert set(feedback.values) == {"l1", "yours"}
+    assert set(feedback.values) == {"l1", "yours", "expected"}
+    assert feedback.values["expected"] == 0
     assert feedback.values["yours"] == pytest.approx(float(feedback.values["l1"]) + 2, abs=2e-3)
 
 

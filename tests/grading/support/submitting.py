@@ -15,6 +15,7 @@ from service.grading import (
     Verdict,
     grade,
 )
+from service.grading.report import messages_of
 from tests.grading.support.robots import COLUMNS, AngleUnit
 
 
@@ -61,6 +62,15 @@ def cell(report: PartReport, row_label: str, cell_label: str) -> CellReport:
 
 def codes(cell: CellReport) -> list[str]:
     return [message.code for message in cell.feedback]
+
+
+def codes_at(report: PartReport, row_label: str, cell_label: str) -> list[str]:
+    """The codes of the messages on a cell, whether they stand there or with the part."""
+    return [
+        message.code
+        for message, places, _ in messages_of(report)
+        if (row_label, cell_label) in [(place.row, place.cell) for place in places]
+    ]
 
 
 def not_correct(report: PartReport) -> dict[tuple[str, str], Verdict]:

@@ -83,8 +83,8 @@ def degrees_as_radians(table: WrittenTable) -> Iterator[RepairedTable]:
     """All angles were written in degrees, where radians are read."""
     finding = Finding(
         "degrees_as_radians",
-        "The angles were read in radians, but they fit in degrees: write the unit (90deg or 90°), "
-        "use pi, or hand the table in with the angle unit degrees.",
+        "The angles were read in radians, but they fit in degrees: write the unit behind each (deg "
+        "or °), or hand the table in with the angle unit degrees.",
     )
     if np.abs(table.constants[:, IS_ANGLE]).max() > 2 * np.pi:
         yield Repaired(_rescaled(table, np.pi / 180), finding)
@@ -94,8 +94,8 @@ def radians_as_degrees(table: WrittenTable) -> Iterator[RepairedTable]:
     """All angles were written in radians, where degrees are read."""
     finding = Finding(
         "radians_as_degrees",
-        "The angles were read in degrees, but they fit in radians: use pi, or hand the table in "
-        "with the angle unit radians.",
+        "The angles were read in degrees, but they fit in radians: write the unit behind each "
+        "(rad), or hand the table in with the angle unit radians.",
     )
     if np.abs(table.constants[:, IS_ANGLE]).max() <= np.radians(2 * np.pi):
         yield Repaired(_rescaled(table, 180 / np.pi), finding)

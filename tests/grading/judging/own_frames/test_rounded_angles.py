@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import pytest
 
 from service.catalogue import Exercise
-from tests.grading.support.submitting import cell, codes, graded_table, not_correct
+from tests.grading.support.submitting import codes_at, graded_table, not_correct
 
 # The Stanford arm with z2 turned over, so that no cell can be told from the reference's.
 TURNED_OVER = [
@@ -25,8 +25,8 @@ def test_rounded_angles_are_right_in_frames_of_ones_own(
     rows = [[text.format(quarter=quarter, half=half) for text in row] for row in TURNED_OVER]
     report = graded_table(catalogue["stanford-arm"], rows)
     assert not_correct(report) == {}
-    assert [m.code for m in report.feedback] == ["own_frame_choice"]
-    assert codes(cell(report, "2", "alpha")) == ["rounded"]
+    assert [m.code for m in report.feedback] == ["own_frame_choice", "rounded"]
+    assert codes_at(report, "2", "alpha") == ["rounded"]
     rows[1][2] = "-d2"
     wrong = graded_table(catalogue["stanford-arm"], rows)
     assert list(not_correct(wrong)) == [("2", "d")]

@@ -10,7 +10,7 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import PartReport
-from tests.grading.support.submitting import graded_table, not_correct
+from tests.grading.support.submitting import cell, graded_table, not_correct
 
 BLAMED: dict[str, tuple[tuple[str, str, str], str, str]] = {
     # d of rows 1 to 3; the row that is blamed; what is right there
@@ -37,9 +37,10 @@ def test_the_likeliest_cell_is_blamed(
         ],
     )
     assert list(not_correct(report)) == [(row, "d")]
-    [message] = messages(report)
-    assert "it is the sum of the offsets along it that counts" in message
-    assert message.endswith(f"It should be {right}.")
+    [message] = cell(report, row, "d").feedback
+    assert "it is the sum of the offsets along it that counts" in message.message
+    assert message.correction is not None
+    assert message.correction.text == right
 
 
 def messages(report: PartReport) -> list[str]:

@@ -1,0 +1,120 @@
+"""Formulas printed as a student writes."""
+
+import pytest
+
+from service.expressions import AngleUnit, Symbol, Vocabulary, joint_variable, read
+from service.expressions.printing.latex import to_latex
+from service.expressions.printing.spelling import Spelling, spelling_for, spelling_of
+from service.expressions.printing.text import to_text
+
+ARM = Vocabulary(
+    [
+        *(joint_variable(i) for i in (1, 2, 4)),
+        joint_variable(3, sliding=True),
+        Symbol("l1", "length"),
+        Symbol("alpha", "angle"),
+    ]
+)
+
+
+def spelling(*typed: str, unit: AngleUnit = "radians") -> Spelling:
+    read_as = [read(text, ARM, quantity="angle", angle_unit=unit).typed for text in typed]
+    return spelling_of(read_as, ARM, degrees=unit == "degrees")
+
+
+def printed(formula: str, *typed: str, unit: AngleUnit = "radians") -> str:
+    """A formula in the spelling of what was typed."""
+    return to_text(read(formula, ARM).tree, spelling(*typed, unit=unit))
+
+
+@pytest.mark.parametrize(
+    ("typed", "text"),
+    [
+        ("theta1", "theta1 + theta2*d3"),
+        ("q1", "q1 + q2*q3"),
+        ("θ1", "θ1 + θ2*d3"),
+        ("θ_1*", "θ_1 + θ_2*d3"),
+        ("θ₁", "θ₁ + θ₂*d3"),
+        (r"\theta_1", "theta1 + theta2*d3"),
+        ("q[0]", "theta1 + theta2*d3"),
+        ("(q1)", "q1 + q2*q3"),
+        ("0", "theta1 + theta2*d3"),
+    ],
+)
+def test_joint_variables_have_the_names_that_were_typed(typed: str, text: str) -> None:
+    assert printed("theta1 + theta2*d3", typed) == text
+    assert read(text, ARM).tree == read("theta1 + theta2*d3", ARM).tree
+
+
+def test_a_name_that_was_typed_itself_comes_before_one_made_like_it() -> None:
+    assert printed("theta1 + theta2 + theta4", "q1", "θ2") == "q1 + θ2 + q4"
+
+
+def test_other_letters_keep_the_way_that_they_were_typed() -> None:
+    assert printed("l1 + alpha", "l_1 + α") == "l_1 + α"
+
+
+@pytest.mark.parametrize(
+    ("typed", "in_degrees", "degree", "pi"),
+    [
+        (("pi/2",), False, "deg", "pi"),
+        (("π/2", "90deg", "π"), False, "deg", "π"),
+        (("90°", "pi/2", "-90°"), True, "°", "pi"),
+        (("90deg",), True, "deg", "pi"),
+        ((r"90^\circ",), True, "°", "pi"),
+        ((r"\pi/2",), False, "deg", "pi"),
+        (("theta1", "0"), False, "deg", "pi"),
+        (("-90",), True, "deg", "pi"),  # meant in degrees, whatever it was read as
+        (("1.5708",), False, "deg", "pi"),
+    ],
+)
+def test_the_unit_of_angles_is_that_of_most_entries(
+    typed: tuple[str, ...], in_degrees: bool, degree: str, pi: str
+) -> None:
+    found = spelling(*typed)
+    assert (found.in_degrees, found.degree, found.pi) == (in_degrees, degree, pi)
+
+
+def test_where_bare_numbers_are_degrees_a_right_angle_is_bare() -> None:
+    found = spelling("theta1", "90", unit="degrees")
+    assert found.in_degrees
+    assert to_text(read("90deg", ARM).tree, found) == "90"
+    assert spelling("theta1", unit="degrees").in_degrees
+    assert not spelling("pi/2", unit="degrees").in_degrees
+    assert spelling("90°", unit="degrees").degree == "°"
+
+
+def test_one_entry_is_answered_in_its_own_unit() -> None:
+    common = spelling("pi/2", "pi/2", "90°")
+    assert spelling_for(read("90°", ARM).typed, common).degree == "°"
+    assert spelling_for(read("90°", ARM).typed, common).in_degrees
+    assert spelling_for(read("q1", ARM).typed, common) == common
+
+
+@pytest.mark.parametrize(
+    ("formula", "text"),
+    [
+        ("cos(theta1 + theta2)", "c12"),
+        ("-l1*sin(theta4)", "-l1*s4"),
+        ("cos(theta1 - theta2)", "cos(theta1 - theta2)"),
+        ("cos(alpha)", "cos(alpha)"),
+        ("sin(2*theta1)", "sin(2*theta1)"),
+        ("cos(theta1 + theta1)", "cos(theta1 + theta1)"),
+    ],
+)
+def test_shorthand_for_those_who_write_it(formula: str, text: str) -> None:
+    assert printed(formula, "s1") == text
+    assert printed(formula, "sin(theta1)") == formula
+    assert read(text, ARM).tree == read(formula, ARM).tree
+
+
+def test_no_shorthand_where_it_names_a_symbol() -> None:
+    words = Vocabulary([*ARM.symbols, Symbol("c2", "length")])
+    found = spelling_of([read("s1", words).typed], words, degrees=False)
+    assert not found.shorthand
+
+
+def test_latex_has_the_student_s_letters() -> None:
+    tree = read("theta1 + l1*cos(theta2)", ARM).tree
+    assert to_latex(spelling("q1").renamed(tree)) == r"q_{1} + l_{1} \cos\left(q_{2}\right)"
+    assert to_latex(spelling("θ_1").renamed(tree)) == to_latex(tree)

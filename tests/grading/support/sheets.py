@@ -1,0 +1,55 @@
+"""A part's answer as a grid of texts, whatever its kind."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from service.catalogue import Exercise, PartSpec
+from tests.grading.support.robots import COLUMNS
+
+Grid = list[list[str]]
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """The rows and columns of an answer by their labels in the report, and how it is posted."""
+
+    kind: str
+    rows: tuple[str, ...]
+    columns: tuple[str, ...]
+
+    def filled(self, text: str) -> Grid:
+        return [[text] * len(self.columns) for _ in self.rows]
+
+    def posted(self, grid: Sequence[Sequence[str]]) -> Any:
+        """The grid as the JSON value of an answer."""
+        if self.kind in ("dh_table", "dh_row"):
+            rows = [dict(zip(COLUMNS, row, strict=True)) for row in grid]
+            return {"rows": rows} if self.kind == "dh_table" else rows[0]
+        if self.kind == "link_transforms":
+            return [list(map(list, grid[i : i + 4])) for i in range(0, len(grid), 4)]
+        if len(self.columns) == 1:
+            return [row[0] for row in grid]
+        return list(map(list, grid))
+
+    def grid_of(self, answer: Any) -> Grid:
+        """The grid of a posted answer: of ``posted`` the other way round."""
+        if self.kind == "dh_table":
+            answer = answer["rows"]
+        if self.kind == "dh_row":
+            answer = [answer]
+        if self.kind == "link_transforms":
+            answer = [row for matrix in answer for row in matrix]
+        if self.kind in ("dh_table", "dh_row"):
+            return [[str(row[column]) for column in COLUMNS] for row in answer]
+        rows = [row if isinstance(row, list) else [row] for row in answer]
+        return [list(map(str, row)) for row in rows]
+
+
+def sheet_of(part: PartSpec, exercise: Exercise) -> Sheet:
+    """The sheet of a part."""
+    shape = dict(part.shape(exercise.reference))
+    rows = tuple(shape.get("rows") or ("1",))
+    if "matrices" in shape:
+        rows = tuple(f"{matrix}.{row}" for matrix in shape["matrices"] for row in rows)
+    return Sheet(part.kind, rows, tuple(shape.get("columns") or ("1",)))

@@ -1,0 +1,179 @@
+"""A student who knows nothing, and copies whatever a report says into the cells that are wrong."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, field
+from functools import lru_cache
+from typing import Any
+
+from service.catalogue import Exercise, FeedbackLevel, PartSpec
+from service.expressions import ExpressionError, Vocabulary, read
+from service.grading import PartReport, Submission, Verdict, grade
+from tests.grading.support.sheets import Grid, Sheet, sheet_of
+
+ROUNDS = 10
+# So many words of a message may make one formula: theta1 + pi / 2.
+WORDS = 5
+_SAYING = ("message", "suggestion", "text", "latex")
+
+
+def said(report: PartReport) -> Iterator[str]:
+    """All texts and numbers in a report that might be a value."""
+
+    def visit(value: Any, key: str) -> Iterator[str]:
+        if isinstance(value, dict):
+            for name, inner in value.items():
+                if key == "values":
+                    yield from (name, str(inner))
+                else:
+                    yield from visit(inner, name)
+        elif isinstance(value, list | tuple):
+            for inner in value:
+                yield from visit(inner, key)
+        elif key in _SAYING and isinstance(value, str):
+            yield value
+
+    data = asdict(report)
+    yield from visit([data["feedback"], [row["feedback"] for row in data["rows"]]], "")
+    yield from visit([cell["feedback"] for row in data["rows"] for cell in row["cells"]], "")
+
+
+@lru_cache(maxsize=4096)
+def expressions_in(text: str, vocabulary: Vocabulary) -> tuple[str, ...]:
+    """Everything in a text that can be read as an entry: words, and words in a row."""
+    found: dict[str, None] = {}
+    for words in (text.split(), re.sub(r"[()]", " ", text).split()):
+        plain = [word.strip(".,;:?!`") for word in words]
+        for i in range(len(plain)):
+            for j in range(i + 1, min(i + WORDS, len(plain)) + 1):
+                tried = " ".join(plain[i:j]).strip()
+                # Several names in a row are words, unless something joins them.
+                joined = j == i + 1 or re.search(r"[-+*/^0-9]", tried)
+                if tried and joined and _reads(tried, vocabulary):
+                    found[tried] = None
+    return tuple(found)
+
+
+def _reads(text: str, vocabulary: Vocabulary) -> bool:
+    try:
+        read(text, vocabulary, repairs=False)
+    except ExpressionError:
+        return False
+    return True
+
+
+def is_trivial(text: str) -> bool:
+    """Whether a text is a trivial value, however it is written: 0.0."""
+    return re.fullmatch(r"-?[01](\.0*)?", text) is not None
+
+
+def shortened(text: str) -> str:
+    """The text without the zeros behind its point: 7.0 is 7."""
+    return re.sub(r"\.0*$", "", text)
+
+
+@dataclass
+class Thief:
+    """A thief at work on one part, at one level.
+
+    ``known`` is what need not be stolen. The trivial values 0, 1 and -1, which stand in most cells
+    of every answer, are not worth a theft either.
+    """
+
+    exercise: Exercise
+    part: PartSpec
+    level: FeedbackLevel
+    grid: Grid
+    known: set[str]
+    tried: int = 0
+    stolen: list[str] = field(default_factory=list)
+
+    @property
+    def sheet(self) -> Sheet:
+        return sheet_of(self.part, self.exercise)
+
+    def report(self, grid: Grid) -> PartReport:
+        answers = {self.part.id: self.sheet.posted(grid)}
+        self.tried += 1
+        report = grade(self.exercise, Submission(answers, feedback=self.level))
+        return next(part for part in report.parts if part.part == self.part.id)
+
+    def steal(self) -> tuple[float, float]:
+        """The points of the first answer, and those after ten rounds of copying."""
+        report = self.report(self.grid)
+        first = report.points
+        for _ in range(ROUNDS):
+            before = report.points
+            found = [
+                text
+                for saying in dict.fromkeys(said(report))
+                for text in expressions_in(saying, self.exercise.vocabulary)
+                if not is_trivial(text) and shortened(text) not in self.known
+            ]
+            for text in dict.fromkeys(found):
+                report = self._copied(text, report)
+            if report.points == before:
+                break
+        return first, report.points
+
+    def _copied(self, text: str, report: PartReport) -> PartReport:
+        """The report with ``text`` in every wrong cell that it helps."""
+        everywhere = [
+            [own if self._is_right(report, i, j) else text for j, own in enumerate(row)]
+            for i, row in enumerate(self.grid)
+        ]
+        trial = self.report(everywhere)
+        if trial.rows:
+            helped = [
+                [new if self._is_right(trial, i, j) else own for j, (own, new) in enumerate(pairs)]
+                for i, pairs in enumerate(map(zip, self.grid, everywhere))
+            ]
+            report = self._kept(helped, text, report)
+        # Where frames are free, or cells have no verdicts, the points must tell, cell by cell.
+        for i, row in enumerate(self.grid):
+            for j in range(len(row)):
+                if not self._is_right(report, i, j):
+                    alone = [list(other) for other in self.grid]
+                    alone[i][j] = text
+                    report = self._kept(alone, text, report)
+        return report
+
+    def _kept(self, grid: Grid, text: str, report: PartReport) -> PartReport:
+        if grid == self.grid:
+            return report
+        trial = self.report(grid)
+        if trial.points <= report.points:
+            return report
+        self.grid = grid
+        self.stolen.append(text)
+        return trial
+
+    def _is_right(self, report: PartReport, i: int, j: int) -> bool:
+        """Whether the report says that a cell is right; its rows may be fewer than the sheet's."""
+        by_label = {row.label: row for row in report.rows}
+        row = by_label.get(self.sheet.rows[i])
+        return row is not None and j < len(row.cells) and row.cells[j].verdict is Verdict.CORRECT
+
+
+def known_before(sheet: Sheet, grid: Grid) -> set[str]:
+    """What a student knows without a report: what was written, and the labels."""
+    labels = {piece for label in (*sheet.rows, *sheet.columns) for piece in label.split(".")}
+    return {*labels, *(cell for row in grid for cell in row)}
+
+
+def thief(exercise: Exercise, part: PartSpec, level: FeedbackLevel, grid: Grid) -> Thief:
+    sheet = sheet_of(part, exercise)
+    return Thief(exercise, part, level, grid, known_before(sheet, grid))
+
+
+def lazy(exercise: Exercise, part: PartSpec) -> Grid:
+    """What takes no thought: the bare joint variables in a table, the identity, and else zeros."""
+    sheet = sheet_of(part, exercise)
+    grid = sheet.filled("0")
+    if part.kind == "dh_table":
+        for row, joint in zip(grid, exercise.joints, strict=False):
+            row[2 if joint.prismatic else 3] = joint.variable
+    elif len(sheet.columns) in (3, 4) and part.kind != "dh_row":
+        for i, row in enumerate(grid):
+            row[i % len(sheet.columns)] = "1"
+    return grid

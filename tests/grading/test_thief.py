@@ -1,0 +1,148 @@
+"""What a report says below the level full, copied into the wrong cells, earns nothing.
+
+And no message of it holds the value that a cell should have.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from service.catalogue import Exercise, FeedbackLevel, PartSpec, shipped_folder
+from service.expressions import ExpressionError, read
+from service.grading import PartReport
+from service.grading.report import messages_of
+from service.grading.samples import draw
+from tests.grading.support.sheets import Grid, Sheet, sheet_of
+from tests.grading.support.submitting import handed_in, part
+from tests.grading.support.thief import Thief, expressions_in, is_trivial, known_before, lazy
+from tests.solutions.solved import solved
+
+IDS = sorted(file.stem for file in shipped_folder().glob("*.toml"))
+FULL, HINTS, VERDICTS, SCORE = FeedbackLevel
+FIRST: Mapping[str, Callable[[Exercise, PartSpec], Grid]] = {
+    "seven": lambda exercise, spec: sheet_of(spec, exercise).filled("7"),
+    "zero": lambda exercise, spec: sheet_of(spec, exercise).filled("0"),
+    "lazy": lazy,
+}
+
+
+def thieves(exercise: Exercise, level: FeedbackLevel, first: str) -> Iterator[Thief]:
+    """A thief for each part, who begins with this answer in every cell."""
+    for spec in exercise.parts:
+        grid = FIRST[first](exercise, spec)
+        known = known_before(sheet_of(spec, exercise), grid)
+        yield Thief(exercise, spec, level, grid, known)
+
+
+@pytest.mark.parametrize("first", FIRST)
+@pytest.mark.parametrize("level", [HINTS, VERDICTS, SCORE])
+def test_a_thief_gains_nothing(
+    level: FeedbackLevel, first: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    for exercise in catalogue.values():
+        for thief in thieves(exercise, level, first):
+            before, after = thief.steal()
+            assert after == before, (exercise.id, thief.part.id, thief.stolen)
+
+
+def test_at_full_a_thief_gets_the_table(catalogue: Mapping[str, Exercise]) -> None:
+    """So that the test above could fail."""
+    table, *_ = thieves(catalogue["planar-rr"], FULL, "seven")
+    before, after = table.steal()
+    assert before == 0
+    assert after > table.part.points / 2
+    assert {"theta1", "theta2", "a1", "a2"} <= set(table.stolen)
+
+
+def test_what_can_be_stolen_from_a_sentence(catalogue: Mapping[str, Exercise]) -> None:
+    words = catalogue["planar-rr"].vocabulary
+    assert "theta1 + pi/2" in expressions_in("It should be theta1 + pi/2.", words)
+    assert "90deg" in expressions_in("Write the unit (90deg or 90°).", words)
+    assert expressions_in("Check which way the axes point.", words) == ()
+
+
+# --- no message holds the value
+
+# One slip in so many is tried.
+EVERY = 17
+
+
+class Slip(NamedTuple):
+    """A wrong text in one cell of a right answer."""
+
+    grid: Grid
+    row: int
+    column: int
+
+    @property
+    def text(self) -> str:
+        return self.grid[self.row][self.column]
+
+
+def slips(right: Grid, every: int) -> Iterator[Slip]:
+    """Slips in each cell, one in ``every`` of them."""
+    count = 0
+    for i, row in enumerate(right):
+        for j, text in enumerate(row):
+            others = (f"-({text})", f"2*({text})", f"{text} + pi/2", f"{text} + pi", "0", "7", "90")
+            for wrong in (*others, right[i][j - 1], right[i - 1][j]):
+                count += 1
+                if wrong != text and count % every == 0:
+                    grid = [list(cells) for cells in right]
+                    grid[i][j] = wrong
+                    yield Slip(grid, i, j)
+
+
+def leaks(exercise: Exercise, spec: PartSpec, slip: Slip) -> list[str]:
+    """The expressions in a report at the level hints that have the value of the slip's cell."""
+    sheet = sheet_of(spec, exercise)
+    answers = {spec.id: sheet.posted(slip.grid)}
+    corrected = _correction(part(handed_in(exercise, answers, feedback=FULL), spec.id), sheet, slip)
+    if corrected is None or is_trivial(corrected):
+        return []
+    told = part(handed_in(exercise, answers, feedback=HINTS), spec.id)
+    words = exercise.vocabulary
+    own = {slip.text, *expressions_in(slip.text, words), *known_before(sheet, [])}
+    texts = [text for m, *_ in messages_of(told) for text in (m.message, m.suggestion or "")]
+    return [
+        said
+        for text in texts
+        for said in expressions_in(text, words)
+        if said not in own and _same(said, corrected, exercise)
+    ]
+
+
+def _correction(report: PartReport, sheet: Sheet, slip: Slip) -> str | None:
+    """The right formula of the slip's cell, as it is told at the level full."""
+    at = sheet.rows[slip.row], sheet.columns[slip.column]
+    for message, places, _ in messages_of(report):
+        for place in places:
+            found = place.correction or message.correction
+            if (place.row, place.cell) == at and found is not None and found.latex is not None:
+                return found.text
+    return None
+
+
+def _same(one: str, other: str, exercise: Exercise) -> bool:
+    values = draw(exercise, 0).values
+    try:
+        numbers = [read(text, exercise.vocabulary).evaluate(values) for text in (one, other)]
+    except ExpressionError:
+        return False
+    return bool(np.allclose(numbers[0], numbers[1]))
+
+
+@pytest.mark.parametrize("exercise_id", IDS)
+def test_no_hint_holds_the_value_of_its_cell(
+    exercise_id: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    exercise, tried = catalogue[exercise_id], 0
+    for spec, answer in zip(exercise.parts, solved(exercise).parts, strict=True):
+        if answer.text == "none":  # that there is no row is no formula
+            continue
+        for slip in slips(sheet_of(spec, exercise).grid_of(answer.answer), EVERY):
+            assert leaks(exercise, spec, slip) == [], (spec.id, slip)
+            tried += 1
+    assert tried > 1
