@@ -5,6 +5,7 @@ nearest of those that are right, so that a single slip costs a single angle.
 """
 
 from collections.abc import Sequence
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -147,19 +148,26 @@ def nearest_triple(
     both = np.stack([one, np.where(singular[:, None], one, other_triple(sequence, one))])
     off = np.nan_to_num(np.abs(difference(angles.T, both, angle=True)))
     hit = off <= NEAR_ANGLE * np.maximum(1.0, np.abs(both))
-    samples = np.arange(len(one))
-    # The samples may take sides differently: an atan2 is of one family, a robot's own angle of
-    # both.
-    by_sample = np.lexsort((off.sum(axis=-1), -hit.sum(axis=-1)), axis=0)[0]
-    sides = [np.zeros_like(by_sample), np.ones_like(by_sample), by_sample]
-    best = min(
-        sides,
-        key=lambda side: (
-            np.count_nonzero(~hit[side, samples].all(axis=0)),
-            float(off[side, samples].sum()),
-        ),
-    )
-    return np.asarray(both[best, samples].T)
+    return np.asarray(both[_family(off, hit), np.arange(len(one))].T)
+
+
+def _family(off: Numbers, hit: NDArray[np.bool_]) -> NDArray[np.int_]:
+    """Which of the two triples of a rotation is meant at each sample, ``(SAMPLES,)``.
+
+    ``off`` is how far each angle is from that of the triple, ``hit`` whether it is the same, both
+    ``(2, SAMPLES, 3)``. The samples may take sides differently: an atan2 is of one family, a
+    robot's own angle of both. So the most angles that can be right at all samples decide, and no
+    single sample does.
+    """
+    total, samples = off.sum(axis=-1), np.arange(off.shape[1])
+    for count in (3, 2, 1):
+        fits = [hit[..., list(each)].all(axis=-1) for each in combinations(range(3), count)]
+        sides = [
+            np.where(fit, total, np.inf).argmin(axis=0) for fit in fits if fit.any(axis=0).all()
+        ]
+        if sides:
+            return min(sides, key=lambda side: float(total[side, samples].sum()))
+    return np.asarray(total.argmin(axis=0))
 
 
 def _singular_triple(angles: Numbers, one: Numbers, rotation: Matrices, sequence: str) -> Numbers:
