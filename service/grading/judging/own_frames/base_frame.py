@@ -47,10 +47,10 @@ def possible_bases(
         # The first axis and the next that is not parallel to it decide how the base is turned.
         others = len(starts) - 1
         either = [np.array([z, *[x] * others]) for z, x in product((1, -1), repeat=2)]
-    return [align_axes(_directed(reached[starts], signs), axes, sliding) for signs in either]
+    return [align_axes(directed(reached[starts], signs), axes, sliding) for signs in either]
 
 
-def _directed(frames: Matrices, signs: Integers) -> Matrices:
+def directed(frames: Matrices, signs: Integers) -> Matrices:
     """The frames with z reversed where the sign is −1."""
     directed = frames.copy()
     directed[signs < 0, :, :3, :3] *= np.array([1.0, -1.0, -1.0])

@@ -12,9 +12,10 @@ from service.grading.judging.own_frames.few_cells import (
     frames_from_reference,
     nearest_by_few_cells,
 )
+from service.grading.judging.own_frames.one_cell import one_cell_match
 from service.grading.judging.own_frames.reference import (
-    Mechanism,
     as_table,
+    frames_on_axes,
     mechanism_at,
     reference_frames,
     regrouped,
@@ -34,13 +35,12 @@ from service.grading.judging.own_frames.written_table import (
 from service.grading.misconception import hypotheses_of
 from service.grading.part import Grading
 from service.grading.tolerances import INTENDED_POSE, UNCHANGED_CELL
-from service.kinematics.chain import Table, z_links
-from service.kinematics.chain_match import ChainMatch, match_as_written, match_tables
+from service.kinematics.chain import Table
+from service.kinematics.chain_match import match_as_written, match_tables
 from service.kinematics.dh import Convention
 from service.kinematics.frame_choice import NO_SUCH_CELL, WRONG_CELL
 from service.kinematics.frame_choice import nearest_table as search_nearest_table
 from service.kinematics.tolerances import PARALLEL
-from service.kinematics.transforms import Matrices, inverse
 
 
 def nearest_for_roles(
@@ -106,6 +106,8 @@ def _search(
         match = match or match_as_written(
             rows, targets, scale, directions_given=directions_given, start=base
         )
+    if match is None and all(role.row for role in roles):
+        match = one_cell_match(rows, targets, roles, convention, freedom, grading)
     if match is None:
         match = search_nearest_table(
             rows, targets, scale, base_given=not freedom.base, directions_given=directions_given
@@ -125,24 +127,8 @@ def _search(
     for (i, column), joint in joint_cells(roles).items():
         sign = (freedom.directions and rows[i + 1].joint_sign) or match.joint_signs[i]
         expected[i, column] += sign * samples.values[joint.variable]
-    frames = _joint_frames(roles, match, convention, mechanism)
+    frames = frames_on_axes(match.relative_poses, match.rows, roles, convention, mechanism)
     return NearestTable(roles, expected, frames, match.cost)
-
-
-def _joint_frames(
-    roles: tuple[Role, ...], match: ChainMatch, convention: Convention, mechanism: Mechanism
-) -> Matrices:
-    """The student's frames on the joint axes as seen from the reference's.
-
-    The relative pose of a joint is that of the frame which its Z starts from. That is the frame on
-    its axis in the standard convention; in the modified one, that is the frame which Z leads to.
-    """
-    places = [i for i, _ in joint_cells(roles)]
-    relative_poses = match.relative_poses[places]
-    if convention is Convention.STANDARD:
-        return relative_poses
-    offsets = z_links(match.rows[1:][places])
-    return np.asarray(inverse(mechanism.offsets) @ relative_poses @ offsets)
 
 
 def parallel_neighbours(
