@@ -103,9 +103,11 @@ def _search(
     signs = np.array([row.joint_sign for row in rows])
     match = None
     for base in possible_bases(written, signs, roles, mechanism, freedom):
-        match = match or match_as_written(
+        match = match_as_written(
             rows, targets, scale, directions_given=directions_given, start=base
         )
+        if match is not None:
+            break
     if match is None and all(role.row for role in roles):
         match = one_cell_match(rows, targets, roles, convention, freedom, grading)
     if match is None:

@@ -26,7 +26,7 @@ from service.grading.judging.own_frames.row_roles import FrameFreedom, Role, joi
 from service.grading.judging.own_frames.slip_likelihood import slip_penalty
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE
-from service.kinematics.axis_alignment import align_axes
+from service.kinematics.axis_alignment import align_first_axes
 from service.kinematics.axis_repairs import repairs_by_axes, reversed_factors
 from service.kinematics.cell_repairs import one_factor_repairs
 from service.kinematics.chain import D, Table, pose
@@ -272,9 +272,7 @@ def _ends_by_axes(body: _Body) -> Iterator[Matrices]:
     directions = [np.array([z, *[x] * (n - 1)]) for z, x in product((1, -1), repeat=2)]
     source = np.concatenate([directed(on_axes, signs) for signs in directions], axis=1)
     target = np.concatenate([body.axes] * len(directions), axis=1)
-    aligned = np.array(
-        [align_axes(source[:m], target[:m], body.sliding[:m]) for m in range(1, n + 1)]
-    )
+    aligned = align_first_axes(source, target, body.sliding)
     before = np.searchsorted(body.joints, np.arange(len(body.factors.axes)), side="right")
     for i in range(len(directions)):
         yield aligned[np.maximum(before, 1) - 1, i * samples : (i + 1) * samples]
