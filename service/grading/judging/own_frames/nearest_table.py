@@ -14,6 +14,7 @@ from service.grading.judging.own_frames.few_cells import (
 )
 from service.grading.judging.own_frames.one_cell import one_cell_match
 from service.grading.judging.own_frames.reference import (
+    Mechanism,
     as_table,
     frames_on_axes,
     mechanism_at,
@@ -36,10 +37,21 @@ from service.grading.misconception import hypotheses_of
 from service.grading.part import Grading
 from service.grading.tolerances import INTENDED_POSE, UNCHANGED_CELL
 from service.kinematics.chain import Table
-from service.kinematics.chain_match import match_as_written, match_tables
+from service.kinematics.chain_match import (
+    ChainMatch,
+    RowConstants,
+    Target,
+    match_as_written,
+    match_tables,
+)
 from service.kinematics.dh import Convention
 from service.kinematics.frame_choice import NO_SUCH_CELL, WRONG_CELL
 from service.kinematics.frame_choice import nearest_table as search_nearest_table
+from service.kinematics.reversed_chain import (
+    reversed_cells,
+    reversed_rows,
+    reversed_targets,
+)
 from service.kinematics.tolerances import PARALLEL
 
 
@@ -52,7 +64,7 @@ def nearest_for_roles(
         nearest = nearest or _as_intended(roles, convention, freedom, grading)
         if nearest is not None:
             return nearest
-    return _search(roles, convention, freedom, grading)
+    return _link_by_link(roles, convention, freedom, grading)
 
 
 def _as_intended(
@@ -90,40 +102,22 @@ def in_convention(table: WrittenTable, convention: Convention) -> Table | None:
     return None if left_out.any() else as_table(links, convention)
 
 
-def _search(
+def _link_by_link(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable:
-    """The nearest valid table, found row by row: with any freedom and any number of wrong cells."""
+    """The nearest valid table with any freedom, found by comparing the links between the axes.
+
+    It is the table as written; or else it differs in one cell; or else a search finds it.
+    """
     exercise, samples = grading.exercise, grading.samples
-    scale, directions_given = exercise.length_scale, not freedom.directions
     mechanism = mechanism_at(exercise, samples)
     targets = targets_of(roles, convention, mechanism, freedom)
     rows = row_constants(roles, exercise.robot.joints, convention, samples)
-    written = np.array([row.written for row in rows])
-    signs = np.array([row.joint_sign for row in rows])
-    match = None
-    for base in possible_bases(written, signs, roles, mechanism, freedom):
-        match = match_as_written(
-            rows, targets, scale, directions_given=directions_given, start=base
-        )
-        if match is not None:
-            break
-    if match is None and all(role.row for role in roles):
+    match = _as_written(rows, targets, roles, mechanism, freedom, exercise.length_scale)
+    if match is None and freedom != FrameFreedom() and all(role.row for role in roles):
         match = one_cell_match(rows, targets, roles, convention, freedom, grading)
     if match is None:
-        match = search_nearest_table(
-            rows, targets, scale, base_given=not freedom.base, directions_given=directions_given
-        )
-        if freedom.base and match.cost < WRONG_CELL:
-            # Nothing is wrong but for rounding. The search takes a free base to be wherever each
-            # row needs it; so the table that it found need not be valid from one of them.
-            bases = possible_bases(match.rows, signs, roles, mechanism, freedom)
-            asked = signs * directions_given
-            if not any(
-                match_tables(match.rows[None], asked[None], targets, scale, start=base)[0].any()
-                for base in bases
-            ):
-                match = replace(match, cost=match.cost + NO_SUCH_CELL)
+        match = _searched(rows, targets, roles, mechanism, freedom, exercise.length_scale)
     # What each cell should be: the constants and the joint variables.
     expected = np.tile(as_table(match.rows, convention), 2)
     for (i, column), joint in joint_cells(roles).items():
@@ -131,6 +125,66 @@ def _search(
         expected[i, column] += sign * samples.values[joint.variable]
     frames = frames_on_axes(match.relative_poses, match.rows, roles, convention, mechanism)
     return NearestTable(roles, expected, frames, match.cost)
+
+
+def _as_written(
+    rows: list[RowConstants],
+    targets: list[Target],
+    roles: tuple[Role, ...],
+    mechanism: Mechanism,
+    freedom: FrameFreedom,
+    scale: float,
+) -> ChainMatch | None:
+    """The table as written, if it is valid from any base that is possible."""
+    written = np.array([row.written for row in rows])
+    signs = np.array([row.joint_sign for row in rows])
+    for base in possible_bases(written, signs, roles, mechanism, freedom):
+        match = match_as_written(
+            rows, targets, scale, directions_given=not freedom.directions, start=base
+        )
+        if match is not None:
+            return match
+    return None
+
+
+def _searched(
+    rows: list[RowConstants],
+    targets: list[Target],
+    roles: tuple[Role, ...],
+    mechanism: Mechanism,
+    freedom: FrameFreedom,
+    scale: float,
+) -> ChainMatch:
+    """The nearest valid table by a search: from the base, or from the tool if that alone is given.
+
+    From a free base, with a free tool, the search takes the base to be wherever each row needs it;
+    so a table in which nothing is wrong but for rounding need not be valid from one of them.
+    """
+    directions_given = not freedom.directions
+    if not freedom.base:
+        return search_nearest_table(rows, targets, scale, directions_given=directions_given)
+    if freedom.tool:
+        match = search_nearest_table(
+            rows, targets, scale, base_given=False, directions_given=directions_given
+        )
+        if match.cost >= WRONG_CELL:
+            return match
+    else:
+        match = search_nearest_table(
+            reversed_rows(rows),
+            reversed_targets(targets, mechanism.offsets),
+            scale,
+            directions_given=directions_given,
+        )
+        match = replace(match, rows=-reversed_cells(match.rows))
+    signs = np.array([row.joint_sign for row in rows])
+    for base in possible_bases(match.rows, signs, roles, mechanism, freedom):
+        [valid], poses = match_tables(
+            match.rows[None], directions_given * signs[None], targets, scale, start=base
+        )
+        if valid or match.cost >= WRONG_CELL:
+            return replace(match, relative_poses=poses[:, 0])
+    return replace(match, cost=match.cost + NO_SUCH_CELL)
 
 
 def parallel_neighbours(
