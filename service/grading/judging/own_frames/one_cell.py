@@ -29,7 +29,7 @@ from service.grading.reading.table import IS_ANGLE
 from service.kinematics.axis_alignment import align_first_axes
 from service.kinematics.axis_repairs import repairs_by_axes, reversed_factors
 from service.kinematics.cell_repairs import one_factor_repairs
-from service.kinematics.chain import D, Table, pose
+from service.kinematics.chain import A, D, Table, pose
 from service.kinematics.chain_match import (
     ChainMatch,
     RowConstants,
@@ -37,7 +37,7 @@ from service.kinematics.chain_match import (
     match_tables,
 )
 from service.kinematics.dh import Convention
-from service.kinematics.factors import CellIndex, Factors, Integers, factors_of
+from service.kinematics.factors import CellIndex, Factors, Integers, X, factors_of
 from service.kinematics.frame_choice import WRONG_CELL, departure
 from service.kinematics.transforms import Matrices, Numbers, identity, inverse
 
@@ -87,9 +87,15 @@ class _Body:
             is_reversed=True,
         )
 
-    def factor(self, k: int) -> int:
-        """The number of the k-th factor as the table has it."""
-        return len(self.factors.axes) - 1 - k if self.is_reversed else k
+    def cell(self, k: int, kind: int) -> CellIndex:
+        """The cell of the table that holds the SHIFT or TURN of the k-th factor."""
+        in_table = len(self.factors.axes) - 1 - k if self.is_reversed else k
+        return in_table // 2, (A if self.factors.axes[k] == X else D) + kind
+
+    def factor(self, cell: CellIndex) -> int:
+        """The factor of a cell of the table."""
+        in_table = self.factors.position(cell)[0]
+        return len(self.factors.axes) - 1 - in_table if self.is_reversed else in_table
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,8 +229,8 @@ def _repairs(
             continue
         for cell, value in _values(seen, ends, tool, case):
             if case.wrong <= {cell} and (attempts is None or (attempt, cell) in attempts):
-                k = seen.factor(body.factors.position(cell)[0])
-                yield _Repair(cell, value, ends[k], seen.is_reversed, attempt)
+                end = ends[seen.factor(cell)]
+                yield _Repair(cell, value, end, seen.is_reversed, attempt)
 
 
 def _values(
@@ -237,7 +243,7 @@ def _values(
         for k, kind, value in repairs_by_axes(
             body.factors, starts, body.joints, body.axes, body.sliding
         ):
-            yield body.factors.cell(body.factor(k), kind), sign * value
+            yield body.cell(k, kind), sign * value
     else:
         for repair in one_factor_repairs(body.factors, tool):
             if len(repair.cells) == 1:

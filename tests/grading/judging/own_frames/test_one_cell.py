@@ -1,0 +1,68 @@
+"""One slip, whatever is free: the cell that it was made in is blamed, and no other.
+
+The robot's axes are skew, so that nothing can be repaired elsewhere.
+"""
+
+import pytest
+
+from tests.grading.support.exercise_texts import Make, graded, one_part
+from tests.grading.support.submitting import not_correct
+
+SKEW = """
+[robot]
+structure = "RRRR"
+convention = "standard"
+joints = ["theta1", "theta2", "theta3", "theta4"]
+table = [
+    ["l1", "70deg", "l2", "theta1"], ["l2", "50deg", "l1", "theta2"],
+    ["l1", "-80deg", "2*l2", "theta3"], ["l2", "40deg", "l1", "theta4"],
+]
+[symbols]
+l1 = { kind = "length", description = "a length" }
+l2 = { kind = "length", description = "a length" }
+"""
+COLUMNS = ("a", "alpha", "d", "theta")
+# z1 and z3 are turned over, x2 points the other way; row by row.
+TURNED_OVER = [
+    ["l1", "-110deg", "l2", "theta1"],
+    ["-l2", "130deg", "-l1", "-theta2 + 180deg"],
+    ["l1", "100deg", "2*l2", "theta3 - 180deg"],
+    ["l2", "-140deg", "-l1", "-theta4"],
+]
+SLIPS = ("l1 + 0.3", "21deg", "l2 - 0.2", "theta{} + 31deg")
+
+
+def policy(base: str, tool: str, directions: str) -> str:
+    fields = f'convention = "standard"\nframes = "free"\nbase = "{base}"\ntool = "{tool}"'
+    return one_part("dh_table", f'{fields}\ndirections = "{directions}"', SKEW)
+
+
+@pytest.mark.parametrize("directions", ["given", "free"])
+@pytest.mark.parametrize("tool", ["given", "free"])
+@pytest.mark.parametrize("base", ["given", "free"])
+def test_a_slip_is_blamed_on_its_cell(
+    make_exercise: Make, base: str, tool: str, directions: str
+) -> None:
+    exercise = make_exercise(policy(base, tool, directions))
+    right = [dict(zip(COLUMNS, row, strict=True)) for row in TURNED_OVER]
+    assert not_correct(graded(exercise, {"rows": right})) == {}
+    for i in range(4):
+        for column, slip in zip(COLUMNS, SLIPS, strict=True):
+            if base == "free" and i == 0 and column in ("d", "theta"):
+                continue  # frame 0 may lie anywhere on the first axis
+            if tool == "free" and i == 3:
+                continue  # the end effector may lie anywhere
+            rows = [dict(row) for row in right]
+            rows[i][column] = slip.format(i + 1)
+            wrong = not_correct(graded(exercise, {"rows": rows}))
+            assert list(wrong) == [(str(i + 1), column)]
+
+
+@pytest.mark.parametrize("base", ["given", "free"])
+def test_a_variable_is_blamed_where_its_constant_is_right(make_exercise: Make, base: str) -> None:
+    exercise = make_exercise(policy(base, "free", "given"))
+    rows = [dict(zip(COLUMNS, row, strict=True)) for row in TURNED_OVER]
+    rows[1]["theta"] = "theta2 + 180deg"
+    assert list(not_correct(graded(exercise, {"rows": rows}))) == [("2", "theta")]
+    rows[1]["theta"] = "180deg"
+    assert list(not_correct(graded(exercise, {"rows": rows}))) == [("2", "theta")]
