@@ -21,6 +21,16 @@ table = [
 l1 = { kind = "length", description = "a length" }
 l2 = { kind = "length", description = "a length" }
 """
+PARALLEL = """
+[robot]
+structure = "RPPR"
+convention = "modified"
+joints = ["q1", "q2", "q3", "q4"]
+table = [
+    ["0", "0", "0.80", "q1 + 90deg"], ["0.47", "0", "q2 + 0.58", "0"], ["0.3", "0", "q3", "0"],
+    ["0", "0", "0", "q4"],
+]
+"""
 COLUMNS = ("a", "alpha", "d", "theta")
 # z1 and z3 are turned over, x2 points the other way; row by row.
 TURNED_OVER = [
@@ -32,9 +42,11 @@ TURNED_OVER = [
 SLIPS = ("l1 + 0.3", "21deg", "l2 - 0.2", "theta{} + 31deg")
 
 
-def policy(base: str, tool: str, directions: str) -> str:
-    fields = f'convention = "standard"\nframes = "free"\nbase = "{base}"\ntool = "{tool}"'
-    return one_part("dh_table", f'{fields}\ndirections = "{directions}"', SKEW)
+def policy(
+    base: str, tool: str, directions: str, robot: str = SKEW, convention: str = "standard"
+) -> str:
+    fields = f'convention = "{convention}"\nframes = "free"\nbase = "{base}"\ntool = "{tool}"'
+    return one_part("dh_table", f'{fields}\ndirections = "{directions}"', robot)
 
 
 @pytest.mark.parametrize("directions", ["given", "free"])
@@ -66,3 +78,18 @@ def test_a_variable_is_blamed_where_its_constant_is_right(make_exercise: Make, b
     assert list(not_correct(graded(exercise, {"rows": rows}))) == [("2", "theta")]
     rows[1]["theta"] = "180deg"
     assert list(not_correct(graded(exercise, {"rows": rows}))) == [("2", "theta")]
+
+
+def test_one_cell_is_blamed_between_sliding_axes_of_the_student_s_own(make_exercise: Make) -> None:
+    """The two sliding axes were moved, so that a search cannot tell where they were meant to be."""
+    exercise = make_exercise(policy("free", "given", "given", PARALLEL, "modified"))
+    table = [
+        ("-0.44", "0", "1.06", "q1 + 1.29984947646"),
+        ("-0.18681541692", "pi", "-q2 + 0.22", "-2.35297388941"),
+        ("-0.94021274188", "pi", "q3 + 0.44", "-2.08202703907"),
+        ("-0.28", "0", "0.36", "q4 - pi/2"),
+    ]
+    rows = [dict(zip(COLUMNS, row, strict=True)) for row in table]
+    assert not_correct(graded(exercise, {"rows": rows})) == {}
+    rows[3]["a"] = "0.28"
+    assert len(not_correct(graded(exercise, {"rows": rows}))) == 1
