@@ -1,6 +1,7 @@
 """The valid table nearest to a handed-in one, where it is known which row is for which joint."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,7 +46,7 @@ from service.kinematics.chain_match import (
     match_tables,
 )
 from service.kinematics.dh import Convention
-from service.kinematics.frame_choice import NO_SUCH_CELL, WRONG_CELL
+from service.kinematics.frame_choice import WRONG_CELL
 from service.kinematics.frame_choice import nearest_table as search_nearest_table
 from service.kinematics.reversed_chain import (
     reversed_cells,
@@ -157,34 +158,29 @@ def _searched(
 ) -> ChainMatch:
     """The nearest valid table by a search: from the base, or from the tool if that alone is given.
 
-    From a free base, with a free tool, the search takes the base to be wherever each row needs it;
-    so a table in which nothing is wrong but for rounding need not be valid from one of them.
+    Where both are free, the search takes the base to be wherever each row needs it. So a table in
+    which it finds nothing wrong, but for rounding, is searched again from each possible base.
     """
-    directions_given = not freedom.directions
+    search = partial(
+        search_nearest_table, length_scale=scale, directions_given=not freedom.directions
+    )
     if not freedom.base:
-        return search_nearest_table(rows, targets, scale, directions_given=directions_given)
+        return search(rows, targets)
     if freedom.tool:
-        match = search_nearest_table(
-            rows, targets, scale, base_given=False, directions_given=directions_given
-        )
+        match = search(rows, targets, base_given=False)
         if match.cost >= WRONG_CELL:
             return match
     else:
-        match = search_nearest_table(
-            reversed_rows(rows),
-            reversed_targets(targets, mechanism.offsets),
-            scale,
-            directions_given=directions_given,
-        )
+        seen_from_tool = reversed_targets(targets, mechanism.offsets)
+        match = search(reversed_rows(rows), seen_from_tool)
         match = replace(match, rows=-reversed_cells(match.rows))
     signs = np.array([row.joint_sign for row in rows])
-    for base in possible_bases(match.rows, signs, roles, mechanism, freedom):
-        [valid], poses = match_tables(
-            match.rows[None], directions_given * signs[None], targets, scale, start=base
-        )
-        if valid or match.cost >= WRONG_CELL:
-            return replace(match, relative_poses=poses[:, 0])
-    return replace(match, cost=match.cost + NO_SUCH_CELL)
+    bases = possible_bases(match.rows, signs, roles, mechanism, freedom)
+    if freedom.tool:
+        return min((search(rows, targets, start=base) for base in bases), key=lambda m: m.cost)
+    [base] = bases
+    _, poses = match_tables(match.rows[None], 0 * signs[None], targets, scale, start=base)
+    return replace(match, relative_poses=poses[:, 0])
 
 
 def parallel_neighbours(

@@ -169,10 +169,10 @@ def one_cell_match(
         targets,
         grading.exercise.length_scale,
     )
-    found = _repaired(case, SUBSET)
+    found = _repaired(case, list(_repairs(case, SUBSET)))
     if found.repairs:
         attempts = {(repair.attempt, repair.cell) for repair in found.repairs}
-        found = _repaired(case, case.table.shape[-1], attempts)
+        found = _repaired(case, list(_repairs(case, case.table.shape[-1], attempts)))
     return _likeliest(found, case, grading) if found.repairs else None
 
 
@@ -191,11 +191,11 @@ def _likeliest(found: _Repaired, case: _Case, grading: Grading) -> ChainMatch:
     return ChainMatch(found.links[best], found.poses[:, best], float(costs[best]))
 
 
-def _repaired(
-    case: _Case, samples: int, attempts: Set[tuple[int, CellIndex]] | None = None
-) -> _Repaired:
-    """The repairs that make the table valid at so many samples; only those of the ``attempts``."""
-    repairs = list(_repairs(case, samples, attempts))
+def _repaired(case: _Case, repairs: Sequence[_Repair]) -> _Repaired:
+    """Those of the repairs, each at L samples, that make the table valid."""
+    if not repairs:
+        return _Repaired((), np.empty(0), np.empty(0))
+    samples = len(repairs[0].value)
     tables = np.repeat(case.table[None, ..., :samples], len(repairs), axis=0)
     signs = np.repeat(case.joint_signs[None], len(repairs), axis=0)
     variables = joint_cells(case.roles)
@@ -206,7 +206,7 @@ def _repaired(
     links = np.moveaxis(regrouped(np.moveaxis(tables, 0, 2), case.convention), 2, 0)
     starts = _starts(repairs, tables, case.convention)
     valid, poses = match_tables(links, signs, case.targets, case.length_scale, start=starts)
-    chosen = [repairs[k] for k in np.flatnonzero(valid)]
+    chosen = [repairs[k] for k in np.flatnonzero(valid).tolist()]
     return _Repaired(chosen, links[valid], poses[:, valid])
 
 
@@ -220,9 +220,12 @@ def _starts(repairs: Sequence[_Repair], tables: Numbers, convention: Convention)
 
 
 def _repairs(
-    case: _Case, samples: int, attempts: Set[tuple[int, CellIndex]] | None
+    case: _Case, samples: int, attempts: Set[tuple[int, CellIndex]] | None = None
 ) -> Iterator[_Repair]:
-    """The values that single cells would need, each under the assumption that it alone is wrong."""
+    """The values that single cells would need, each under the assumption that it alone is wrong.
+
+    At the first ``samples``; only those of the ``attempts``, where these are given.
+    """
     body, tool = case.body(samples)
     for attempt, (seen, ends) in enumerate(_ends(body, tool, case.freedom)):
         if attempts is not None and all(attempt != wanted for wanted, _ in attempts):

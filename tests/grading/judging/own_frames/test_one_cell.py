@@ -3,6 +3,8 @@
 The robot's axes are skew, so that nothing can be repaired elsewhere.
 """
 
+from itertools import product
+
 import pytest
 
 from tests.grading.support.exercise_texts import Make, graded, one_part
@@ -78,6 +80,18 @@ def test_a_variable_is_blamed_where_its_constant_is_right(make_exercise: Make, b
     assert list(not_correct(graded(exercise, {"rows": rows}))) == [("2", "theta")]
     rows[1]["theta"] = "180deg"
     assert list(not_correct(graded(exercise, {"rows": rows}))) == [("2", "theta")]
+
+
+@pytest.mark.parametrize("tool", ["given", "free"])
+@pytest.mark.parametrize("base", ["given", "free"])
+def test_nothing_is_repaired_where_a_number_is_beyond_all_bounds(
+    make_exercise: Make, base: str, tool: str
+) -> None:
+    exercise = make_exercise(policy(base, tool, "free"))
+    for i, text in product((1, 3), ("1e308", "1e160", "1/0", "theta1^2")):
+        rows = [dict(zip(COLUMNS, row, strict=True)) for row in TURNED_OVER]
+        rows[i]["a"] = text
+        assert (str(i + 1), "a") in not_correct(graded(exercise, {"rows": rows}))
 
 
 def test_one_cell_is_blamed_between_sliding_axes_of_the_student_s_own(make_exercise: Make) -> None:
