@@ -9,7 +9,7 @@ repaired are then tested at once.
 
 from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass
-from itertools import accumulate, product
+from itertools import accumulate, compress, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -187,6 +187,12 @@ def _likeliest(found: _Repaired, case: _Case, grading: Grading) -> ChainMatch:
             written = None if repair.cell in case.wrong else case.table[repair.cell]
             angle = bool(IS_ANGLE[repair.cell[1]])
             costs[k] += slip_penalty(written, repair.value, angle, grading)
+    # Where the constant may stay as it is, only the variable is wrong.
+    unchanged = [np.array_equal(r.value, case.table[r.cell]) for r in found.repairs]
+    of_variables = {r.cell for r in compress(found.repairs, unchanged)}
+    for k, repair in enumerate(found.repairs):
+        if repair.cell in of_variables and not unchanged[k]:
+            costs[k] = np.inf
     best = int(np.argmin(costs))
     return ChainMatch(found.links[best], found.poses[:, best], float(costs[best]))
 

@@ -82,6 +82,18 @@ def test_a_variable_is_blamed_where_its_constant_is_right(make_exercise: Make, b
     assert list(not_correct(graded(exercise, {"rows": rows}))) == [("2", "theta")]
 
 
+def test_only_the_variable_is_wrong_where_its_constant_may_be_any(make_exercise: Make) -> None:
+    """From a free base any constant will do in row 1: the student's own stays."""
+    exercise = make_exercise(policy("free", "free", "given"))
+    rows = [dict(zip(COLUMNS, row, strict=True)) for row in TURNED_OVER]
+    rows[0]["theta"] = "-theta1 + 23deg"
+    report = graded(exercise, {"rows": rows})
+    assert list(not_correct(report)) == [("1", "theta")]
+    [finding] = report.rows[0].cells[3].feedback
+    assert finding.code == "joint_variable_sign"
+    assert "theta1 + 23deg" in str(finding)
+
+
 @pytest.mark.parametrize("tool", ["given", "free"])
 @pytest.mark.parametrize("base", ["given", "free"])
 def test_nothing_is_repaired_where_a_number_is_beyond_all_bounds(
