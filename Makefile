@@ -7,6 +7,7 @@ HOST   ?= 127.0.0.1
 PORT   ?= 8000
 COUNT  ?= 100000
 TABLES ?= 1000
+ROBOTS ?= 5000
 SEED   ?= 1
 
 python  := "$(VENV)/bin/python"
@@ -22,7 +23,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test coverage lint format bench fuzz campaign lock clean
+.PHONY: help install run test coverage lint format bench fuzz campaign policies lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' Makefile
@@ -58,6 +59,9 @@ fuzz: $(dev) ## read 100,000 hostile texts (COUNT=, SEED=)
 
 campaign: $(dev) ## grade tables in random frames, TABLES= of each robot and convention (SEED=)
 	$(python) -m tests.frame_choice --tables "$(TABLES)" --seed "$(SEED)"
+
+policies: $(dev) ## grade tables of ROBOTS= unseen robots under each policy, 20 draws each (SEED=)
+	$(python) -m tests.frame_choice.by_policy --robots "$(ROBOTS)" --seed "$(SEED)"
 
 # Only pins that pyproject.toml no longer allows are changed; `make lock UPGRADE=--upgrade` takes the newest.
 # One resolution serves every Python and platform; later files repeat the pins of earlier ones.

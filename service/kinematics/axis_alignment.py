@@ -18,15 +18,21 @@ def align_axes(source: Matrices, target: Matrices, sliding: NDArray[np.bool_]) -
 
     Both are ``(joints, L, 4, 4)``; of a ``sliding`` axis the direction alone counts.
     """
-    rotation = _basis(target, sliding) @ np.swapaxes(_basis(source, sliding), -1, -2)
-    transform = identity(source.shape[1:2])
-    transform[:, :3, :3] = rotation
-    transform[:, :3, 3] = _translation(source, target, rotation, sliding)
+    aligned: Matrices = align_first_axes(source, target, sliding)[-1]
+    return aligned
+
+
+def align_first_axes(source: Matrices, target: Matrices, sliding: NDArray[np.bool_]) -> Matrices:
+    """``align_axes`` for the first axis, the first two, the first three …: ``(n, L, 4, 4)``."""
+    rotation = _bases(target, sliding) @ np.swapaxes(_bases(source, sliding), -1, -2)
+    transform = identity(source.shape[:2])
+    transform[..., :3, :3] = rotation
+    transform[..., :3, 3] = _translations(source, target, rotation, sliding)
     return transform
 
 
-def _basis(axes: Matrices, sliding: NDArray[np.bool_]) -> Matrices:
-    """A right-handed basis ``(L, 3, 3)`` that is fixed to the axes: z along the first of them.
+def _bases(axes: Matrices, sliding: NDArray[np.bool_]) -> Matrices:
+    """Right-handed bases ``(joints, L, 3, 3)`` that are fixed to the first axes: z along the first.
 
     x comes from the first axis that is not parallel to it, or else from the first parallel one that
     lies elsewhere.
@@ -36,38 +42,40 @@ def _basis(axes: Matrices, sliding: NDArray[np.bool_]) -> Matrices:
     # Seen from a point of the first axis that turns.
     points = axes[..., :3, 3] - axes[np.argmin(sliding), :, :3, 3]
     points = np.where(sliding[:, None, None], 0.0, points)
-    ways = [*_across(directions, z), *_across(points, z)]
-    lengths = [np.linalg.norm(across, axis=-1, keepdims=True) for across in ways]
-    # Axes that should be parallel are nearly so where numbers were rounded.
-    for least in (NOT_PARALLEL_BY_ROUNDING, CLEARLY_NOT_PARALLEL):
-        for across, length in zip(ways, lengths, strict=True):
-            if length.min() > least:
-                return _from_x_and_z(across / length, z)
-    x = _across(np.eye(3)[np.argmin(np.abs(z), axis=-1)], z)
-    return _from_x_and_z(x / np.linalg.norm(x, axis=-1, keepdims=True), z)
-
-
-def _across(vectors: Numbers, z: Numbers) -> Numbers:
-    """The part of ``(..., L, 3)`` that is at right angles to ``z`` ``(L, 3)``."""
-    return np.asarray(vectors - (vectors * z).sum(axis=-1, keepdims=True) * z)
-
-
-def _from_x_and_z(x: Numbers, z: Numbers) -> Matrices:
+    any_x = np.eye(3)[np.argmin(np.abs(z), axis=-1)]
+    across = np.concatenate([directions, points, any_x[None]])
+    across = across - (across * z).sum(axis=-1, keepdims=True) * z
+    length = np.sqrt((across * across).sum(axis=-1))
+    least = length.min(axis=-1)
+    # Axes that should be parallel are nearly so where numbers were rounded: they come last.
+    trust = 2 * (least > NOT_PARALLEL_BY_ROUNDING) + 2 * (least > CLEARLY_NOT_PARALLEL)
+    trust[-1] = 1
+    chosen = np.where(_known_to_first(len(axes)), trust, -1).argmax(axis=1)
+    x = across[chosen] / length[chosen][..., None]
+    z = np.broadcast_to(z, x.shape)
     return np.stack([x, np.cross(z, x), z], axis=-1)
 
 
-def _translation(
+def _known_to_first(joints: int) -> NDArray[np.bool_]:
+    """Which directions, which points, and whether any x, are known of the first m axes."""
+    first = np.tri(joints, dtype=np.bool_)
+    return np.concatenate([first, first, np.ones((joints, 1), np.bool_)], axis=1)
+
+
+def _translations(
     source: Matrices, target: Matrices, rotation: Matrices, sliding: NDArray[np.bool_]
 ) -> Numbers:
-    """The shift ``(L, 3)`` after which the turning axes meet, by least squares.
+    """The shifts ``(joints, L, 3)`` after which the first turning axes meet, by least squares.
 
     With u along an axis and p from a point of the turned source to one of the target, it minimises
     Σ |(1 − u uᵀ)(p − shift)|².
     """
-    u = target[~sliding, :, :3, 2]
-    turned = (rotation @ source[~sliding, :, :3, 3, None])[..., 0]
-    p = target[~sliding, :, :3, 3] - turned
+    u = target[..., :3, 2]
     projection = np.eye(3) - u[..., :, None] * u[..., None, :]
-    left = projection.sum(axis=0)
-    right = (projection @ p[..., None])[..., 0].sum(axis=0)
+    projection[sliding] = 0.0
+    turned = (rotation[:, None] @ source[..., :3, 3, None])[..., 0]
+    p = target[..., :3, 3] - turned
+    first = np.tri(len(source))[..., None, None]
+    left = projection.cumsum(axis=0)
+    right = ((projection @ p[..., None])[..., 0] * first).sum(axis=1)
     return np.asarray((np.linalg.pinv(left, hermitian=True) @ right[..., None])[..., 0])

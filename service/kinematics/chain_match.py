@@ -110,9 +110,9 @@ def match_tables(
     """Which of many tables are valid as they stand, without any search.
 
     ``written`` is ``(tables, rows, 4, L)``, ``joint_signs`` ``(tables, rows)`` as in RowConstants,
-    0 where the direction is free. ``start`` ``(L, 4, 4)`` is the relative pose of frame 0, None for
-    the identity. Returns ``(tables,)`` and the relative poses at the targets, ``(rows, tables, L,
-    4, 4)``. NaN makes a table invalid.
+    0 where the direction is free. ``start`` ``(L, 4, 4)``, or one for each table, is the relative
+    pose of frame 0, None for the identity. Returns ``(tables,)`` and the relative poses at the
+    targets, ``(rows, tables, L, 4, 4)``. NaN makes a table invalid.
     """
     count = written.shape[-1]
     links = standard_link(*np.moveaxis(written, 2, 0))

@@ -65,15 +65,18 @@ def nearest_table(
     *,
     base_given: bool = True,
     directions_given: bool = True,
+    start: Matrices | None = None,
 ) -> ChainMatch:
     """The valid table nearest to the written ``rows``, the i-th of which leads to the i-th target.
 
-    ``base_given`` says that frame 0 is the reference's. ``directions_given`` says that each joint's
-    positive sense is, so that a z axis turned over asks for a variable with the opposite sign.
+    ``base_given`` says that it is known where frame 0 lies: at ``start`` ``(L, 4, 4)`` in the
+    reference's, or there. ``directions_given`` says that each joint's positive sense is known, so
+    that a z axis turned over asks for a variable with the opposite sign.
     """
     samples = rows[0].written.shape[-1]
     if base_given:
-        beam, freedom = _Beam(identity((1, samples)), np.zeros(1), [()]), BaseFreedom()
+        pose = identity((samples,)) if start is None else start
+        beam, freedom = _Beam(pose[None], np.zeros(1), [()]), BaseFreedom()
         remaining = list(zip(rows, targets, strict=True))
     else:
         beam, freedom = _from_free_base(rows[0], targets[0])

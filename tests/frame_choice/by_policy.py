@@ -16,6 +16,7 @@ from multiprocessing import get_context
 import numpy as np
 
 from tests.frame_choice import oracle
+from tests.frame_choice.edits import Edit
 from tests.frame_choice.generator import Table, reassignment
 from tests.frame_choice.robots import POLICIES, Policy, conventions, exercise
 from tests.frame_choice.trials import CrashError, equivalent, grade_rows, graded, one_slip
@@ -45,33 +46,27 @@ class Counts:
             if (its_truth, told) == (truth, said) and policy in (None, name)
         )
 
-    def judge(self, table: Table, truth: str, seeds: int, note: str = "") -> None:
-        """Grade a table, and count what is said of it."""
+    def judge(self, table: Table, edit: Edit | None, seeds: int) -> None:
+        """Grade a table, which is wrong if there is an edit, and count what is said of it."""
+        truth = WRONG if edit else VALID
 
         def count(said: str) -> None:
             self.counts[table.policy.name, truth, said] += 1
-
-        def miss(said: str) -> None:
-            count(said)
-            self.misses.append(f"{truth}, {said}: {described(table)}{note}")
+            if said in (MISJUDGED, UNSTEADY):
+                self.misses.append(f"{truth}, {said}: {described(table)}  {edit or ''}")
 
         count("")
         try:
             found = graded(table)
-        except CrashError as error:
-            miss(f"{MISJUDGED} ({error.__cause__!r})")
+        except CrashError:
+            count(MISJUDGED)
             return
-        if found.full_marks != (truth == VALID) or (truth == VALID and not found.is_clean):
-            miss(MISJUDGED)
+        if found.full_marks if edit else not (found.full_marks and found.is_clean):
+            count(MISJUDGED)
         elif {full_marks(table, seed) for seed in range(seeds)} - {found.full_marks}:
-            miss(UNSTEADY)
-        if truth == WRONG and note and found.blamed == {_place_of(note)}:
+            count(UNSTEADY)
+        if edit and found.blamed == {(edit.row, edit.column)}:
             count(EXACT)
-
-
-def _place_of(note: str) -> tuple[int, int]:
-    row, column = note.rsplit("@", 1)[1].split(",")
-    return int(row), int(column)
 
 
 def full_marks(table: Table, seed: int) -> bool:
@@ -110,11 +105,11 @@ def run(
                     continue
                 if not equivalent(table):
                     raise AssertionError(f"the generator drew a wrong table: {described(table)}")
-                counts.judge(table, VALID, seeds)
+                counts.judge(table, None, seeds)
                 edit = one_slip(table, rng)
                 if edit is not None:
                     wrong = table.edited(edit.row, edit.column, edit.cell)
-                    counts.judge(wrong, WRONG, seeds, f"{edit} @{edit.row},{edit.column}")
+                    counts.judge(wrong, edit, seeds)
         for cached in (exercise, oracle.samples, oracle.reference_poses):
             cached.cache_clear()
     return counts
@@ -126,16 +121,13 @@ def _task(task: tuple[range, int, int]) -> Counts:
 
 def lines(found: Counts) -> list[str]:
     """The figures by policy, and of all."""
-    table = []
+    said = [(VALID, ""), (VALID, MISJUDGED), (VALID, UNSTEADY)]
+    said += [(WRONG, ""), (WRONG, MISJUDGED), (WRONG, UNSTEADY), (WRONG, EXACT)]
+    head = "".join(f"{told or truth:>20}" for truth, told in said)
+    table = [f"{'':24}{head}"]
     for policy in (*(policy.name for policy in POLICIES), None):
-        cells = [f"{policy or 'all':24}"]
-        for truth, more in ((VALID, ()), (WRONG, (EXACT,))):
-            cells.append(f"{found.of(truth, '', policy):7} {truth}")
-            cells += [f"{found.of(truth, said, policy):5} {said}" for said in (MISJUDGED, UNSTEADY)]
-            for said in more:
-                share = found.of(truth, said, policy) / max(1, found.of(truth, "", policy))
-                cells.append(f"{100 * share:6.1f} % {said}")
-        table.append(",".join(cells))
+        cells = "".join(f"{found.of(truth, told, policy):20}" for truth, told in said)
+        table.append(f"{policy or 'all':24}{cells}")
     return table
 
 

@@ -5,6 +5,7 @@ counts. That is enough, for the joint screws in the home configuration and the p
 a chain (Lynch and Park, *Modern Robotics*, section 4.1).
 """
 
+from collections.abc import Iterator
 from itertools import accumulate, product
 
 import numpy as np
@@ -24,7 +25,7 @@ def possible_bases(
     roles: tuple[Role, ...],
     mechanism: Mechanism,
     freedom: FrameFreedom,
-) -> list[Matrices | None]:
+) -> Iterator[Matrices | None]:
     """Where frame 0 may lie in the reference's frame 0, ``(L, 4, 4)`` each; None for the same.
 
     ``links`` ``(rows + 1, 4, L)`` are the constants of a table, regrouped; ``joint_signs`` ``(rows
@@ -33,13 +34,15 @@ def possible_bases(
     that the sign of its variable says, or in either direction where the directions are free.
     """
     if not freedom.base:
-        return [None]
+        yield None
+        return
     if np.isnan(links).any():
-        return []
+        return
     reached = products(standard_link(*links.swapaxes(0, 1)))
     axes = np.array(list(accumulate(mechanism.joints, np.matmul)))
     if not freedom.tool:
-        return [axes[-1] @ mechanism.tool @ inverse(reached[-1])]
+        yield axes[-1] @ mechanism.tool @ inverse(reached[-1])
+        return
     starts = [i for i, role in enumerate(roles, start=1) if role.joint]
     sliding = np.array([role.joint.prismatic for role in roles if role.joint])
     either = [joint_signs[starts]]
@@ -47,10 +50,11 @@ def possible_bases(
         # The first axis and the next that is not parallel to it decide how the base is turned.
         others = len(starts) - 1
         either = [np.array([z, *[x] * others]) for z, x in product((1, -1), repeat=2)]
-    return [align_axes(_directed(reached[starts], signs), axes, sliding) for signs in either]
+    for signs in either:
+        yield align_axes(directed(reached[starts], signs), axes, sliding)
 
 
-def _directed(frames: Matrices, signs: Integers) -> Matrices:
+def directed(frames: Matrices, signs: Integers) -> Matrices:
     """The frames with z reversed where the sign is −1."""
     directed = frames.copy()
     directed[signs < 0, :, :3, :3] *= np.array([1.0, -1.0, -1.0])

@@ -1,6 +1,7 @@
 """The valid table nearest to a handed-in one, where it is known which row is for which joint."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +13,11 @@ from service.grading.judging.own_frames.few_cells import (
     frames_from_reference,
     nearest_by_few_cells,
 )
+from service.grading.judging.own_frames.one_cell import one_cell_match
 from service.grading.judging.own_frames.reference import (
     Mechanism,
     as_table,
+    frames_on_axes,
     mechanism_at,
     reference_frames,
     regrouped,
@@ -34,13 +37,23 @@ from service.grading.judging.own_frames.written_table import (
 from service.grading.misconception import hypotheses_of
 from service.grading.part import Grading
 from service.grading.tolerances import INTENDED_POSE, UNCHANGED_CELL
-from service.kinematics.chain import Table, z_links
-from service.kinematics.chain_match import ChainMatch, match_as_written, match_tables
+from service.kinematics.chain import Table
+from service.kinematics.chain_match import (
+    ChainMatch,
+    RowConstants,
+    Target,
+    match_as_written,
+    match_tables,
+)
 from service.kinematics.dh import Convention
-from service.kinematics.frame_choice import NO_SUCH_CELL, WRONG_CELL
+from service.kinematics.frame_choice import WRONG_CELL
 from service.kinematics.frame_choice import nearest_table as search_nearest_table
+from service.kinematics.reversed_chain import (
+    reversed_cells,
+    reversed_rows,
+    reversed_targets,
+)
 from service.kinematics.tolerances import PARALLEL
-from service.kinematics.transforms import Matrices, inverse
 
 
 def nearest_for_roles(
@@ -52,7 +65,7 @@ def nearest_for_roles(
         nearest = nearest or _as_intended(roles, convention, freedom, grading)
         if nearest is not None:
             return nearest
-    return _search(roles, convention, freedom, grading)
+    return _link_by_link(roles, convention, freedom, grading)
 
 
 def _as_intended(
@@ -90,59 +103,84 @@ def in_convention(table: WrittenTable, convention: Convention) -> Table | None:
     return None if left_out.any() else as_table(links, convention)
 
 
-def _search(
+def _link_by_link(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable:
-    """The nearest valid table, found row by row: with any freedom and any number of wrong cells."""
+    """The nearest valid table with any freedom, found by comparing the links between the axes.
+
+    It is the table as written; or else it differs in one cell; or else a search finds it.
+    """
     exercise, samples = grading.exercise, grading.samples
-    scale, directions_given = exercise.length_scale, not freedom.directions
     mechanism = mechanism_at(exercise, samples)
     targets = targets_of(roles, convention, mechanism, freedom)
     rows = row_constants(roles, exercise.robot.joints, convention, samples)
-    written = np.array([row.written for row in rows])
-    signs = np.array([row.joint_sign for row in rows])
-    match = None
-    for base in possible_bases(written, signs, roles, mechanism, freedom):
-        match = match or match_as_written(
-            rows, targets, scale, directions_given=directions_given, start=base
-        )
+    match = _as_written(rows, targets, roles, mechanism, freedom, exercise.length_scale)
+    if match is None and freedom != FrameFreedom() and all(role.row for role in roles):
+        match = one_cell_match(rows, targets, roles, convention, freedom, grading)
     if match is None:
-        match = search_nearest_table(
-            rows, targets, scale, base_given=not freedom.base, directions_given=directions_given
-        )
-        if freedom.base and match.cost < WRONG_CELL:
-            # Nothing is wrong but for rounding. The search takes a free base to be wherever each
-            # row needs it; so the table that it found need not be valid from one of them.
-            bases = possible_bases(match.rows, signs, roles, mechanism, freedom)
-            asked = signs * directions_given
-            if not any(
-                match_tables(match.rows[None], asked[None], targets, scale, start=base)[0].any()
-                for base in bases
-            ):
-                match = replace(match, cost=match.cost + NO_SUCH_CELL)
+        match = _searched(rows, targets, roles, mechanism, freedom, exercise.length_scale)
     # What each cell should be: the constants and the joint variables.
     expected = np.tile(as_table(match.rows, convention), 2)
     for (i, column), joint in joint_cells(roles).items():
         sign = (freedom.directions and rows[i + 1].joint_sign) or match.joint_signs[i]
         expected[i, column] += sign * samples.values[joint.variable]
-    frames = _joint_frames(roles, match, convention, mechanism)
+    frames = frames_on_axes(match.relative_poses, match.rows, roles, convention, mechanism)
     return NearestTable(roles, expected, frames, match.cost)
 
 
-def _joint_frames(
-    roles: tuple[Role, ...], match: ChainMatch, convention: Convention, mechanism: Mechanism
-) -> Matrices:
-    """The student's frames on the joint axes as seen from the reference's.
+def _as_written(
+    rows: list[RowConstants],
+    targets: list[Target],
+    roles: tuple[Role, ...],
+    mechanism: Mechanism,
+    freedom: FrameFreedom,
+    scale: float,
+) -> ChainMatch | None:
+    """The table as written, if it is valid from any base that is possible."""
+    written = np.array([row.written for row in rows])
+    signs = np.array([row.joint_sign for row in rows])
+    for base in possible_bases(written, signs, roles, mechanism, freedom):
+        match = match_as_written(
+            rows, targets, scale, directions_given=not freedom.directions, start=base
+        )
+        if match is not None:
+            return match
+    return None
 
-    The relative pose of a joint is that of the frame which its Z starts from. That is the frame on
-    its axis in the standard convention; in the modified one, that is the frame which Z leads to.
+
+def _searched(
+    rows: list[RowConstants],
+    targets: list[Target],
+    roles: tuple[Role, ...],
+    mechanism: Mechanism,
+    freedom: FrameFreedom,
+    scale: float,
+) -> ChainMatch:
+    """The nearest valid table by a search: from the base, or from the tool if that alone is given.
+
+    Where both are free, the search takes the base to be wherever each row needs it. So a table in
+    which it finds nothing wrong, but for rounding, is searched again from each possible base.
     """
-    places = [i for i, _ in joint_cells(roles)]
-    relative_poses = match.relative_poses[places]
-    if convention is Convention.STANDARD:
-        return relative_poses
-    offsets = z_links(match.rows[1:][places])
-    return np.asarray(inverse(mechanism.offsets) @ relative_poses @ offsets)
+    search = partial(
+        search_nearest_table, length_scale=scale, directions_given=not freedom.directions
+    )
+    if not freedom.base:
+        return search(rows, targets)
+    if freedom.tool:
+        match = search(rows, targets, base_given=False)
+        if match.cost >= WRONG_CELL:
+            return match
+    else:
+        seen_from_tool = reversed_targets(targets, mechanism.offsets)
+        match = search(reversed_rows(rows), seen_from_tool)
+        match = replace(match, rows=-reversed_cells(match.rows))
+    signs = np.array([row.joint_sign for row in rows])
+    bases = possible_bases(match.rows, signs, roles, mechanism, freedom)
+    if freedom.tool:
+        return min((search(rows, targets, start=base) for base in bases), key=lambda m: m.cost)
+    [base] = bases
+    _, poses = match_tables(match.rows[None], 0 * signs[None], targets, scale, start=base)
+    return replace(match, relative_poses=poses[:, 0])
 
 
 def parallel_neighbours(

@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from service.catalogue import Exercise, ReferenceTable
 from service.grading.joint_motion import halves
-from service.grading.judging.own_frames.row_roles import variable_column
+from service.grading.judging.own_frames.row_roles import Role, joint_cells, variable_column
 from service.grading.samples import Samples
 from service.kinematics.chain import Table, axis_frames, z_links
 from service.kinematics.dh import Convention, standard_link
-from service.kinematics.transforms import Matrices
+from service.kinematics.transforms import Matrices, inverse
 
 _Cell = TypeVar("_Cell", bound=np.generic)
 
@@ -72,6 +72,29 @@ def reference_frames(exercise: Exercise, convention: Convention, samples: Sample
         return reached[[*range(len(robot.joints)), -1]]
 
     return samples.cached(("frames", convention), compute)
+
+
+def frames_on_axes(
+    relative_poses: Matrices,
+    links: Table,
+    roles: tuple[Role, ...],
+    convention: Convention,
+    mechanism: Mechanism,
+) -> Matrices:
+    """The student's frames on the joint axes, seen from the reference's: ``(joints, ..., 4, 4)``.
+
+    ``relative_poses`` ``(rows + 1, ..., 4, 4)`` are those of the frames that each joint's Z starts
+    from, ``links`` ``(rows + 1, 4, ...)`` the constants, regrouped. That is the frame on the axis
+    in the standard convention; in the modified one, that is the frame which Z leads to.
+    """
+    places = [i for i, _ in joint_cells(roles)]
+    on_axes = relative_poses[places]
+    if convention is Convention.STANDARD:
+        return on_axes
+    z = z_links(links[1:][places])
+    between = (1,) * (z.ndim - mechanism.offsets.ndim)
+    offsets = mechanism.offsets.reshape(len(places), *between, *mechanism.offsets.shape[1:])
+    return np.asarray(inverse(offsets) @ on_axes @ z)
 
 
 def tool_pose(exercise: Exercise, samples: Samples) -> Matrices:

@@ -1,0 +1,109 @@
+"""Other values of one cell of a table that make its joint axes right, where an end of it is free.
+
+If a cell is wrong, what stands before its factor and what stands behind it are two rigid bodies,
+each with joint axes fixed to it. Where the first body lies is known: from a given frame 0, or from
+its own axes, which lie as the reference's do. So each axis of the second body must lie on the
+reference's axis, as seen from the frame before the factor, and one axis that the cell moves gives
+its value. Another axis may contradict; so each value is still to be checked on the whole table.
+
+A turn t about the axis e takes a direction u to v if t = atan2(e·(u × v), u·v − (e·u)(e·v)). A
+shift along e brings a point p onto a line through r with the direction v, as near as one does, if
+it is e·(1 − v vᵀ)(r − p) / (1 − (e·v)²).
+
+The joints are all at 0. Seen from the other end, the table is the inverse product: so a given last
+frame serves as a given first one (``reversed_factors``).
+
+Shapes: L samples, K factors, n joints. Lengths are in a unit that suits the robot; angles in
+radians.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.kinematics.factors import SHIFT, TURN, Factors, Integers, screws
+from service.kinematics.tolerances import CLEARLY_NOT_PARALLEL
+from service.kinematics.transforms import Matrices, Numbers, inverse
+
+# A factor, SHIFT or TURN, and another value of it ``(L,)``.
+FactorRepair = tuple[int, int, Numbers]
+
+
+def reversed_factors(factors: Factors) -> Factors:
+    """The factors of the inverse product: in the opposite order, each the other way."""
+    return Factors(factors.convention, -factors.sizes[::-1], factors.axes[::-1])
+
+
+def repairs_by_axes(
+    factors: Factors,
+    starts: Matrices,
+    joints: Integers,
+    axes: Matrices,
+    sliding: NDArray[np.bool_],
+) -> Iterator[FactorRepair]:
+    """Values of single cells that bring one joint axis behind them onto the reference's.
+
+    ``starts`` ``(K, L, 4, 4)`` is where the frame before each factor lies, ``joints`` ``(n,)`` the
+    factor along whose z each joint acts, ``axes`` ``(n, L, 4, 4)`` where the axes should lie. Of a
+    ``sliding`` axis the direction alone counts. Either end of an axis may be its positive one.
+    """
+    behind = joints > np.arange(len(factors.axes))[:, None]
+    wanted = inverse(starts)[:, None] @ axes
+    seen = inverse(factors.before[1:])[:, None] @ factors.before[joints]
+    for kind, solved in ((SHIFT, _shifts), (TURN, _turns)):
+        sizes = factors.sizes.copy()
+        sizes[:, kind] = 0.0
+        right = screws(factors.axes, sizes[:, SHIFT], sizes[:, TURN])
+        yield from solved(right[:, None] @ seen, wanted, factors.axes, behind, sliding)
+
+
+def _shifts(
+    seen: Matrices,
+    wanted: Matrices,
+    axes: Integers,
+    behind: NDArray[np.bool_],
+    sliding: NDArray[np.bool_],
+) -> Iterator[FactorRepair]:
+    """The shift of each factor that brings the next axis across it onto the wanted one."""
+    k = np.arange(len(axes))
+    v = wanted[..., :3, 2]
+    cosine = v[k, :, :, axes]
+    square = 1 - cosine * cosine
+    moves = behind & ~sliding & (square.min(axis=-1) > CLEARLY_NOT_PARALLEL**2)
+    way = wanted[..., :3, 3] - seen[..., :3, 3]
+    along = way[k, :, :, axes] - cosine * (v * way).sum(axis=-1)
+    for factor in np.flatnonzero(moves.any(axis=1)).tolist():
+        joint = int(np.argmax(moves[factor]))
+        yield factor, SHIFT, along[factor, joint] / square[factor, joint]
+
+
+def _turns(
+    seen: Matrices,
+    wanted: Matrices,
+    axes: Integers,
+    behind: NDArray[np.bool_],
+    sliding: NDArray[np.bool_],
+) -> Iterator[FactorRepair]:
+    """The turns of each factor that bring the next axis that it turns to where it is wanted."""
+    by_direction, turned = _turn(seen[..., :3, 2], wanted[..., :3, 2], axes)
+    by_point, carried = _turn(seen[..., :3, 3], wanted[..., :3, 3], axes)
+    turned &= behind
+    carried &= behind & ~sliding
+    for factor in np.flatnonzero(turned.any(axis=1)).tolist():
+        joint = int(np.argmax(turned[factor]))
+        yield factor, TURN, by_direction[factor, joint]
+        yield factor, TURN, by_direction[factor, joint] + np.pi
+    # Axes that are all parallel to the factor's: it moves them about.
+    for factor in np.flatnonzero(carried.any(axis=1) & ~turned.any(axis=1)).tolist():
+        yield factor, TURN, by_point[factor, int(np.argmax(carried[factor]))]
+
+
+def _turn(u: Numbers, v: Numbers, axes: Integers) -> tuple[Numbers, NDArray[np.bool_]]:
+    """The turn ``(K, n, L)`` that takes ``u`` to ``v`` ``(K, n, L, 3)``, and where there is one."""
+    k = np.arange(len(axes))
+    one, two = (axes + 1) % 3, (axes + 2) % 3
+    u1, u2, v1, v2 = (w[k, :, :, across] for w in (u, v) for across in (one, two))
+    size = np.minimum(np.hypot(u1, u2), np.hypot(v1, v2)).min(axis=-1)
+    turn: Numbers = np.arctan2(u1 * v2 - u2 * v1, u1 * v1 + u2 * v2)
+    return turn, np.asarray(size > CLEARLY_NOT_PARALLEL)
