@@ -11,12 +11,12 @@ def test_a_rounded_cell_has_so_many_figures() -> None:
 
 
 def test_rounded_tables() -> None:
-    found = run(range(6), seed=3, seeds=2, policies=(GIVEN,))
+    found = run(range(4), seed=3, seeds=1, policies=(GIVEN,))
     assert found.misses == []
-    assert found.counts["changed, given"] >= 4
+    assert found.counts["changed, given"] >= 3
 
 
 def test_rounded_tables_with_free_ends() -> None:
-    found = run(range(1, 3), seed=3, policies=POLICIES[1:])
+    found = run(range(2, 3), seed=3, policies=POLICIES[1:])
     assert found.misses == []
-    assert sum(found.counts.values()) >= 20
+    assert sum(found.counts.values()) >= 12
