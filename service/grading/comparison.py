@@ -35,6 +35,8 @@ PROJECTIONS = 100
 # in each step of a fit. Where two axes are parallel but for rounding, only the sum of what is
 # measured along them has an effect; the smaller the errors that are left, the better this is seen.
 LEAST_EFFECTS = (5e-2, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-9)
+# Half the digits of a double, as it is best for differences.
+LEAST_STEP = 1e-6
 # Of a number with three figures rounding leaves off up to a hundredth.
 LARGEST_SLACK = 0.01
 
@@ -185,14 +187,22 @@ def fitted_shifts(
     the decimals. Each shift is as large as rounding or cutting off leaves it.
     """
     count = len(units)
-    steps = np.eye(count) / 2
-    ways = np.concatenate([steps, -steps, np.zeros((1, count))])
+    steps = difference_steps(units)
+    ways = np.concatenate([np.diag(steps), -np.diag(steps), np.zeros((1, count))])
 
     def linearised(shifts: Numbers) -> tuple[Numbers, Numbers]:
         found = errors(shifts + ways)
-        return found[-1], (found[:count] - found[count:-1]).T
+        return found[-1], (found[:count] - found[count:-1]).T / (2 * steps)
 
     return fitted_unknowns(linearised, units, count, tolerance)
+
+
+def difference_steps(sizes: Numbers) -> Numbers:
+    """The steps ``(N,)`` of central differences for unknowns of which 1 has an effect of ``sizes``.
+
+    They are as large as the unknowns, and so large that floating point does not show.
+    """
+    return np.maximum(0.5, LEAST_STEP / sizes)
 
 
 def fitted_unknowns(
@@ -213,7 +223,7 @@ def fitted_unknowns(
         if not (np.isfinite(rates).all() and np.isfinite(error).all()):
             return None
         largest = float(np.abs(error).max())
-        if largest <= tolerance and are_allowed(unknowns[:count]):
+        if largest <= tolerance:
             return unknowns
         if step == 0:
             first = largest
@@ -221,8 +231,11 @@ def fitted_unknowns(
             return None
         solver = np.linalg.pinv(rates / sizes, rcond=least_effect)
         moved = unknowns * sizes - solver @ error
-        bounds = np.outer([_LOWEST, _HIGHEST], sizes[:count])
-        unknowns = _nearest_inside(moved, solver @ (rates / sizes), bounds) / sizes
+        bounds = np.outer([-ROUNDED_UP, CUT_OFF], sizes[:count])
+        moved = _nearest_inside(moved, solver @ (rates / sizes), bounds)
+        # Where a unit is as small as what floating point leaves, a shift is a little outside.
+        moved[:count] = np.clip(moved[:count], *bounds)
+        unknowns = moved / sizes
     return None
 
 
@@ -261,11 +274,6 @@ class SharedDecimals:
         return moved
 
 
-def are_allowed(shifts: Numbers) -> bool:
-    """Whether rounding or cutting off may have shifted decimals so."""
-    return bool((shifts >= -ROUNDED_UP).all() and (shifts <= CUT_OFF).all())
-
-
 def _nearest_inside(unknowns: Numbers, determined: Numbers, bounds: Numbers) -> Numbers:
     """Unknowns with the same effect, the first of which are inside bounds, if there are any.
 
@@ -283,10 +291,6 @@ def _nearest_inside(unknowns: Numbers, determined: Numbers, bounds: Numbers) -> 
         inside = np.concatenate([clipped, unknowns[count:]])
         unknowns = inside - determined @ inside + effect
     return unknowns
-
-
-# A little inside, so that projections get there.
-_LOWEST, _HIGHEST = -ROUNDED_UP + 1e-7, CUT_OFF - 1e-7
 
 
 def _tolerance(expected: Numbers, scale: ArrayLike) -> Numbers:

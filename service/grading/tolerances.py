@@ -15,7 +15,7 @@ FLOATING_POINT: Final = 1e-12
 # How far the true number may lie from a decimal, in units of its last place: half a unit either way
 # if it was rounded, nearly a whole one further from 0 if digits were cut off. 0.999 is not 1.
 ROUNDED_UP: Final = 0.5 + 1e-6
-CUT_OFF: Final = 1 - 1e-6
+CUT_OFF: Final = 1 - 1e-3
 # Two numbers with three figures, in guesses which slip explains another. Relative to their size.
 ROUNDED_VALUE: Final = 1e-3
 # An angle near enough to that of a triple to say which triple a student took: beyond what rounding

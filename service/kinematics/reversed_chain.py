@@ -37,7 +37,7 @@ def reversed_rows(rows: Sequence[RowConstants]) -> list[RowConstants]:
         reversed_cells(np.array([row.is_gradable for row in rows])),
         reversed_cells(np.array([row.wrong_regardless for row in rows])),
         reversed_cells(np.array([row.absent for row in rows])),
-        reversed_cells(np.array([row.tolerance for row in rows])),
+        reversed_cells(np.array([row.slack for row in rows])),
         strict=True,
     )
     return [

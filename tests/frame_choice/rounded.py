@@ -202,7 +202,9 @@ def run(
         printed = rounded(table, figures)
         found.judge(printed, f"{figures} figures, {table.policy.name}", right=True, seeds=seeds)
         edit = changed(printed, rng)
-        if edit is not None and _matters(edit[0], printed):
+        ends = table.policy.base and table.policy.tool
+        # The oracle finds two free ends by finite differences, too coarse for a last digit.
+        if edit is not None and not ends and _matters(edit[0], printed):
             found.judge(edit[0], f"changed, {table.policy.name}", right=False, seeds=seeds)
         for cached in (exercise, oracle.samples, oracle.reference_poses):
             cached.cache_clear()

@@ -1,6 +1,7 @@
-"""A constant that is right to three figures is accepted, with a note."""
+"""A decimal with three figures is right if it is the true number, rounded or cut off."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
@@ -37,6 +38,7 @@ def arm(make_exercise: Callable[[str], Exercise]) -> Exercise:
     return make_exercise(ARM)
 
 
+# 2/3 = 0.66667, π/4 = 0.785398, π/2 = 1.570796.
 ACCEPTED = [
     (0, "alpha", "0.785"),
     (0, "alpha", "0.7854"),
@@ -45,11 +47,22 @@ ACCEPTED = [
     (0, "theta", "1.571 + q1"),
     (0, "a", "0.6667"),
     (0, "a", "0.667"),
+    (0, "a", "0.666"),
+    (0, "a", "2*0.333"),
+    (0, "alpha", "0.786 - 0.000524"),
+    (0, "alpha", "2.36 - pi/2"),
     (1, "alpha", "3.14"),
     (1, "alpha", "-3.14"),
     (1, "alpha", "3.1416"),
 ]
 REFUSED = [
+    (0, "a", "0.668"),
+    (0, "a", "0.665"),
+    (0, "alpha", "0.786"),
+    (0, "theta", "q1 + 1.58"),
+    (0, "theta", "1.001*q1 + pi/2"),
+    (0, "d", "1.999"),
+    (0, "d", "2.001"),
     (0, "alpha", "0.8"),
     (0, "alpha", "0.78"),
     (0, "theta", "q1 + 1.6"),
@@ -123,3 +136,81 @@ def test_the_note_costs_nothing_and_says_what_to_write(arm: Exercise) -> None:
     [note] = cell(report, "2", "alpha").feedback
     assert note.severity is Severity.INFO
     assert "write the number exactly" in note.message
+
+
+# The cell, just inside and just outside: rounded (half a unit) and cut off (a whole unit).
+NEAR = [
+    (0, "a", "0.66667", "0.66668"),
+    (0, "theta", "q1 + 1.57080", "q1 + 1.57081"),
+    (0, "theta", "q1 + 1.57079", "q1 + 1.57078"),
+    (1, "theta", "q2 + 0.0000000005", "q2 + 0.000000002"),
+]
+
+
+@pytest.mark.parametrize(("i", "column", "inside", "outside"), NEAR)
+def test_no_verdict_depends_on_the_draw(
+    i: int, column: str, inside: str, outside: str, arm: Exercise
+) -> None:
+    for seed in range(100):
+        drawn = replace(arm, version=f"{arm.version} {seed}")
+        assert graded(drawn, i, column, inside)[0] is Verdict.CORRECT
+        assert graded(drawn, i, column, outside)[0] is Verdict.INCORRECT
+
+
+@pytest.mark.parametrize("blanks", range(20))
+def test_no_verdict_depends_on_blanks(blanks: int, arm: Exercise) -> None:
+    """0.051 has two figures, so it is not 0.05; nor may whole turns of q2 hide what it is."""
+    rows = [*ROWS[:1], ["0", "pi", "1000" + " " * blanks, "q2 + 0.051"]]
+    assert list(not_correct(graded_table(arm, rows))) == [("2", "theta")]
+
+
+# Two parallel axes: the offsets along them add up to 0.15005; the angles are off the 15° grid.
+OWN_FRAMES = """
+title = "Parallel joints"
+source = "made for this test"
+statement = "Two parallel joints, and one that is tilted."
+[robot]
+structure = "RRR"
+convention = "standard"
+joints = ["q1", "q2", "q3"]
+table = [
+    ["0.05", "0", "0.15005", "q1"], ["1.2", "1.234", "0", "q2"], ["0.3", "0", "0.2", "q3"],
+]
+[[parts]]
+id = "table"
+kind = "dh_table"
+title = "Table"
+points = 12
+convention = "standard"
+frames = "free"
+"""
+
+
+# 0.15005 + 0.013 = 0.16305, which is rounded to 0.1631; π - 1.234 = 1.90759.
+@pytest.mark.parametrize("angle", ["1.908", "1.9076", "1.90759"])
+@pytest.mark.parametrize("offsets", [("-0.013", "0.1631"), ("0.1631", "-0.013")])
+def test_offsets_and_odd_angles_in_frames_of_ones_own(
+    offsets: tuple[str, str], angle: str, make_exercise: Callable[[str], Exercise]
+) -> None:
+    arm = make_exercise(OWN_FRAMES)
+    rows = [
+        ["0.05", "0", offsets[0], "q1"],
+        ["-1.2", angle, offsets[1], "q2 + 3.14159"],
+        ["0.3", "3.1416", "-0.200", "-q3 + 3.14159"],
+    ]
+    report = graded_table(arm, rows)
+    if not_correct(report):
+        pytest.fail(str(not_correct(report)))
+    assert report.points == report.max_points
+
+
+def test_no_short_length_hides_behind_a_long_one(
+    make_exercise: Callable[[str], Exercise],
+) -> None:
+    arm = make_exercise(OWN_FRAMES)
+    rows = [
+        ["0.0505", "0", "0", "q1"],
+        ["1.20", "1.234", "0.15005", "q2"],
+        ["0.3", "0", "0.2", "q3"],
+    ]
+    assert list(not_correct(graded_table(arm, rows))) == [("1", "a")]

@@ -26,7 +26,7 @@ from service.grading.judging.own_frames.row_roles import Role, freedom_of, pair_
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE, StudentRow, values_of
 from service.grading.samples import SAMPLES
-from service.grading.tolerances import HUGE_CELL, HUGE_LENGTH, PLAINLY_DIFFERENT
+from service.grading.tolerances import EXACT_VALUE, HUGE_CELL, HUGE_LENGTH, PLAINLY_DIFFERENT
 from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh import Convention
 from service.kinematics.frame_choice import NO_SUCH_CELL, WRONG_CELL, departure
@@ -216,8 +216,7 @@ def _judged_by(
             _labels(nearest.roles), nearest.roles, nearest.expected, shared, strict=True
         )
     )
-    as_written = not nearest.cost and all(role.row and role.row.is_exact for role in roles)
-    if as_written:
+    if not nearest.cost and _is_as_written(nearest):
         cell_matches = np.full((len(judged), len(COLUMNS)), int(Match.EXACT))
     else:
         cell_matches = _matches_of(judged, grading)
@@ -228,6 +227,14 @@ def _judged_by(
         departures=0.0 if right else departures_of(nearest.frames, grading),
         findings=remarks_on(nearest.frames, convention, grading.exercise),
     )
+
+
+def _is_as_written(nearest: NearestTable) -> bool:
+    """Whether each number is the one that was written, and not only what rounding leaves of it."""
+    rows = [role.row for role in nearest.roles if role.row is not None]
+    if len(rows) < len(nearest.roles) or not all(row.is_exact for row in rows):
+        return False
+    return bool(np.abs(values_of(rows) - nearest.expected).max() < EXACT_VALUE)
 
 
 def departures_of(frames: Matrices, grading: Grading) -> float:

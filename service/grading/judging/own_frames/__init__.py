@@ -4,6 +4,7 @@ In the order in which they are used:
 
 - ``row_roles``: which row is for which joint, and what the exercise leaves free
 - ``rounded_angles``: 1.57 read as the π/2 that it stands for
+- ``rounded_cells``: the numbers that all rounded decimals of a table stand for
 - ``nearest_table``: the valid table nearest to such rows, found in one of these ways:
 
   - ``few_cells``: the table as written, or with one or two cells repaired, where base, tool and

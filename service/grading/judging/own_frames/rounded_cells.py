@@ -16,7 +16,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from service.grading.comparison import SharedDecimals, fitted_unknowns, nearly_equal
+from service.grading.comparison import (
+    SharedDecimals,
+    difference_steps,
+    fitted_unknowns,
+    nearly_equal,
+)
 from service.grading.judging.own_frames.base_frame import possible_bases
 from service.grading.judging.own_frames.constants import row_constants
 from service.grading.judging.own_frames.few_cells import NearestTable, frames_from_reference
@@ -104,8 +109,9 @@ class _Chain:
     def fit(self) -> tuple[Numbers, Numbers] | None:
         """The shifts ``(count,)`` and other unknowns ``(free, L)`` that leave no error."""
         count, sets = self.decimals.count, self.links.shape[-1]
-        steps = np.eye(count + self.free) / 2
-        ways = np.concatenate([steps, -steps, np.zeros((1, len(steps)))])
+        sizes = np.concatenate([self._sizes(), np.full(self.free, SMALL)])
+        steps = difference_steps(sizes)
+        ways = np.concatenate([np.diag(steps), -np.diag(steps), np.zeros((1, len(steps)))])
 
         def split(unknowns: Numbers) -> tuple[Numbers, Numbers]:
             return unknowns[:count], unknowns[count:].reshape(self.free, sets)
@@ -114,13 +120,14 @@ class _Chain:
             shifts, free = split(unknowns)
             found = self.misfits(ways[:, :count] + shifts, ways[:, count:, None] + free)
             rates = found[: len(steps)] - found[len(steps) : -1]
+            rates /= 2 * steps[:, None, None]
             # Each of the other unknowns acts at its own set of links alone.
             own = np.einsum("fnl,lk->flnk", rates[count:], np.eye(sets))
             size = found[-1].size
             columns = [rates[:count].reshape(count, size), own.reshape(self.free * sets, size)]
             return found[-1].ravel(), np.concatenate(columns).T
 
-        sizes = np.concatenate([self._sizes(), np.full(self.free * sets, SMALL)])
+        sizes = np.concatenate([sizes[:count], np.full(self.free * sets, SMALL)])
         found = fitted_unknowns(linearised, sizes, count, EXACT_VALUE)
         return None if found is None else split(found)
 
@@ -234,7 +241,7 @@ def _chains(
     if freedom.base:
         near = row_constants(based_on, exercise.robot.joints, convention, samples)
         of_base = np.array([row.written for row in near])
-        bases = possible_bases(of_base, signs, based_on, mechanism, freedom)
+        bases = list(possible_bases(of_base, signs, based_on, mechanism, freedom))
     has_letters = any(variable.joint is None for variable in exercise.variables)
     count = (HALF if unknown else LINKS) if has_letters else 1
     return [

@@ -1,0 +1,40 @@
+"""The rounded decimals of a formula: those with three figures or more, behind a point."""
+
+import numpy as np
+import pytest
+
+from service.expressions import Vocabulary, decimals_of, joint_variable, read
+
+ARM = Vocabulary([joint_variable(1)])
+
+
+@pytest.mark.parametrize(
+    ("text", "units"),
+    [
+        ("1.57", [0.01]),
+        ("0.100", [0.001]),
+        ("0.0505", [0.0001]),
+        ("1.57e-2", [0.0001]),
+        ("q1 + 1.5708", [0.0001]),
+        ("0.866 c1 + 2.50 s1", [0.001, 0.01]),
+        ("1.6", []),
+        ("0.05", []),
+        ("0.000", []),
+        ("57", []),
+        ("1000", []),
+        ("1000.", []),
+        ("1e-3", []),
+    ],
+)
+def test_units(text: str, units: list[float]) -> None:
+    assert decimals_of(read(text, ARM)).units == pytest.approx(units)
+
+
+def test_shifted_decimals() -> None:
+    decimals = decimals_of(read("2*cos(q1) + 0.125*q1 - 57.3deg", ARM))
+    q1 = np.array([0.0, 1.0])
+    found = decimals.shifted(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, -0.5]]), {"theta1": q1})
+    written = 2 * np.cos(q1) + 0.125 * q1 - np.radians(57.3)
+    assert found[0] == pytest.approx(written)
+    assert found[1] == pytest.approx(written + 0.001 * q1)
+    assert found[2] == pytest.approx(written + np.radians(0.05))
