@@ -19,7 +19,7 @@ TESTS = ROOT / "tests"
 
 # Each package, or file of service/ itself, may import those that stand before it.
 PACKAGES = (
-    "expressions", "grids", "kinematics", "catalogue", "grading", "solutions", "figures",
+    "version", "expressions", "grids", "kinematics", "catalogue", "grading", "solutions", "figures",
     "authoring", "submissions", "formats", "attempts", "access", "client", "settings",
     "kinds_check", "api", "web", "cli", "app", "__main__",
 )  # fmt: skip

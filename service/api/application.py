@@ -3,7 +3,6 @@
 import gc
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from importlib.metadata import version
 from typing import Any
 
 from fastapi import FastAPI
@@ -17,6 +16,7 @@ from service.api.lookup import Catalogue
 from service.api.openapi import any_other_failure, with_problem_schema
 from service.catalogue import FeedbackLevel
 from service.submissions.strict_json import MAX_BODY_SIZE
+from service.version import VERSION
 
 DESCRIPTION = """
 Grades Denavit-Hartenberg tables, transforms and forward kinematics, row by row, and says why.
@@ -45,7 +45,7 @@ class _Api(FastAPI):
         self._cors_origins = cors_origins
         super().__init__(
             title="DH Grader",
-            version=version("dh-grader"),
+            version=VERSION,
             description=DESCRIPTION,
             redoc_url=None,
             redirect_slashes=False,

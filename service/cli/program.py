@@ -1,7 +1,6 @@
 """The commands put together."""
 
 import sys
-from importlib.metadata import version
 from typing import Annotated, Any
 
 import typer
@@ -14,6 +13,7 @@ from service.cli.terminal import give_up
 from service.kinds_check import check_kinds
 from service.settings import SettingsError
 from service.submissions.lookup import UnknownExerciseError
+from service.version import VERSION
 
 
 class _Commands(TyperGroup):
@@ -43,7 +43,7 @@ program.command("serve")(serve.command)
 
 def _show_version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"dh-grader {version('dh-grader')}")
+        typer.echo(f"dh-grader {VERSION}")
         raise typer.Exit
 
 

@@ -3,8 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from importlib.metadata import version
-from typing import Final
 
 from service.catalogue import Exercise, FeedbackLevel, PartSpec
 from service.expressions import AngleUnit
@@ -16,9 +14,7 @@ from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.entry import Reader
 from service.grading.report import PartReport, Place, Report, Verdict, rounded_points
 from service.grading.samples import draw
-
-# The program's version, as it is installed.
-VERSION: Final = version("dh-grader")
+from service.version import VERSION
 
 
 @dataclass(frozen=True, slots=True)

@@ -61,7 +61,9 @@ class Grading:
 
     def spelling(self, entries: Iterable[Entry]) -> Spelling:
         """The spelling of the entries of a part, in which the student is answered."""
-        typed = [entry.expression.typed for entry in entries if entry.expression is not None]
+        # Half the cells of a table are a bare 0, which shows nothing.
+        expressions = [entry.expression for entry in entries]
+        typed = [each.typed for each in expressions if each is not None and each.source != "0"]
         degrees = self.reader.angle_unit == "degrees"
         return spelling_of(typed, self.exercise.vocabulary, degrees=degrees)
 

@@ -7,7 +7,14 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import Severity, Verdict
-from tests.grading.support.submitting import cell, codes, graded_pose, graded_table, not_correct
+from tests.grading.support.submitting import (
+    cell,
+    codes,
+    codes_at,
+    graded_pose,
+    graded_table,
+    not_correct,
+)
 
 # An arm whose pose holds constants: sqrt(2)/2 in row 3, 2/3 as a length.
 ARM = """
@@ -122,10 +129,10 @@ def test_what_is_exact_carries_no_note(arm: Exercise) -> None:
 )
 def test_constants_in_a_pose(text: str, verdict: Verdict, arm: Exercise) -> None:
     matrix = [["0"] * 4, ["0"] * 4, ["0", "0", text, "0"], ["0", "0", "0", "1"]]
-    found = cell(graded_pose(arm, matrix), "3", "3")
-    assert found.verdict is verdict
+    report = graded_pose(arm, matrix)
+    assert cell(report, "3", "3").verdict is verdict
     note = [] if text.startswith("-sqrt") else ["rounded"]
-    assert codes(found) == (note if verdict is Verdict.CORRECT else ["value"])
+    assert codes_at(report, "3", "3") == (note if verdict is Verdict.CORRECT else ["value"])
 
 
 def test_the_note_costs_nothing_and_says_what_to_write(arm: Exercise) -> None:

@@ -127,13 +127,9 @@ def spelling_of(
     for formula in formulas:
         if (unit := _unit(formula)) is not None:
             angles[unit] += 1
-        for node in _nodes(formula.tree):
-            typed = formula.source[node.start : node.end].strip("() ")
-            if isinstance(node, SymbolNode) and node.symbol.name not in names:
-                if _is_name(typed, node.symbol, vocabulary):
-                    names[node.symbol.name] = typed
-            elif isinstance(node, Call) and not shorthand:
-                shorthand = _SHORT.fullmatch(typed) is not None
+        names = _names(formula, vocabulary) | names
+        calls = () if shorthand else _nodes(formula.tree)
+        shorthand = shorthand or any(_is_short(node, formula) for node in calls)
     shorthand = shorthand and not any(map(_SHORT_NAME.fullmatch, vocabulary.by_name))
     names |= _likewise(names, vocabulary)
     most = angles.most_common(1)
@@ -142,9 +138,10 @@ def spelling_of(
     return _with_unit(replace(found, shorthand=shorthand), unit, degrees=degrees)
 
 
-def spelling_for(formula: TypedFormula, common: Spelling) -> Spelling:
-    """The spelling to answer one formula in: with its own unit of angles, if it shows one."""
+def spelling_for(formula: TypedFormula, common: Spelling, vocabulary: Vocabulary) -> Spelling:
+    """The spelling to answer one formula in: with its own names, and its own unit of angles."""
     unit = _unit(formula)
+    common = replace(common, names={**common.names, **_names(formula, vocabulary)})
     if unit is None:
         return common if common.degree or formula.degrees else replace(common, degree="deg")
     return _with_unit(common, unit, degrees=formula.degrees)
@@ -162,6 +159,8 @@ def _unit(formula: TypedFormula) -> str | None:
     That is "pi" or "π", or what stands behind a number of degrees.
     """
     source, tree, degrees = formula
+    if type(tree) is SymbolNode:  # as most are
+        return None
     if _DEGREE_SIGN.search(source):
         return "°"
     if _DEGREE_WORD.search(source):
@@ -184,11 +183,31 @@ def _nodes(tree: Node) -> Iterator[Node]:
         pending.extend(reversed(children(node)))
 
 
+def _names(formula: TypedFormula, vocabulary: Vocabulary) -> dict[str, str]:
+    """The names of the symbols in a formula as they were typed."""
+    names: dict[str, str] = {}
+    for node in _nodes(formula.tree):
+        if isinstance(node, SymbolNode) and node.symbol.name not in names:
+            typed = _typed(node, formula)
+            if _is_name(typed, node.symbol, vocabulary):
+                names[node.symbol.name] = typed
+    return names
+
+
+def _is_short(node: Node, formula: TypedFormula) -> bool:
+    return isinstance(node, Call) and _SHORT.fullmatch(_typed(node, formula)) is not None
+
+
+def _typed(node: Node, formula: TypedFormula) -> str:
+    return formula.source[node.start : node.end].strip("() ")
+
+
 def _is_name(typed: str, symbol: Symbol, vocabulary: Vocabulary) -> bool:
     """Whether what was typed is one of the symbol's names, and can be typed again."""
-    return (
-        _NAME.fullmatch(typed) is not None and vocabulary.by_name.get(normal_form(typed)) is symbol
-    )
+    if typed == symbol.name:
+        return True
+    known = _NAME.fullmatch(typed) and vocabulary.by_name.get(normal_form(typed))
+    return known == symbol
 
 
 def _likewise(names: Mapping[str, str], vocabulary: Vocabulary) -> dict[str, str]:
@@ -198,13 +217,13 @@ def _likewise(names: Mapping[str, str], vocabulary: Vocabulary) -> dict[str, str
     """
     found: dict[str, str] = {}
     joints = [symbol for symbol in vocabulary.symbols if symbol.joint is not None]
+    models = [names[symbol.name] for symbol in joints if symbol.name in names]
     for symbol in joints:
-        match = _INDEXED.fullmatch(names.get(symbol.name, ""))
-        for other in joints if match else ():
-            if match is None or other.name in names or other.name in found:
-                continue
-            index = str(other.joint)
+        if symbol.name in names:
+            continue
+        for match in filter(None, map(_INDEXED.fullmatch, models)):
+            index = str(symbol.joint)
             typed = match[1] + (index.translate(_LOWERED) if match[2][0] >= "₀" else index)
-            if _is_name(typed, other, vocabulary):
-                found[other.name] = typed
+            if symbol.name not in found and _is_name(typed, symbol, vocabulary):
+                found[symbol.name] = typed
     return found

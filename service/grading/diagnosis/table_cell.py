@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from service.catalogue import Joint
-from service.expressions.printing.spelling import spelling_for
+from service.expressions.printing.spelling import PLAIN, spelling_for
 from service.grading.comparison import Match
 from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import (
@@ -255,17 +255,20 @@ def diagnose_cells(judgement: Judgement, grading: Grading) -> dict[tuple[int, in
     values = np.array([actual for *_, actual, _ in written] + wanted)
     counts = coefficients(values, joints, samples, np.array(angles * 2))
     scales = column_scales(grading).tolist()
-    spelling = grading.spelling(
-        entry for judged in judgement.rows if judged.row for entry in judged.row.entries
-    )
+    spelling = PLAIN
+    # A hint names no symbols but joint variables that the cell contains.
+    if grading.corrects or any(map(any, filter(None, counts[: len(written)]))):
+        rows = [judged.row for judged in judgement.rows if judged.row is not None]
+        spelling = grading.spelling(entry for row in rows for entry in row.entries)
     slips = {}
     for k, (i, column, judged, actual, expression) in enumerate(written):
         contained, required = counts[k], counts[len(written) + k]
-        correction = None
+        own, correction = spelling, None
+        if spelling is not PLAIN:
+            own = spelling_for(expression.typed, spelling, grading.exercise.vocabulary)
         if grading.corrects:
-            beside = spelling_for(expression.typed, spelling)
             exercise = grading.exercise
-            correction = sum_formula(wanted[k], required, angles[k], exercise, samples, beside)
+            correction = sum_formula(wanted[k], required, angles[k], exercise, samples, own)
         slips[i, column] = diagnose(
             WrongCell(
                 expression=expression,
@@ -273,7 +276,7 @@ def diagnose_cells(judgement: Judgement, grading: Grading) -> dict[tuple[int, in
                 expected=wanted[k],
                 correction=correction,
                 corrects=grading.corrects,
-                spelling=spelling,
+                spelling=own,
                 samples=samples,
                 scale=scales[column],
                 angle=angles[k],

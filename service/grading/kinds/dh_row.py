@@ -114,9 +114,9 @@ def _slip(
     angle = bool(IS_ANGLE[i])
     correction = None
     if grading.corrects:
-        beside = spelling_for(expression.typed, spelling)
         exercise, samples = grading.exercise, grading.samples
-        correction = value_formula(expected, angle, exercise, samples, beside)
+        own = spelling_for(expression.typed, spelling, exercise.vocabulary)
+        correction = value_formula(expected, angle, exercise, samples, own)
     return diagnose(
         WrongCell(
             expression=expression,

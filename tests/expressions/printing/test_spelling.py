@@ -84,11 +84,12 @@ def test_where_bare_numbers_are_degrees_a_right_angle_is_bare() -> None:
     assert spelling("90°", unit="degrees").degree == "°"
 
 
-def test_one_entry_is_answered_in_its_own_unit() -> None:
+def test_one_entry_is_answered_in_its_own_unit_and_names() -> None:
     common = spelling("pi/2", "pi/2", "90°")
-    assert spelling_for(read("90°", ARM).typed, common).degree == "°"
-    assert spelling_for(read("90°", ARM).typed, common).in_degrees
-    assert spelling_for(read("q1", ARM).typed, common) == common
+    assert spelling_for(read("90°", ARM).typed, common, ARM).degree == "°"
+    assert spelling_for(read("90°", ARM).typed, common, ARM).in_degrees
+    assert spelling_for(read("q1", ARM).typed, spelling("θ1"), ARM).names["theta1"] == "q1"
+    assert spelling_for(read("d3", ARM).typed, common, ARM).pi == common.pi
 
 
 @pytest.mark.parametrize(
