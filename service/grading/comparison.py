@@ -37,6 +37,8 @@ PROJECTIONS = 100
 LEAST_EFFECTS = (5e-2, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-9)
 # Half the digits of a double, as it is best for differences.
 LEAST_STEP = 1e-6
+# How far outside a shift may lie, relative to the tolerance of the errors.
+FLOATING_SHIFT = 1e-3
 # Of a number with three figures rounding leaves off up to a hundredth.
 LARGEST_SLACK = 0.01
 
@@ -223,7 +225,10 @@ def fitted_unknowns(
         if not (np.isfinite(rates).all() and np.isfinite(error).all()):
             return None
         largest = float(np.abs(error).max())
-        if largest <= tolerance:
+        # Where a unit is as small as what floating point leaves, a shift is a little outside.
+        shifts, outside = unknowns[:count], FLOATING_SHIFT * tolerance / sizes[:count]
+        allowed = (shifts >= -ROUNDED_UP - outside) & (shifts <= CUT_OFF + outside)
+        if largest <= tolerance and allowed.all():
             return unknowns
         if step == 0:
             first = largest
@@ -232,10 +237,7 @@ def fitted_unknowns(
         solver = np.linalg.pinv(rates / sizes, rcond=least_effect)
         moved = unknowns * sizes - solver @ error
         bounds = np.outer([-ROUNDED_UP, CUT_OFF], sizes[:count])
-        moved = _nearest_inside(moved, solver @ (rates / sizes), bounds)
-        # Where a unit is as small as what floating point leaves, a shift is a little outside.
-        moved[:count] = np.clip(moved[:count], *bounds)
-        unknowns = moved / sizes
+        unknowns = _nearest_inside(moved, solver @ (rates / sizes), bounds) / sizes
     return None
 
 

@@ -18,9 +18,8 @@ ROUNDED_UP: Final = 0.5 + 1e-6
 CUT_OFF: Final = 1 - 1e-3
 # Two numbers with three figures, in guesses which slip explains another. Relative to their size.
 ROUNDED_VALUE: Final = 1e-3
-# An angle near enough to that of a triple to say which triple a student took: beyond what rounding
-# does to three figures.
-NEAR_ANGLE: Final = 1e-2
+# An angle, and that of a triple: which one a student took. So narrow that no angle is in both.
+SAME_TRIPLE: Final = 1e-6
 
 # By how much a value changes with the joints, and by how much it should.
 SAME_MOTION: Final = 1e-6
