@@ -30,13 +30,19 @@ from service.kinematics.transforms import Numbers
 # More decimals in one entry are taken as they are written: the work grows with their number.
 MAX_DECIMALS = 16
 MAX_SHARED_DECIMALS = 64
-PROJECTIONS = 100
+PROJECTIONS = 200
+# Projections that go on beyond the bounds by nearly as much as they came meet sooner (Motzkin).
+RELAXATION = 1.9
 # What an unknown must at least do to the errors, for its size and relative to those that do most,
 # in each step of a fit. Where two axes are parallel but for rounding, only the sum of what is
 # measured along them has an effect; the smaller the errors that are left, the better this is seen.
 LEAST_EFFECTS = (5e-2, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-9)
 # Half the digits of a double, as it is best for differences.
 LEAST_STEP = 1e-6
+# A shift that is further out of bounds than this share of the first error will not come back.
+MISSED = 0.1
+# How far outside a shift may lie, relative to the tolerance of the errors.
+FLOATING_SHIFT = 1e-3
 # Of a number with three figures rounding leaves off up to a hundredth.
 LARGEST_SLACK = 0.01
 
@@ -217,24 +223,26 @@ def fitted_unknowns(
     derivative ``(n, N)``; ``sizes`` ``(N,)`` is how large an error an unknown makes that acts
     directly. All unknowns are small, so Gauss and Newton's method needs few steps.
     """
-    unknowns, first = np.zeros(len(sizes)), np.inf
+    unknowns, first, beyond = np.zeros(len(sizes)), np.inf, 0.0
     for step, least_effect in enumerate(LEAST_EFFECTS):
         error, rates = linearised(unknowns)
         if not (np.isfinite(rates).all() and np.isfinite(error).all()):
             return None
         largest = float(np.abs(error).max())
-        if largest <= tolerance:
+        # Where a unit is as small as what floating point leaves, a shift is a little outside.
+        shifts, outside = unknowns[:count], FLOATING_SHIFT * tolerance / sizes[:count]
+        allowed = (shifts >= -ROUNDED_UP - outside) & (shifts <= CUT_OFF + outside)
+        if largest <= tolerance and allowed.all():
             return unknowns
         if step == 0:
             first = largest
-        elif step > 1 and largest > first / 2:
+        elif step > 1 and (largest > first / 2 or beyond > MISSED * first):
             return None
         solver = np.linalg.pinv(rates / sizes, rcond=least_effect)
         moved = unknowns * sizes - solver @ error
         bounds = np.outer([-ROUNDED_UP, CUT_OFF], sizes[:count])
         moved = _nearest_inside(moved, solver @ (rates / sizes), bounds)
-        # Where a unit is as small as what floating point leaves, a shift is a little outside.
-        moved[:count] = np.clip(moved[:count], *bounds)
+        beyond = float(np.abs(moved[:count] - np.clip(moved[:count], *bounds)).max())
         unknowns = moved / sizes
     return None
 
@@ -288,7 +296,8 @@ def _nearest_inside(unknowns: Numbers, determined: Numbers, bounds: Numbers) -> 
         clipped = np.clip(unknowns[:count], lower, upper)
         if (clipped == unknowns[:count]).all():
             break
-        inside = np.concatenate([clipped, unknowns[count:]])
+        inside = unknowns.copy()
+        inside[:count] += RELAXATION * (clipped - unknowns[:count])
         unknowns = inside - determined @ inside + effect
     return unknowns
 

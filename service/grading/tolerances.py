@@ -18,9 +18,8 @@ ROUNDED_UP: Final = 0.5 + 1e-6
 CUT_OFF: Final = 1 - 1e-3
 # Two numbers with three figures, in guesses which slip explains another. Relative to their size.
 ROUNDED_VALUE: Final = 1e-3
-# An angle near enough to that of a triple to say which triple a student took: beyond what rounding
-# does to three figures.
-NEAR_ANGLE: Final = 1e-2
+# An angle, and that of a triple: which one a student took. So narrow that no angle is in both.
+SAME_TRIPLE: Final = 1e-6
 
 # A cell of the right answer, and of the lazy one: formulas of the same value.
 SAME_CONTENT: Final = 1e-9

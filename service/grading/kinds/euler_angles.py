@@ -18,6 +18,7 @@ from service.grading.comparison import (
     difference,
     entry_matches,
     fitted_shifts,
+    rounding_slack,
 )
 from service.grading.diagnosis.angle import has_arctangent
 from service.grading.diagnosis.euler_triple import RepairedTriple, WrongTriple, explain_triple
@@ -33,7 +34,7 @@ from service.grading.part import Content, Grading, Judged
 from service.grading.reading.entry import Entry
 from service.grading.reading.value_list import StudentValues, read_list
 from service.grading.report import Correction, Severity
-from service.grading.tolerances import EXACT_VALUE, NEAR_ANGLE
+from service.grading.tolerances import EXACT_VALUE, SAME_TRIPLE
 from service.kinematics.rotations import (
     from_angles,
     is_singular,
@@ -62,7 +63,8 @@ def judge(part: EulerAnglesSpec, answer: StudentValues, grading: Grading) -> Jud
     """The list with one row for each angle."""
     turns, fixed = part.turns, part.axes == "fixed"
     angles, rotation = answer.values, _expected_rotation(part, grading)
-    expected = nearest_triple(angles, rotation, turns, fixed=fixed)
+    slack = [rounding_slack(each, grading.samples) if each else 0.0 for each in answer.expressions]
+    expected = nearest_triple(angles, rotation, turns, fixed=fixed, slack=slack)
     found = _found(answer, expected, rotation, part, grading)
     slips: dict[tuple[int, int], Finding] = {}
     findings: tuple[Finding, ...] = ()
@@ -133,21 +135,27 @@ def _are_rounded(
 
 
 def nearest_triple(
-    angles: Numbers, rotation: Matrices, sequence: str, *, fixed: bool = False
+    angles: Numbers,
+    rotation: Matrices,
+    sequence: str,
+    *,
+    fixed: bool = False,
+    slack: Sequence[float] = (0.0, 0.0, 0.0),
 ) -> Numbers:
     """Of all triples ``(3, SAMPLES)`` that describe ``rotation``, the one nearest to ``angles``.
 
-    Nearest is the one that the fewest angles differ from. A NaN differs from nothing.
+    Nearest is the one that the fewest angles differ from by more than ``slack``, what rounding may
+    have done to each of them. A NaN differs from nothing.
     """
     if fixed:
-        return nearest_triple(angles[::-1], rotation, sequence[::-1])[::-1]
+        return nearest_triple(angles[::-1], rotation, sequence[::-1], slack=slack[::-1])[::-1]
     one = to_angles(sequence, rotation)
     singular = is_singular(sequence, rotation)
     if singular.any():
         one = np.where(singular[:, None], _singular_triple(angles, one, rotation, sequence), one)
     both = np.stack([one, np.where(singular[:, None], one, other_triple(sequence, one))])
     off = np.nan_to_num(np.abs(difference(angles.T, both, angle=True)))
-    hit = off <= NEAR_ANGLE * np.maximum(1.0, np.abs(both))
+    hit = off <= np.maximum(slack, SAME_TRIPLE)
     return np.asarray(both[_family(off, hit), np.arange(len(one))].T)
 
 

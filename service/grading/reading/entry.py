@@ -48,11 +48,6 @@ class Entry:
         """Whether there is an expression to be judged."""
         return self.expression is not None
 
-    @property
-    def may_be_rounded(self) -> bool:
-        """Whether a decimal number was written: then, and only then, can something be rounded."""
-        return self.expression is not None and self.expression.has_decimal
-
 
 @dataclass(frozen=True, slots=True)
 class Reader:

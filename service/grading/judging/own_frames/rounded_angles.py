@@ -9,6 +9,7 @@ its last digit stands for it: 2.094 for 2π/3, but not 2.0951.
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from service.catalogue import Exercise
 from service.catalogue.robot import at_home
@@ -22,6 +23,7 @@ from service.kinematics.chain import COLUMNS
 from service.kinematics.transforms import Numbers
 
 STEP = np.pi / 12
+EVERY_COLUMN = np.ones(len(COLUMNS), dtype=np.bool_)
 
 
 def with_exact_angles(
@@ -31,11 +33,11 @@ def with_exact_angles(
 
     Where no angle was rounded, the result is ``roles`` itself.
     """
-    slack = slack_of_cells(roles, samples)
-    if not slack[:, IS_ANGLE].any() or not _turns_in_steps(exercise, samples):
+    slack = slack_of_cells(roles, samples, IS_ANGLE)
+    if not slack.any() or not _turns_in_steps(exercise, samples):
         return roles
     values = handed_in_values(roles)
-    error = _rounding_errors(values, variables_of(roles, samples), slack * IS_ANGLE)
+    error = _rounding_errors(values, variables_of(roles, samples), slack)
     exact = values - error[..., None]
     return tuple(
         replace(role, row=replace(role.row, values=exact[i], as_written=role.row.values))
@@ -45,17 +47,17 @@ def with_exact_angles(
     )
 
 
-def slack_of_cells(roles: tuple[Role, ...], samples: Samples) -> Numbers:
-    """By how much rounding may have moved each cell, ``(rows, 4)``."""
-    nothing = [0.0] * len(COLUMNS)
-    return np.array(
-        [
-            [rounding_slack(each, samples) if each else 0.0 for each in role.row.expressions]
-            if role.row
-            else nothing
-            for role in roles
-        ]
-    )
+def slack_of_cells(
+    roles: tuple[Role, ...], samples: Samples, columns: NDArray[np.bool_] = EVERY_COLUMN
+) -> Numbers:
+    """By how much rounding may have moved each cell of these columns, ``(rows, 4)``; else 0."""
+    slack = np.zeros((len(roles), len(COLUMNS)))
+    for i, role in enumerate(roles):
+        for column in np.flatnonzero(columns).tolist() if role.row else ():
+            expression = role.row.entries[column].expression if role.row else None
+            if expression is not None and expression.has_decimal:
+                slack[i, column] = rounding_slack(expression, samples)
+    return slack
 
 
 def _rounding_errors(values: Numbers, variables: Numbers, slack: Numbers) -> Numbers:

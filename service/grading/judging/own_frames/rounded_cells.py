@@ -32,7 +32,7 @@ from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE
 from service.grading.samples import HALF, SAMPLES
 from service.grading.tolerances import EXACT_VALUE
-from service.kinematics.chain import Table, pose
+from service.kinematics.chain import COLUMNS, Table, pose
 from service.kinematics.chain_match import Target, match_tables, misfits
 from service.kinematics.dh import Convention
 from service.kinematics.factors import CellIndex
@@ -164,14 +164,16 @@ def with_rounded_cells(
     It was computed from the numbers as written, so that the right cells, too, seem a little off.
     """
     roles = nearest.roles
-    decimals = _decimals(roles, grading)
-    if nearest.cost < WRONG_CELL or decimals is None:
+    if nearest.cost < WRONG_CELL or _decimals(roles, grading) is None:
         return nearest
     written = _as_written(roles)
     handed_in, scale = handed_in_values(written), grading.exercise.length_scale
     scales = np.where(IS_ANGLE, 1.0, scale)
     near = nearly_equal(handed_in, nearest.expected, scales, IS_ANGLE[:, None])
     unknown = [(i, column) for i, column in np.argwhere(~near).tolist()]
+    decimals = _decimals(roles, grading, unknown)
+    if decimals is None:
+        return nearest
     start = handed_in.copy()
     for cell in unknown:
         start[cell] = nearest.expected[cell]
@@ -195,12 +197,17 @@ def with_rounded_cells(
     return nearest
 
 
-def _decimals(roles: tuple[Role, ...], grading: Grading) -> SharedDecimals | None:
+def _decimals(
+    roles: tuple[Role, ...], grading: Grading, left_out: Sequence[CellIndex] = ()
+) -> SharedDecimals | None:
     """The rounded decimals of a whole table; None where it has none, or is not whole."""
     rows = [role.row for role in roles if role.row is not None]
     if len(rows) < len(roles) or not np.isfinite(handed_in_values(roles)).all():
         return None
-    decimals = SharedDecimals([each for row in rows for each in row.expressions], grading.samples)
+    expressions = [each for row in rows for each in row.expressions]
+    for i, column in left_out:
+        expressions[len(COLUMNS) * i + column] = None
+    decimals = SharedDecimals(expressions, grading.samples)
     return decimals if decimals.count else None
 
 
