@@ -126,6 +126,12 @@ class Judged:
         """Whether nothing is wrong, unread or missing."""
         return not self.slips and all(row.verdict is Verdict.CORRECT for row in self.rows)
 
+    @property
+    def is_wrong(self) -> bool:
+        """Whether anything that was read is wrong."""
+        cells = (cell.verdict for row in self.rows for cell in row.cells)
+        return self.slips > 0 or Verdict.INCORRECT in cells
+
 
 class AnswerKind(Protocol):
     """The reading and the judging of answers of one kind.

@@ -9,7 +9,7 @@ from service.grading import Severity, Verdict
 from tests.grading.support.robots import COLUMNS, EXACT, ROBOTS, Robot
 from tests.grading.support.slips import Slip, slips
 from tests.grading.support.submitting import cell, graded_table, not_correct, row
-from tests.grading.support.worth import about, points
+from tests.grading.support.worth import about, is_known, points
 
 CELLS = [
     (robot, i, j) for robot in ROBOTS for i in range(len(robot.rows)) for j in range(len(COLUMNS))
@@ -35,7 +35,8 @@ def check(slip: Slip, exercise: Exercise) -> None:
 
     label, column = slip.robot.labels[slip.row], COLUMNS[slip.column]
     assert not_correct(report) == {(label, column): slip.verdict}, slip
-    expected = points(slip.robot, report.max_points, [slip.row])
+    wrong = slip.verdict is Verdict.INCORRECT or is_known(slip.robot, slip.row, slip.column)
+    expected = points(slip.robot, report.max_points, [slip.row] * wrong, [slip.row] * (not wrong))
     assert report.verdict is Verdict.PARTIAL, slip
     assert [row.points for row in report.rows] == about(expected), slip
     assert report.points == pytest.approx(sum(expected), abs=1e-5), slip

@@ -10,6 +10,7 @@ import pytest
 
 from service.catalogue import Exercise, shipped_folder
 from service.grading import PartReport, Severity, Submission, Verdict, grade
+from service.grading.report import messages_of
 from tests.frame_choice.generator import reassignment
 from tests.frame_choice.robots import (
     COLUMNS,
@@ -56,11 +57,12 @@ def changed(answer: Any, cells: list[Place], text: str) -> Any:
 
 def blamed(report: PartReport, unread: Verdict) -> list[tuple[object, ...]]:
     """All that is said against the whole, and against cells that were read."""
-    read = [cell for row in report.rows for cell in row.cells if cell.verdict is not unread]
+    verdicts = {(row.label, cell.label): cell.verdict for row in report.rows for cell in row.cells}
     messages = [
-        *report.feedback,
-        *(message for row in report.rows for message in row.feedback),
-        *(message for cell in read for message in cell.feedback),
+        message
+        for message, told_of, _ in messages_of(report)
+        # A message on unread cells alone may stand with the part, once for all of them.
+        if not told_of or any(verdicts.get((at.row, at.cell or "")) is not unread for at in told_of)
     ]
     wrong = [
         (row.label, cell.label, cell.verdict)

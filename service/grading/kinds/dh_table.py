@@ -73,7 +73,8 @@ def _with_rows_too_many(
     rows = tuple(answer.rows[i] for i in kept)
     without = judge(part, replace(answer, rows=rows, values=answer.values[kept]), grading)
     extra = [i for i, row in enumerate(answer.rows) if i not in kept and not row.is_zero]
-    messages = grading.visible(tuple(map(_row_too_many, extra)))
+    # Where nothing that was read is wrong, the table may be right.
+    messages = grading.visible(tuple(map(_row_too_many, extra))) if judged.is_wrong else ()
     of_mechanism = {row.label for row in without.rows}
     beside = [row for row in judged.rows if row.label not in of_mechanism]
     wrong = [row for row in beside if row.verdict is not Verdict.CORRECT]

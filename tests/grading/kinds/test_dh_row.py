@@ -86,7 +86,7 @@ def test_a_wrong_cell_costs_itself(
     report = part(handed_in(conditions, {"fourth": FOURTH | cells}), "fourth")
     assert {cell for _, cell in not_correct(report)} == blamed
     # a, d and theta are worth a third of the points each; alpha is 0.
-    assert report.points == pytest.approx(4 * (3 - len(blamed)) / 3, abs=1e-5)
+    assert report.points == pytest.approx(6 * (3 - len(blamed)) / 3, abs=1e-5)
     assert codes <= all_codes(report) <= codes | {"sign", "quarter_turn"}
 
 

@@ -60,7 +60,10 @@ def test_a_bad_entry_costs_itself_only(
     place = (str(i + 1), str(j + 1))
     assert not_correct(report) == {place: verdict}
     # Four entries of the rotation and two of the position differ from those of the identity.
-    cost = 1 / 2 / (2 if j == 3 else 4)
+    # A wrong entry costs a unit; one that was not read costs that only where it is worth it.
+    known = POSE[i][j] not in ("0", "1")
+    units = 1.0 if known or verdict is Verdict.INCORRECT else 0.2
+    cost = units / 2 / (2 if j == 3 else 4)
     assert report.points == pytest.approx(report.max_points * (1 - cost))
     assert sum(row.points for row in report.rows) == pytest.approx(report.points, abs=1e-5)
     if i == 3 and verdict is Verdict.INCORRECT and code == "value":
@@ -105,8 +108,8 @@ def test_three_rows_leave_the_fourth_missing(arm: Exercise) -> None:
     """A 3×4 matrix lacks the bottom row, and is told so; the rest is graded."""
     report = graded_pose(arm, POSE[:3])
     assert [row.verdict for row in report.rows] == [Verdict.CORRECT] * 3 + [Verdict.MISSING]
-    # Three entries of the rotation's half are missing, and one of the position's.
-    assert report.points == pytest.approx(report.max_points * (1 / 4 + 1 / 2) / 2)
+    # Nothing in the row is worth a unit: in either half it costs a fifth.
+    assert report.points == pytest.approx(report.max_points * (3.8 / 4 + 1.8 / 2) / 2)
     assert report.verdict is Verdict.PARTIAL
 
 

@@ -103,7 +103,7 @@ class Thief:
         report = self.report(self.grid)
         first = report.points
         for _ in range(ROUNDS):
-            before = report.points
+            before = worth(report)
             found = [
                 text
                 for saying in dict.fromkeys(said(report))
@@ -112,7 +112,7 @@ class Thief:
             ]
             for text in dict.fromkeys(found):
                 report = self._copied(text, report)
-            if report.points == before:
+            if worth(report) == before:
                 break
         return first, report.points
 
@@ -142,7 +142,7 @@ class Thief:
         if grid == self.grid:
             return report
         trial = self.report(grid)
-        if trial.points <= report.points:
+        if worth(trial) <= worth(report):
             return report
         self.grid = grid
         self.stolen.append(text)
@@ -153,6 +153,12 @@ class Thief:
         by_label = {row.label: row for row in report.rows}
         row = by_label.get(self.sheet.rows[i])
         return row is not None and j < len(row.cells) and row.cells[j].verdict is Verdict.CORRECT
+
+
+def worth(report: PartReport) -> tuple[float, int]:
+    """What a thief goes by: the points, and the cells that are said to be right."""
+    cells = [cell.verdict for row in report.rows for cell in row.cells]
+    return report.points, cells.count(Verdict.CORRECT)
 
 
 def known_before(sheet: Sheet, grid: Grid) -> set[str]:
