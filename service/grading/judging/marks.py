@@ -36,14 +36,17 @@ class Shares:
     earned: list[float]
 
     def with_total(self, total: float) -> "Shares":
-        """The same with another sum of what is earned: each row's loss or gain is scaled."""
-        now = sum(self.earned)
-        if total < now:
-            return Shares(self.possible, [share * total / now for share in self.earned])
-        lost = 1 - now
-        kept = (1 - total) / lost if lost > 0 else 0.0
-        pairs = zip(self.possible, self.earned, strict=True)
-        return Shares(self.possible, [most - (most - share) * kept for most, share in pairs])
+        """The same with another sum of what is earned.
+
+        The rows that have lost something lose more or less; the others only where that is not
+        enough.
+        """
+        pairs = list(zip(self.possible, self.earned, strict=True))
+        lost = sum(most - share for most, share in pairs)
+        factor = (1 - total) / lost if lost > 0 else 0.0
+        earned = [max(0.0, most - (most - share) * factor) for most, share in pairs]
+        scale = min(1.0, total / (sum(earned) or 1.0))
+        return Shares(self.possible, [share * scale for share in earned])
 
 
 def part_report(part: PartSpec, judged: Judged) -> PartReport:
