@@ -238,7 +238,9 @@ def fitted_unknowns(
             first = largest
         elif step > 1 and (largest > first / 2 or beyond > MISSED * first):
             return None
-        solver = np.linalg.pinv(rates / sizes, rcond=least_effect)
+        # The singular values are those of the triangle, which is far smaller.
+        orthogonal, triangle = np.linalg.qr(rates / sizes)
+        solver = np.linalg.pinv(triangle, rcond=least_effect) @ orthogonal.T
         moved = unknowns * sizes - solver @ error
         bounds = np.outer([-ROUNDED_UP, CUT_OFF], sizes[:count])
         moved = _nearest_inside(moved, solver @ (rates / sizes), bounds)

@@ -1,6 +1,6 @@
 """An answer kind: how answers of it are read and judged. One file of ``kinds`` holds each."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -88,8 +88,8 @@ class Content:
     count, where a student's own choices may have added others.
     """
 
-    known: Sequence[Sequence[bool]]
-    groups: Sequence[Sequence[int]]
+    known: tuple[tuple[bool, ...], ...]
+    groups: tuple[tuple[int, ...], ...]
     besides: bool = False
     equal: bool = False
     most: int | None = None

@@ -6,13 +6,15 @@ the cells in which they differ are worth something.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from service.catalogue import Joint
+from service.catalogue import Joint, PartSpec
 from service.grading.comparison import difference
-from service.grading.part import Content
+from service.grading.part import Content, Grading
 from service.grading.samples import Samples
 from service.grading.tolerances import SAME_CONTENT
 from service.kinematics.transforms import Matrices, Numbers
@@ -33,31 +35,52 @@ def known_cells(
 
 def of_rows(known: KnownCells, most: int | None = None) -> Content:
     """The content of rows ``(rows, cells)`` that are worth something each: tables and screws."""
-    rows = known.tolist()
-    groups = [[i] * len(row) for i, row in enumerate(rows)]
+    rows = _rows(known)
+    groups = tuple((i,) * len(row) for i, row in enumerate(rows))
     return Content(rows, groups, besides=True, most=most)
 
 
 def of_one_row(known: KnownCells) -> Content:
     """The content of a single row ``(cells,)``."""
-    return Content([_or_all(known).tolist()], [[0] * len(known)])
+    return Content(_rows(_or_all(known)[None]), ((0,) * len(known),))
 
 
 def of_list(known: KnownCells, reference: KnownCells | None = None) -> Content:
     """The content of a list of single values ``(values,)``."""
-    cells = [[value] for value in _or_all(known).tolist()]
-    return Content(cells, [[0]] * len(cells), most=_count(reference))
+    return Content(_rows(_or_all(known)[:, None]), ((0,),) * len(known), most=_count(reference))
 
 
-def of_rigid(right: Numbers, length_scale: float) -> Content:
+def of_rigid(right: Numbers, part: PartSpec, grading: Grading) -> Content:
     """The content of a rotation ``(3, 3, samples)`` or a homogeneous transform ``(4, 4, samples)``.
 
     One half is the rotation's and one the position's, where both are other than the identity's.
     """
+    exercise = grading.exercise
+    if grading.following:
+        return _of_rigid(right, exercise.length_scale)
+    return _of_asked(_Asked(exercise.version, part.id, right, exercise.length_scale))
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """The right answer to a part, which is the same at any samples."""
+
+    version: str
+    part: str
+    right: Numbers = field(compare=False)
+    length_scale: float
+
+
+@lru_cache(maxsize=256)
+def _of_asked(asked: _Asked) -> Content:
+    return _of_rigid(asked.right, asked.length_scale)
+
+
+def _of_rigid(right: Numbers, length_scale: float) -> Content:
     known = _differs_from_identity(right, length_scale)
     halves = known[:, :3].any() and known[:, 3:].any()
-    groups = [int(halves and column == 3) for column in range(known.shape[1])]
-    return Content(_or_all(known).tolist(), [groups] * len(known), equal=True)
+    groups = tuple(int(halves and column == 3) for column in range(known.shape[1]))
+    return Content(_rows(_or_all(known)), (groups,) * len(known), equal=True)
 
 
 def of_matrix(right: Numbers, scale: Numbers) -> Content:
@@ -68,7 +91,7 @@ def of_matrix(right: Numbers, scale: Numbers) -> Content:
     known = known_cells(right, 0.0, scale)
     if known.shape[0] == known.shape[1]:
         known &= known_cells(right, np.eye(len(right))[..., None], scale)
-    return Content(_or_all(known).tolist(), [[0] * known.shape[1]] * len(known))
+    return Content(_rows(_or_all(known)), ((0,) * known.shape[1],) * len(known))
 
 
 def of_links(
@@ -80,8 +103,8 @@ def of_links(
     """
     known = _differs_from_motion(right, joints, samples, scale)
     most = _differs_from_motion(reference, joints, samples, scale)
-    groups = np.repeat(np.arange(len(right)), 16).reshape(-1, 4)
-    return Content(known.reshape(-1, 4).tolist(), groups.tolist(), besides=True, most=_count(most))
+    groups = tuple((i // 4,) * 4 for i in range(4 * len(right)))
+    return Content(_rows(known.reshape(-1, 4)), groups, besides=True, most=_count(most))
 
 
 def _differs_from_motion(
@@ -105,6 +128,10 @@ def _differs_from_identity(right: Numbers, length_scale: float) -> KnownCells:
     scales = np.ones(right.shape[1])
     scales[3:] = length_scale
     return known_cells(right, np.eye(len(right))[..., None], scales)
+
+
+def _rows(known: KnownCells) -> tuple[tuple[bool, ...], ...]:
+    return tuple(map(tuple, known.tolist()))
 
 
 def _or_all(known: KnownCells) -> KnownCells:

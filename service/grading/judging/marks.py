@@ -5,6 +5,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final
 
 from service.catalogue import PartSpec
@@ -86,6 +87,8 @@ def share_by_content(judged: Judged) -> float:
 
 def shares_of(judged: Judged, marking: Marking) -> Shares:
     """The share of each row by a marking. Together they make 1 where everything is right."""
+    if judged.is_right:
+        return _of_right(judged.content, marking)
     verdicts = [[cell.verdict for cell in row.cells] for row in judged.rows]
     shares, slip_cost = _SHARES[marking](judged.content, verdicts)
     total = sum(shares.earned) - slip_cost * judged.slips
@@ -96,6 +99,13 @@ def shares_of(judged: Judged, marking: Marking) -> Shares:
     if judged.stands_still:
         total = 0.0
     return shares.with_total(max(0.0, total))
+
+
+@lru_cache(maxsize=1024)
+def _of_right(content: Content, marking: Marking) -> Shares:
+    """The shares where everything is right, which most answers to a part have in common."""
+    verdicts = [[Verdict.CORRECT] * len(row) for row in content.known]
+    return _SHARES[marking](content, verdicts)[0]
 
 
 def _by_content(content: Content, verdicts: _Verdicts) -> tuple[Shares, float]:

@@ -90,6 +90,8 @@ class Judgement:
     @property
     def wrong_as_read(self) -> int:
         """How many cells are not right, but for those that were not read."""
+        if not self.wrong:
+            return 0
         return int(np.count_nonzero((self.matches < Match.ROUNDED) & ~self.unread))
 
 
@@ -107,7 +109,8 @@ def judged_table(
     judgement = _judged_by_nearest(part, rows, convention, grading)
     # If most of a table is wrong, nobody can say which frames were intended; to judge it by the
     # nearest table would reward cells that any number fits.
-    if judgement.wrong_as_read > np.count_nonzero(~judgement.unread) / 2:
+    wrong = judgement.wrong_as_read
+    if wrong and wrong > np.count_nonzero(~judgement.unread) / 2:
         return replace(_judged_by_reference(rows, reference, grading), departures=np.inf)
     return judgement
 

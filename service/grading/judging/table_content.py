@@ -11,6 +11,7 @@ from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.judging.content import KnownCells, known_cells, of_rows
 from service.grading.judging.own_frames.best_roles import roles_in
 from service.grading.judging.own_frames.nearest_table import nearest_for_roles
+from service.grading.judging.own_frames.reference import reference_values
 from service.grading.judging.own_frames.row_roles import Role, freedom_of, joint_variables
 from service.grading.judging.table import Judgement, column_scales
 from service.grading.part import Content, Grading
@@ -22,7 +23,7 @@ from service.grading.reading.table import (
     StudentTable,
     computed_row,
 )
-from service.grading.samples import draw
+from service.grading.samples import SAMPLES, draw
 from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
 
@@ -31,21 +32,21 @@ def table_content(
     part: DhTableSpec, judgement: Judgement, convention: Convention, grading: Grading
 ) -> Content:
     """The cells that differ from a lazy table's: 0, and the bare joint variable in its place."""
+    task = _Task(grading.exercise.version, part, convention, grading.exercise)
+    if not judgement.roles:
+        return _of_reference(task)
     joints = [judged.joint for judged in judgement.rows]
     expected = np.array([judged.expected for judged in judgement.rows])
     known = _differs_from_lazy(expected, joints, grading)
-    if not (judgement.roles and judgement.wrong):
-        return of_rows(known)
-    return of_rows(
-        known, _fewest(_Task(grading.exercise.version, part, convention, grading.exercise))
-    )
+    return of_rows(known, _fewest(task) if judgement.wrong else None)
 
 
 def _differs_from_lazy(
     table: Table, joints: Sequence[Joint | None], grading: Grading
 ) -> KnownCells:
-    lazy = joint_variables(joints, grading.samples)
-    return known_cells(table, lazy, column_scales(grading), IS_ANGLE[:, None])
+    # Two samples tell formulas apart, with other links and other joint values.
+    lazy = joint_variables(joints, grading.samples)[..., :: SAMPLES - 1]
+    return known_cells(table[..., :: SAMPLES - 1], lazy, column_scales(grading), IS_ANGLE[:, None])
 
 
 @dataclass(frozen=True)
@@ -59,19 +60,36 @@ class _Task:
 
 
 @lru_cache(maxsize=256)
+def _of_reference(task: _Task) -> Content:
+    """The content of the reference's own table."""
+    grading = _own_grading(task.exercise)
+    table = reference_values(task.exercise.robot.tables[task.convention], grading.samples)
+    return of_rows(_differs_from_lazy(table, _joints_of_rows(task), grading))
+
+
+def _own_grading(exercise: Exercise) -> Grading:
+    """A grading of no submission, for what depends on the exercise alone."""
+    samples = draw(exercise, None)
+    reader = Reader.of(exercise, samples, "radians")
+    return Grading(exercise, samples, reader, FeedbackLevel.SCORE)
+
+
+def _joints_of_rows(task: _Task) -> list[Joint | None]:
+    """The joint of each row of the reference's table; None for a fixed row."""
+    joints, reference = task.exercise.joints, task.exercise.robot.tables.get(task.convention)
+    count = len(joints if reference is None else reference.rows)
+    return [*joints, *[None] * (count - len(joints))]
+
+
+@lru_cache(maxsize=256)
 def _fewest(task: _Task) -> int:
     """How few cells of a valid table differ from the lazy one.
 
     Along parallel axes two lengths may be added up in one cell, and a student may write numbers of
     one's own into two others. They are worth nothing more.
     """
-    exercise, samples = task.exercise, draw(task.exercise, None)
-    reader = Reader.of(exercise, samples, "radians")
-    grading = Grading(exercise, samples, reader, FeedbackLevel.SCORE)
-    reference = exercise.robot.tables.get(task.convention)
-    count = len(exercise.joints if reference is None else reference.rows)
-    joints = [*exercise.joints, *[None] * (count - len(exercise.joints))]
-    lazy = joint_variables(joints, samples)
+    grading, joints = _own_grading(task.exercise), _joints_of_rows(task)
+    lazy = joint_variables(joints, grading.samples)
     roles = tuple(Role(computed_row(row), joint) for row, joint in zip(lazy, joints, strict=True))
     nearest = nearest_for_roles(roles, task.convention, freedom_of(task.part), grading)
     return int(np.count_nonzero(_differs_from_lazy(nearest.expected, joints, grading)))

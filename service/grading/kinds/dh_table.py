@@ -35,6 +35,7 @@ from service.kinematics.transforms import Matrices
 # The share of the points that a slip of the whole table costs: it is charged once.
 COST = 0.25
 COSTS = {"other_convention": 0.5}
+_QUANTITIES = tuple(QUANTITIES.values())
 # With so many wrong cells two misconceptions at once are looked for.
 WRONG_THROUGHOUT = 3
 
@@ -119,7 +120,7 @@ def _judged(
         (*messages, *missing, *extra, *row_messages),
         slips=judgement.slips,
         whole_cost=_cost_of(found) if found else None,
-        stands_still=stands_still(answer.values, tuple(QUANTITIES.values()), grading),
+        stands_still=judgement.wrong > 0 and stands_still(answer.values, _QUANTITIES, grading),
         chain=lambda: _chain(answer, first, convention),
     )
 

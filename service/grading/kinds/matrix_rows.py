@@ -32,6 +32,7 @@ class MatrixRows:
 
     rows: tuple[RowReport, ...]
     feedback: tuple[Feedback, ...] = ()
+    is_right: bool = False
 
 
 def _no_chains(_samples: Samples) -> tuple[Chain, ...]:
@@ -61,7 +62,8 @@ def matrix_rows(
     labels = [f"{name}.{i + 1}" if name else str(i + 1) for i in range(len(student.entries))]
     found = expected.matches(student, grading.exercise.length_scale, grading.samples)
     if (found >= Match.ROUNDED).all():
-        return MatrixRows(entry_rows(student.entries, found, {}, grading, labels=labels))
+        rows = entry_rows(student.entries, found, {}, grading, labels=labels)
+        return MatrixRows(rows, is_right=True)
     scale = expected.scale(grading.exercise.length_scale)
     case = MatrixCase(
         actual=Samples.subset_of(student.values, SUBSET),

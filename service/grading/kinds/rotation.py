@@ -42,7 +42,7 @@ def judge(part: RotationSpec, answer: StudentMatrix, grading: Grading) -> Judged
 
     expected = ExpectedMatrix(_expected(part, steps, grading), ROTATION, rigid=True)
     judged = matrix_rows(answer, expected, grading, chains, explanations)
-    content = of_rigid(expected.values, exercise.length_scale)
+    content = of_rigid(expected.values, part, grading)
     return Judged(judged.rows, content, judged.feedback)
 
 

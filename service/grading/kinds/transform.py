@@ -41,11 +41,12 @@ def judge(part: TransformSpec, answer: StudentMatrix, grading: Grading) -> Judge
 
     expected = ExpectedMatrix(values, HOMOGENEOUS, rigid=True)
     judged = matrix_rows(answer, expected, grading, chains, explanations)
+    may_stand_still = whole and not judged.is_right
     return Judged(
         judged.rows,
-        of_rigid(values, exercise.length_scale),
+        of_rigid(values, part, grading),
         judged.feedback,
-        stands_still=whole and stands_still(answer.values, HOMOGENEOUS, grading),
+        stands_still=may_stand_still and stands_still(answer.values, HOMOGENEOUS, grading),
         chain=lambda: _chain(answer),
     )
 

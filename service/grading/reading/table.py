@@ -59,6 +59,12 @@ class StudentRow:
         """The expressions of the cells; None where nothing could be read."""
         return [entry.expression for entry in self.entries]
 
+    @property
+    def has_decimal(self) -> bool:
+        """Whether a decimal stands in any cell."""
+        expressions = (entry.expression for entry in self.entries)
+        return any(each is not None and each.has_decimal for each in expressions)
+
     def values_at(self, samples: Samples) -> Table:
         """The numbers at other samples, as they were handed in."""
         return np.asarray(_values([self.entries], samples)[0])

@@ -33,6 +33,8 @@ def with_exact_angles(
 
     Where no angle was rounded, the result is ``roles`` itself.
     """
+    if not any(role.row.has_decimal for role in roles if role.row):
+        return roles
     slack = slack_of_cells(roles, samples, IS_ANGLE)
     if not slack.any() or not _turns_in_steps(exercise, samples):
         return roles

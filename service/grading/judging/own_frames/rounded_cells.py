@@ -45,6 +45,8 @@ LINKS = 6
 # The unit of the unknowns that are no shifts: an angle, and the same part of the typical length.
 SMALL = 1e-2
 TWIST = 6
+# So many wrong cells may have any value; where there are more, all cells can be made to fit.
+MOST_UNKNOWN = 6
 # A decimal without effect has some size.
 LEAST_SIZE = 1e-16
 
@@ -174,6 +176,8 @@ def with_rounded_cells(
     decimals = _decimals(roles, grading, unknown)
     if decimals is None:
         return nearest
+    if len(unknown) > MOST_UNKNOWN:
+        return nearest
     start = handed_in.copy()
     for cell in unknown:
         start[cell] = nearest.expected[cell]
@@ -208,7 +212,8 @@ def _decimals(
     for i, column in left_out:
         expressions[len(COLUMNS) * i + column] = None
     decimals = SharedDecimals(expressions, grading.samples)
-    return decimals if decimals.count else None
+    # A number with so many figures that rounding does not show is exact.
+    return decimals if decimals.units.max(initial=0.0) > EXACT_VALUE else None
 
 
 def _has_pose(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> bool:
