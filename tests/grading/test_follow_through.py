@@ -1,8 +1,12 @@
 """Marks for what follows from an earlier answer."""
 
 from collections.abc import Callable
+from functools import reduce
+from operator import mul
+from typing import Any
 
 import pytest
+import sympy
 
 from service.catalogue import Exercise
 from tests.grading.support.scara import (
@@ -99,3 +103,50 @@ def test_a_chain_that_has_lost_a_freedom_does_not_carry(scara: Exercise) -> None
     assert parts["table"].points == pytest.approx(8 * 0.8 / 4.8, abs=1e-5)
     assert not parts["pose"].follow_through
     assert parts["pose"].points <= 4
+
+
+a1, a2, d3, d4, one, two, four = sympy.symbols("a1 a2 d3 d4 theta1 theta2 theta4")
+ARM = [(a1, 0, 0, one), (a2, sympy.pi, 0, two), (0, 0, d3, 0), (0, 0, d4, four)]
+# A row with one slip, and whether the table carries what follows from it.
+SLIPS: dict[str, tuple[int, tuple[Any, ...], bool]] = {
+    "a length": (1, (a1, sympy.pi, 0, two), True),
+    "the joint counts the other way": (1, (a2, sympy.pi, 0, -two), True),
+    "the joint stands still": (2, (0, 0, d4, 0), False),
+    "the joint moves with another": (1, (a2, sympy.pi, 0, one + two), False),
+    "the joint moves twice as far": (1, (a2, sympy.pi, 0, 2 * two), False),
+    "the variable of another joint": (1, (a2, sympy.pi, 0, four), False),
+    "a sliding joint that turns as well": (2, (0, 0, d3, two), False),
+}
+
+
+def link(a: Any, alpha: Any, d: Any, theta: Any) -> sympy.Matrix:
+    """The link transform of a row, from the textbook (SHV, eq. 3.10)."""
+    c, s, ca, sa = sympy.cos(theta), sympy.sin(theta), sympy.cos(alpha), sympy.sin(alpha)
+    return sympy.Matrix(
+        [
+            [c, -s * ca, s * sa, a * c],
+            [s, c * ca, -c * sa, a * s],
+            [0, sa, ca, d],
+            [0, 0, 0, 1],
+        ]
+    )
+
+
+@pytest.mark.parametrize("name", SLIPS)
+def test_only_an_arm_of_the_robot_s_joints_carries(name: str, scara: Exercise) -> None:
+    place, slip, carries = SLIPS[name]
+    rows = [slip if i == place else row for i, row in enumerate(ARM)]
+    pose = reduce(mul, [link(*row) for row in rows]).applyfunc(sympy.trigsimp)
+    texts = [[str(entry) for entry in row] for row in pose.tolist()]
+    parts = graded(scara, table=table([[str(cell) for cell in row] for row in rows]), pose=texts)
+    assert parts["table"].points >= 4
+    assert parts["pose"].follow_through is carries
+
+
+def test_links_that_only_slide_carry_nothing(scara: Exercise) -> None:
+    sliding = [[*"100", "theta1"], [*"010", "theta2"], [*"001", "d3 + theta4"], [*"0001"]]
+    links = [sliding, IDENTITY, IDENTITY, IDENTITY]
+    parts = graded(scara, links=links, pose=sliding, position=["theta1", "theta2", "d3 + theta4"])
+    assert not any(part.follow_through for part in parts.values())
+    assert parts["pose"].points <= 2
+    assert parts["position"].points == 0

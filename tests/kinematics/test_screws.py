@@ -15,6 +15,8 @@ from service.kinematics.screws import (
     product_in_body,
     product_in_space,
     skew,
+    sliding_axis,
+    turning_axis,
 )
 from service.kinematics.transforms import inverse, rot_x, rot_z
 from tests.kinematics.constructions import screw_axis, trans
@@ -136,3 +138,28 @@ def test_the_planar_rpr_arm() -> None:
     in_body = product_in_body(body[:, None], amounts, home)
     np.testing.assert_allclose(in_space, expected, atol=1e-14)
     np.testing.assert_allclose(in_body, expected, atol=1e-14)
+
+
+@pytest.mark.parametrize("angle", [0.4, 1.1, -0.7])
+def test_the_axis_of_a_turn(angle: float) -> None:
+    """SciPy's exponential of an axis without pitch, and the axis again."""
+    axis = screw_axis(np.array([0.36, -0.48, 0.8]), np.array([0.5, 0.1, -0.4]))
+    displacement = expm(bracket(axis) * angle)
+    np.testing.assert_allclose(turning_axis(displacement, angle), axis, atol=1e-12)
+
+
+def test_what_is_no_turn_gives_an_axis_of_another_motion() -> None:
+    axis = screw_axis(np.array([0.0, 0.0, 1.0]), np.array([0.5, 0.1, 0.0]))
+    with_pitch = expm(bracket(axis + np.array([0, 0, 0, 0, 0, 0.3])) * 0.4)
+    twice = expm(bracket(axis) * 0.8)
+    for displacement in (with_pitch, twice, trans(0.1, 0.2, 0.3)):
+        found = turning_axis(displacement, 0.4)
+        error = np.abs(exponential(found, 0.4) - displacement).max()
+        length = np.linalg.norm(found[:3])
+        assert error > 0.05 or abs(length - 1) > 0.05
+
+
+def test_the_axis_of_a_slide() -> None:
+    displacement = trans(0.0, 0.6, 0.8)
+    np.testing.assert_allclose(sliding_axis(displacement, 1.0), [0, 0, 0, 0, 0.6, 0.8])
+    np.testing.assert_allclose(exponential(sliding_axis(displacement, 0.5), 0.5), displacement)

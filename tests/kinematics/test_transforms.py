@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from service.kinematics.transforms import identity, inverse, rot_x, rot_y, rot_z
+from service.kinematics.transforms import identity, inverse, is_rigid, rot_x, rot_y, rot_z
 from tests.kinematics.constructions import trans
 
 Array = NDArray[np.float64]
@@ -83,3 +83,15 @@ def test_the_inverse_leaves_its_argument_alone() -> None:
     before = transform.copy()
     inverse(transform)
     assert (transform == before).all()
+
+
+def test_what_is_rigid() -> None:
+    right = Rotation.from_rotvec([0.3, -0.4, 0.5]).as_matrix()
+    transforms = np.tile(np.eye(4), (5, 1, 1))
+    transforms[:, :3, :3] = right
+    transforms[:, :3, 3] = [7.0, -8.0, 9.0]
+    transforms[1, :3, 0] *= -1  # left-handed
+    transforms[2, :3, 1] *= 1.1  # stretched
+    transforms[3, 3, 0] = 0.1  # another last row
+    transforms[4, 3, 3] = 2.0
+    assert is_rigid(transforms, 1e-3).tolist() == [True, False, False, False, False]

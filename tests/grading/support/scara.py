@@ -89,7 +89,7 @@ def pose_with(length: str) -> list[list[str]]:
     ]
 
 
-def table(rows: Sequence[Row]) -> dict[str, Any]:
+def table(rows: Sequence[Sequence[str]]) -> dict[str, Any]:
     return {"rows": [dict(zip(("a", "alpha", "d", "theta"), row, strict=True)) for row in rows]}
 
 

@@ -1,0 +1,84 @@
+"""What a slip costs, worked out by hand on the tables of the textbooks."""
+
+from collections.abc import Mapping
+
+import pytest
+
+from service.catalogue import Exercise
+from service.grading import PartReport, Verdict
+from tests.grading.support.robots import EXACT, SCARA, STANFORD, Row
+from tests.grading.support.submitting import graded_table
+from tests.grading.support.worth import worth_of_rows
+
+# SCARA by hand: a1; a2 and the half turn; nothing; d4. Each row has a fifth besides.
+SCARA_WORTH = 1.2 + 2.2 + 0.2 + 1.2
+
+
+def codes(report: PartReport) -> list[str]:
+    return [message.code for message in report.feedback]
+
+
+def stanford(*changes: tuple[int, int, str]) -> list[Row]:
+    rows = [list(row) for row in EXACT.rows(STANFORD)]
+    for i, j, text in changes:
+        rows[i][j] = text
+    return [(a, alpha, d, theta) for a, alpha, d, theta in rows]
+
+
+def test_a_slip_of_the_whole_table_is_charged_once(catalogue: Mapping[str, Exercise]) -> None:
+    """Every twist has the wrong sign: a quarter, where four wrong cells would cost 4 of 7.2."""
+    turned = {"pi/2": "-pi/2", "-pi/2": "pi/2", "0": "0"}
+    rows = [(a, turned[alpha], d, theta) for a, alpha, d, theta in EXACT.rows(STANFORD)]
+    report = graded_table(catalogue[STANFORD.exercise], rows)
+    assert codes(report) == ["column_sign"]
+    assert report.points == pytest.approx(12 * 3 / 4)
+    assert sum(row.points for row in report.rows) == pytest.approx(9, abs=1e-5)
+
+
+def test_the_other_convention_costs_half(catalogue: Mapping[str, Exercise]) -> None:
+    """The rows of the arm in the modified convention, by moving a and α by a row."""
+    rows = EXACT.rows(STANFORD)
+    ends = [("0", "0"), *((a, alpha) for a, alpha, _, _ in rows)]
+    moved = [(*ends[i], d, theta) for i, (_, _, d, theta) in enumerate(rows)]
+    report = graded_table(catalogue[STANFORD.exercise], moved)
+    assert "other_convention" in codes(report)
+    assert report.points == pytest.approx(6)
+
+
+def test_it_costs_no_more_than_its_cells_would(catalogue: Mapping[str, Exercise]) -> None:
+    """In the SCARA's table one cell alone has a twist: its slip costs a unit at most."""
+    rows = [("a1", "0", "0", "theta1"), ("a2", "0", "0", "theta2"), *EXACT.rows(SCARA)[2:]]
+    report = graded_table(catalogue[SCARA.exercise], rows)
+    assert report.points == pytest.approx(8 * (1 - 1 / SCARA_WORTH), abs=1e-5)
+
+
+def test_numbers_of_one_s_own_dilute_nothing(catalogue: Mapping[str, Exercise]) -> None:
+    """Offsets that cancel along parallel axes are right, and worth nothing beside a slip."""
+    rows = [("a1", "0", "0.4", "theta1"), ("a1", "pi", "-0.4", "theta2"), *EXACT.rows(SCARA)[2:]]
+    report = graded_table(catalogue[SCARA.exercise], rows)
+    assert report.points == pytest.approx(8 * (1 - 1 / SCARA_WORTH), abs=1e-5)
+    assert [row.points == row.max_points for row in report.rows] == [True, False, True, True]
+
+
+@pytest.mark.parametrize("extra", [("0", "0", "0", "0"), ("0.3", "0.5", "0.7", "0.9")])
+@pytest.mark.parametrize("place", [0, 2, 6])
+def test_a_row_too_many_never_helps(
+    extra: Row, place: int, catalogue: Mapping[str, Exercise]
+) -> None:
+    wrong = stanford((1, 1, "0"), (3, 1, "0"), (4, 1, "0"))
+    without = graded_table(catalogue[STANFORD.exercise], wrong)
+    wrong[place:place] = [extra] * 6
+    report = graded_table(catalogue[STANFORD.exercise], wrong)
+    assert report.points <= without.points + 1e-6
+
+
+def test_nothing_is_partly_right_that_earns_nothing(catalogue: Mapping[str, Exercise]) -> None:
+    rows = stanford(*((i, j, "0.123") for i in range(6) for j in (1, 2)))
+    report = graded_table(catalogue[STANFORD.exercise], rows)
+    for row in report.rows:
+        assert (row.verdict is Verdict.PARTIAL) <= (row.points > 0)
+
+
+def test_the_worth_on_paper_is_that_of_the_design() -> None:
+    assert sum(worth_of_rows(SCARA)) == pytest.approx(SCARA_WORTH)
+    assert sum(worth_of_rows(STANFORD)) == pytest.approx(7.2)
