@@ -1,5 +1,6 @@
 """The marks of a student who knows nothing, for the author of an exercise to look at."""
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Final
 
@@ -32,8 +33,8 @@ def lazy_answers(exercise: Exercise) -> Iterator[Remark]:
         if share > (MOST_OF_A_POSE if part.kind == "transform" else MOST):
             yield warning(
                 f"parts[{i}]",
-                f"an answer of zeros and bare joint variables earns {share:.0%} of {part.id}; "
-                f"ask for more, or mark it by content",
+                f"an answer of zeros and bare joint variables earns {math.floor(100 * share)} % of "
+                f"{part.id}; ask for more, or mark it by content",
             )
 
 

@@ -85,11 +85,13 @@ class Content:
     are. ``groups`` numbers the group of each cell: a wrong cell costs no more than its group has.
     With ``besides`` each group is worth a little besides its cells. With ``equal`` all groups are
     worth the same, however many cells they have. ``most`` is the number of cells that
-    count, where a student's own choices may have added others.
+    count, where a student's own choices may have added others. ``moving`` are the cells that hold a
+    joint variable in the lazy answer: to leave one empty is to say that the joint stands still.
     """
 
     known: tuple[tuple[bool, ...], ...]
     groups: tuple[tuple[int, ...], ...]
+    moving: tuple[tuple[bool, ...], ...] | None = None
     besides: bool = False
     equal: bool = False
     most: int | None = None

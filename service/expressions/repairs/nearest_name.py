@@ -39,12 +39,20 @@ def nearest(run: str, vocabulary: Vocabulary, called: bool) -> str | None:
     pool = set(SPELLINGS) - _OF_DEGREES if called else _names(vocabulary)
     # A name of a very different length is not near.
     pool = {name for name in pool if abs(len(name) - len(plain)) <= max(1, len(plain) // 3)}
-    close = difflib.get_close_matches(plain, sorted(pool), n=1, cutoff=0.6)
+    close = difflib.get_close_matches(plain, sorted(pool), n=2, cutoff=0.6)
+    meanings = {vocabulary.by_name.get(name, name) for name in close}
+    if len(meanings) > 1 and _ratio(plain, close[0]) == _ratio(plain, close[1]):
+        # Of theta1 and theta2 neither is meant more than the other.
+        return None
     symbol = vocabulary.by_name.get(close[0]) if close else None
     # The canonical name l_base for lbase; an alias, q1, stays as it is.
     if symbol is not None and normal_form(symbol.name) == close[0]:
         return symbol.name
     return close[0] if close else None
+
+
+def _ratio(run: str, name: str) -> float:
+    return difflib.SequenceMatcher(None, name, run).ratio()
 
 
 def _names(vocabulary: Vocabulary) -> set[str]:

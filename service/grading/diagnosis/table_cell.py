@@ -53,13 +53,13 @@ def _motion(joint: Joint) -> str:
 def joint_variable_sign(case: WrongCell) -> Finding | None:
     """The joint was taken to move in the negative sense of its axis."""
     opposite = {joint: -count for joint, count in case.required.items()}
-    if not opposite or case.contained != opposite:
+    if case.joint is None or not opposite or case.contained != opposite:
         return None
     return finding_on(
         case,
         "joint_variable_sign",
         f"The joint variable has the wrong sign: look which way z points on this joint's axis, and "
-        f"turn or slide {case.measured} by the right-hand rule.",
+        f"in which sense the joint {_motion(case.joint)}.",
     )
 
 
@@ -161,7 +161,7 @@ def degrees_as_radians(case: WrongCell) -> Hypotheses:
         "(deg or °)."
     )
     in_degrees = np.radians(case.constants[0])
-    for value, also in ((-in_degrees, " The sign is wrong, too."), (in_degrees, "")):
+    for value, also in ((in_degrees, ""), (-in_degrees, " The sign is wrong, too.")):
         yield Repaired(value, finding_on(case, "degrees_as_radians", hint + also))
 
 

@@ -12,7 +12,7 @@ from itertools import chain, combinations, islice
 import numpy as np
 from numpy.typing import NDArray
 
-from service.grading.diagnosis.wording import MEASURED, SYMBOLS
+from service.grading.diagnosis.wording import MEASURED, POSITIVE, SYMBOLS
 from service.grading.feedback import Finding
 from service.grading.judging.own_frames import written_table
 from service.grading.judging.own_frames.written_table import RepairedTable, WrittenTable
@@ -89,7 +89,7 @@ def _turned_sign(column: int) -> Finding:
     return Finding(
         "column_sign",
         f"{SYMBOLS[column]} has the wrong sign throughout: it is measured {MEASURED[column]}, "
-        f"positive by the right-hand rule.",
+        f"positive {POSITIVE[column]}.",
         f"Turn the sign of every {SYMBOLS[column]}.",
     )
 

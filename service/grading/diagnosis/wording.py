@@ -5,6 +5,7 @@ from collections.abc import Sequence
 # The symbol of each table column, and the axis along or about which it is measured.
 SYMBOLS = ("a", "α", "d", "θ")
 MEASURED = ("along x", "about x", "along z", "about z")
+POSITIVE = ("in the direction of the axis", "by the right-hand rule") * 2
 
 
 def listed(words: Sequence[str]) -> str:

@@ -33,11 +33,17 @@ def known_cells(
     return np.asarray(error > SAME_CONTENT * np.asarray(scale))
 
 
-def of_rows(known: KnownCells, most: int | None = None) -> Content:
-    """The content of rows ``(rows, cells)`` that are worth something each: tables and screws."""
+def of_rows(
+    known: KnownCells, most: int | None = None, moving: KnownCells | None = None
+) -> Content:
+    """The content of rows ``(rows, cells)`` that are worth something each: tables and screws.
+
+    ``moving`` are the cells that hold a joint variable in the lazy answer.
+    """
     rows = _rows(known)
     groups = tuple((i,) * len(row) for i, row in enumerate(rows))
-    return Content(rows, groups, besides=True, most=most)
+    holds = None if moving is None else _rows(moving)
+    return Content(rows, groups, besides=True, most=most, moving=holds)
 
 
 def of_one_row(known: KnownCells) -> Content:

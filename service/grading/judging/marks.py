@@ -46,8 +46,16 @@ class Shares:
         lost = sum(most - share for most, share in pairs)
         factor = (1 - total) / lost if lost > 0 else 0.0
         earned = [max(0.0, most - (most - share) * factor) for most, share in pairs]
-        scale = min(1.0, total / (sum(earned) or 1.0))
-        return Shares(self.possible, [share * scale for share in earned])
+        spoiled = [most > share for most, share in pairs]
+        for losing in (spoiled, [True] * len(pairs)):
+            rest = sum(share for share, loses in zip(earned, losing, strict=True) if loses)
+            excess = min(rest, max(0.0, sum(earned) - total))
+            scale = 1 - excess / (rest or 1.0)
+            earned = [
+                share * scale if loses else share
+                for share, loses in zip(earned, losing, strict=True)
+            ]
+        return Shares(self.possible, earned)
 
 
 def part_report(part: PartSpec, judged: Judged) -> PartReport:
@@ -136,7 +144,7 @@ class _Group:
     """The worth of a group's cells in each row, the wrong ones, and the rows with unread ones.
 
     A cell that was not read costs itself: a unit where one has to know something for it. The others
-    of a row cost a fifth together.
+    of a row cost a fifth together; but a unit where the joint variable was left out.
     """
 
     units: dict[int, float]
@@ -165,13 +173,15 @@ class _Group:
 
 def _groups_of(content: Content, verdicts: _Verdicts) -> list[_Group]:
     groups: dict[int, _Group] = {}
-    rows = zip(content.known, content.groups, verdicts, strict=True)
+    owed = content.known if content.moving is None else content.moving
+    rows = zip(content.known, owed, content.groups, verdicts, strict=True)
     for i, cells in enumerate(rows):
-        for known, number, verdict in zip(*cells, strict=True):
+        for known, is_owed, number, verdict in zip(*cells, strict=True):
             group = groups.setdefault(number, _Group({}, {}, set()))
             group.units[i] = group.units.get(i, 0.0) + known
             group.wrong.setdefault(i, 0)
-            if verdict is Verdict.INCORRECT or (known and verdict is not Verdict.CORRECT):
+            unknown = known and verdict is not Verdict.CORRECT
+            if verdict is Verdict.INCORRECT or unknown or (is_owed and verdict is Verdict.MISSING):
                 group.wrong[i] += 1
             elif verdict is not Verdict.CORRECT:
                 group.unread.add(i)

@@ -12,7 +12,12 @@ from service.grading.judging.content import KnownCells, known_cells, of_rows
 from service.grading.judging.own_frames.best_roles import roles_in
 from service.grading.judging.own_frames.nearest_table import nearest_for_roles
 from service.grading.judging.own_frames.reference import reference_values
-from service.grading.judging.own_frames.row_roles import Role, freedom_of, joint_variables
+from service.grading.judging.own_frames.row_roles import (
+    Role,
+    freedom_of,
+    joint_variables,
+    variable_column,
+)
 from service.grading.judging.table import Judgement, column_scales
 from service.grading.part import Content, Grading
 from service.grading.reading.entry import Reader
@@ -24,7 +29,7 @@ from service.grading.reading.table import (
     computed_row,
 )
 from service.grading.samples import SAMPLES, draw
-from service.kinematics.chain import Table
+from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh import Convention
 
 
@@ -38,7 +43,7 @@ def table_content(
     joints = [judged.joint for judged in judgement.rows]
     expected = np.array([judged.expected for judged in judgement.rows])
     known = _differs_from_lazy(expected, joints, grading)
-    return of_rows(known, _fewest(task) if judgement.wrong else None)
+    return of_rows(known, _fewest(task) if judgement.wrong else None, _moving(joints))
 
 
 def _differs_from_lazy(
@@ -64,7 +69,14 @@ def _of_reference(task: _Task) -> Content:
     """The content of the reference's own table."""
     grading = _own_grading(task.exercise)
     table = reference_values(task.exercise.robot.tables[task.convention], grading.samples)
-    return of_rows(_differs_from_lazy(table, _joints_of_rows(task), grading))
+    joints = _joints_of_rows(task)
+    return of_rows(_differs_from_lazy(table, joints, grading), moving=_moving(joints))
+
+
+def _moving(joints: Sequence[Joint | None]) -> KnownCells:
+    """The cells ``(rows, 4)`` of the joint variables."""
+    columns = [None if joint is None else variable_column(joint) for joint in joints]
+    return np.array([[j == column for j in range(len(COLUMNS))] for column in columns])
 
 
 def _own_grading(exercise: Exercise) -> Grading:

@@ -109,7 +109,7 @@ def _judged(
     missing = tuple(
         message
         for judged in judgement.rows
-        if judged.row is None
+        if judged.row is None and not found
         for message in grading.visible((_missing(judged),), (Place(judged.label),))
     )
     extra = grading.visible(tuple(_extra_row(i) for i in judgement.extra))
