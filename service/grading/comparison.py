@@ -29,7 +29,7 @@ from service.kinematics.transforms import Numbers
 
 # More decimals in one entry are taken as they are written: the work grows with their number.
 MAX_DECIMALS = 16
-MAX_SHARED_DECIMALS = 64
+MAX_SHARED_DECIMALS = 32
 PROJECTIONS = 200
 # Projections that go on beyond the bounds by nearly as much as they came meet sooner (Motzkin).
 RELAXATION = 1.9

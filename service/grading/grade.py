@@ -8,7 +8,7 @@ from service.catalogue import Exercise, FeedbackLevel, PartSpec
 from service.expressions import AngleUnit
 from service.grading.feedback import UnreadableAnswerError, told_once
 from service.grading.follow_through import STANDS_STILL, can_carry, follows_from
-from service.grading.judging.marks import part_report, share_by_content, unjudged_report
+from service.grading.judging.marks import has_earned, part_report, unjudged_report
 from service.grading.kinds import KINDS
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.entry import Reader
@@ -97,7 +97,7 @@ class _Graded:
         It must have earned its share of the points by what one has to know, however the part is
         marked, and be an arm of the robot's joints.
         """
-        if self.judged is None or self.chain is None or share_by_content(self.judged) < share:
+        if self.judged is None or self.chain is None or not has_earned(self.judged, share):
             return False
         return can_carry(self.chain, grading)
 

@@ -193,3 +193,66 @@ def test_one_slip_costs_a_fair_share(
             # A row that is the lazy one, but for a fifth of a unit, does not matter.
             matters = [cost for cost, of_row in found if of_row > min(costs) + 1e-6]
             assert min(matters, default=1.0) >= 0.05
+
+
+ARM = """
+title = "An arm"
+source = "made for this test"
+statement = "Found by trying."
+[robot]
+structure = "{structure}"
+convention = "standard"
+joints = {joints}
+table = {rows}
+[symbols]
+a1 = {{ kind = "length", description = "a length" }}
+a2 = {{ kind = "length", description = "a length" }}
+d4 = {{ kind = "length", description = "a length" }}
+[[parts]]
+id = "table"
+kind = "dh_table"
+title = "Table"
+points = 4
+convention = "standard"
+frames = "free"
+{policy}
+"""
+PARALLEL = ("RRR", ["theta1", "theta2", "theta3"], [["0"] * 3, ["a1", "0", "0"], ["0"] * 3])
+SCARA = (
+    "RRPR",
+    ["theta1", "theta2", "d3", "theta4"],
+    [["a1", "0", "0"], ["a2", "180deg", "0"], ["0", "0"], ["0", "0", "d4"]],
+)
+# What has raised a lazy table before, on arms that are not shipped.
+RAISED = {
+    "offsets that cancel": (PARALLEL, "", ["0.4", "-0.4", "0"], ""),
+    "offsets that cancel, free tool": (SCARA, 'tool = "free"', ["0.4", "-0.4", "0", "0"], ""),
+    "signs before the joints": (SCARA, 'tool = "free"', ["0"] * 4, "-"),
+}
+
+
+@pytest.mark.parametrize("name", RAISED)
+def test_nothing_raises_a_lazy_table(name: str, make_exercise: Callable[[str], Exercise]) -> None:
+    (structure, joints, constants), policy, offsets, sign = RAISED[name]
+    rows = [
+        [*row, joint] if kind == "R" else [*row, joint, "0"]
+        for kind, row, joint in zip(structure, constants, joints, strict=True)
+    ]
+    exercise = make_exercise(
+        ARM.format(structure=structure, joints=joints, rows=rows, policy=policy)
+    )
+    written = [
+        ZERO_ROW | ({"d": d, "theta": sign + q} if kind == "R" else {"d": f"{sign}{q} + {d}"})
+        for kind, d, q in zip(structure, offsets, joints, strict=True)
+    ]
+    [report] = grade(exercise, Submission({"table": {"rows": written}})).parts
+    assert report.points <= PART * report.max_points + 1e-6
+
+
+def test_a_rotation_alone_carries_no_position(catalogue: Mapping[str, Exercise]) -> None:
+    """Its own invented lengths would make the position easy."""
+    pose = [["c12", "-s12", "0", "c1 + c12"], ["s12", "c12", "0", "s1 + s12"], *IDENTITY[2:]]
+    answers = {"pose": pose, "position": ["c1 + c12", "s1 + s12"]}
+    reports = {each.part: each for each in grade(catalogue["planar-rr"], Submission(answers)).parts}
+    assert reports["pose"].points == POSE * reports["pose"].max_points
+    assert reports["position"].points == 0

@@ -24,6 +24,8 @@ from service.grading.report import (
 # together no more than a third of those cells, so that a lazy answer earns a quarter at most.
 BESIDES: Final = 0.2
 MOST_BESIDES: Final = 1 / 3
+# What sums of shares may be off by.
+_DUST: Final = 1e-6
 
 # The verdicts on the cells of each row.
 _Verdicts = Sequence[Sequence[Verdict]]
@@ -88,9 +90,13 @@ def unjudged_report(
     return PartReport(part.id, part.kind, verdict, 0.0, part.points, False, (), feedback)
 
 
-def share_by_content(judged: Judged) -> float:
-    """The share of its points, 0 to 1, that an answer earns by content."""
-    return sum(shares_of(judged, "content").earned)
+def has_earned(judged: Judged, share: float) -> bool:
+    """Whether an answer has earned its share of the points, 0 to 1, by content.
+
+    Of a rotation and a position it must be more: what follows from a right rotation alone is easy.
+    """
+    earned = sum(shares_of(judged, "content").earned)
+    return earned > share + _DUST if judged.content.equal else earned >= share
 
 
 def shares_of(judged: Judged, marking: Marking) -> Shares:
@@ -186,8 +192,8 @@ def _groups_of(content: Content, verdicts: _Verdicts) -> list[_Group]:
             elif verdict is not Verdict.CORRECT:
                 group.unread.add(i)
     if content.besides:
-        most = MOST_BESIDES * content.count / len(groups)
-        besides = min(BESIDES, most) or BESIDES
+        count = min(content.count, content.most or content.count)
+        besides = min(BESIDES, MOST_BESIDES * count / len(groups)) or BESIDES
         for group in groups.values():
             for row in group.units:
                 group.units[row] += besides / len(group.units)

@@ -51,7 +51,9 @@ def _differs_from_lazy(
 ) -> KnownCells:
     # Two samples tell formulas apart, with other links and other joint values.
     lazy = joint_variables(joints, grading.samples)[..., :: SAMPLES - 1]
-    return known_cells(table[..., :: SAMPLES - 1], lazy, column_scales(grading), IS_ANGLE[:, None])
+    cells, scales, angle = table[..., :: SAMPLES - 1], column_scales(grading), IS_ANGLE[:, None]
+    # A sign before the joint variable is as easily written as none.
+    return known_cells(cells, lazy, scales, angle) & known_cells(cells, -lazy, scales, angle)
 
 
 @dataclass(frozen=True)
