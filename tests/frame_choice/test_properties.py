@@ -16,7 +16,7 @@ from tests.frame_choice.robots import GIVEN, POLICIES, ROBOTS, conventions
 from tests.frame_choice.trials import Tally, run
 
 # For each robot and convention: how many tables, and how many of them also with slips.
-GIVEN_TABLES, GIVEN_SLIPS = 40, 12
+GIVEN_TABLES, GIVEN_SLIPS = 20, 12
 FREE_TABLES, FREE_SLIPS = 15, 6
 
 
