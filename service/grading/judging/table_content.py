@@ -37,13 +37,14 @@ def table_content(
     part: DhTableSpec, judgement: Judgement, convention: Convention, grading: Grading
 ) -> Content:
     """The cells that differ from a lazy table's: 0, and the bare joint variable in its place."""
-    task = _Task(grading.exercise.version, part, convention, grading.exercise)
+    exercise = grading.exercise
+    task = _Task(exercise.version, part.id, convention, part, exercise)
     if not judgement.roles:
         return _of_reference(task)
     joints = [judged.joint for judged in judgement.rows]
     expected = np.array([judged.expected for judged in judgement.rows])
     known = _differs_from_lazy(expected, joints, grading)
-    return of_rows(known, _fewest(task) if judgement.wrong else None, _moving(joints))
+    return of_rows(known, _fewest(task), _moving(joints)) if judgement.wrong else of_rows(known)
 
 
 def _differs_from_lazy(
@@ -51,9 +52,10 @@ def _differs_from_lazy(
 ) -> KnownCells:
     # Two samples tell formulas apart, with other links and other joint values.
     lazy = joint_variables(joints, grading.samples)[..., :: SAMPLES - 1]
-    cells, scales, angle = table[..., :: SAMPLES - 1], column_scales(grading), IS_ANGLE[:, None]
+    cells, angle = table[..., :: SAMPLES - 1], IS_ANGLE[:, None]
     # A sign before the joint variable is as easily written as none.
-    return known_cells(cells, lazy, scales, angle) & known_cells(cells, -lazy, scales, angle)
+    either = known_cells(np.stack([cells, -cells]), lazy, column_scales(grading), angle)
+    return np.asarray(either.all(axis=0))
 
 
 @dataclass(frozen=True)
@@ -61,8 +63,9 @@ class _Task:
     """A table that is asked for; tasks are told apart by the version of their exercise."""
 
     version: str
-    part: DhTableSpec
+    part_id: str
     convention: Convention
+    part: DhTableSpec = field(compare=False)
     exercise: Exercise = field(compare=False)
 
 
