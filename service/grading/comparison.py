@@ -271,7 +271,7 @@ class SharedDecimals:
                 self.count = places.stop
                 self.units = np.append(self.units, decimals.units)
         if self.count > MAX_SHARED_DECIMALS:
-            self._parts, self.count = [], 0
+            self._parts, self.count, self.units = [], 0, np.zeros(0)
 
     def shifted(self, shifts: Numbers, values: Numbers) -> Numbers:
         """The ``values`` ``(entries, samples)`` with the decimals shifted: ``(K, entries, ...)``.

@@ -1,6 +1,6 @@
 """A decimal with three figures is right if it is the true number, rounded or cut off."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import pytest
@@ -221,3 +221,16 @@ def test_no_short_length_hides_behind_a_long_one(
         ["0.3", "0", "0.2", "q3"],
     ]
     assert list(not_correct(graded_table(arm, rows))) == [("1", "a")]
+
+
+@pytest.mark.parametrize("behind", [True, False])
+def test_more_decimals_than_are_fitted_are_taken_as_written(
+    behind: bool, catalogue: Mapping[str, Exercise]
+) -> None:
+    """Ten rows of four decimals beside a right table: it is wrong, and it is graded."""
+    garbage = [("0.371", "0.613", "0.829", "1.273")] * 10
+    right = [("a1", "0", "0", "theta1"), ("a2", "0", "0", "theta2")]
+    rows = [*right, *garbage] if behind else [*garbage, *right]
+    report = graded_table(catalogue["planar-rr"], rows)
+    assert report.verdict is not Verdict.CORRECT
+    assert report.points < report.max_points
