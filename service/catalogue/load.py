@@ -1,6 +1,9 @@
 """Reading the folder of exercise files."""
 
+import errno
+import os
 import re
+import stat
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +20,8 @@ from service.catalogue.schema import ExerciseSpec
 
 ID_ADVICE = "write small letters and digits, with - or _ between them, such as elbow-arm"
 _LONGEST_ID = 60
+# The largest exercise that comes with the program has 8 kB.
+_LARGEST = 1024 * 1024
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,12 +60,16 @@ def shipped_folder() -> Path:
 def exercise_files(*folders: Path) -> list[Path]:
     """The exercise files of folders, folder by folder, in the order of their names.
 
-    Raises CatalogueError where a folder holds none, or a name stands in two of them.
+    Raises CatalogueError where a folder is missing or holds none, or a name stands in two of them.
     """
     files: dict[str, Path] = {}
     faults: list[Fault] = []
     for folder in dict.fromkeys(folders):
-        found = sorted(folder.glob("*.toml"))
+        try:
+            found = sorted(file for file in folder.iterdir() if file.match("*.toml"))
+        except OSError as error:
+            faults.append(Fault(folder, "", _folder_reason(error)))
+            continue
         if not found:
             faults.append(Fault(folder, "", "holds no exercise file (*.toml)"))
         for file in found:
@@ -101,7 +110,7 @@ def load_exercise(file: Path) -> Exercise:
         raise CatalogueError([Fault(file, "", reason)])
     text = ""
     try:
-        text = file.read_text(encoding="utf-8")
+        text = _text(file)
         return compile_exercise(file.stem, ExerciseSpec.model_validate(tomllib.loads(text)))
     except (ValidationError, FieldError) as error:
         lines = value_lines(text)
@@ -109,6 +118,31 @@ def load_exercise(file: Path) -> Exercise:
         raise CatalogueError(faults) from error
     except (OSError, ValueError, RecursionError) as error:
         raise CatalogueError([Fault(file, "", _reason(error))]) from error
+
+
+def _text(file: Path) -> str:
+    """The text of a regular file; of no other, for a pipe or device may never end, or begin."""
+    with open(file, encoding="utf-8", opener=_unblocked) as opened:
+        status = os.fstat(opened.fileno())
+        if not stat.S_ISREG(status.st_mode):
+            raise OSError(errno.EINVAL, "it is a pipe or device")
+        if status.st_size > _LARGEST:
+            raise OSError(errno.EFBIG, f"it is larger than {_LARGEST // 1024} KiB")
+        return opened.read()
+
+
+def _unblocked(name: str, flags: int) -> int:
+    return os.open(name, flags | getattr(os, "O_NONBLOCK", 0))
+
+
+def _folder_reason(error: OSError) -> str:
+    match error:
+        case FileNotFoundError():
+            return "there is no such folder"
+        case NotADirectoryError():
+            return "is no folder"
+        case _:
+            return _reason(error)
 
 
 def _reason(error: Exception) -> str:

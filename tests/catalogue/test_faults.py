@@ -1,5 +1,6 @@
 """Every fault of an exercise file is refused with file, field and reason."""
 
+import os
 import re
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from service.catalogue.schema import (
     ScrewRobotSpec,
     SymbolSpec,
 )
+from tests.guards import ANSWER
 
 VALID = """\
 title = "An arm"
@@ -234,10 +236,39 @@ def test_how_many_faults_are_tried() -> None:
 
 
 def test_an_empty_folder(tmp_path: Path) -> None:
-    for folder in (tmp_path, tmp_path / "nowhere"):
-        with pytest.raises(CatalogueError, match=r"no exercise file") as caught:
-            load_catalogue(folder)
-        assert [fault.file for fault in caught.value.faults] == [folder]
+    with pytest.raises(CatalogueError, match=r"no exercise file") as caught:
+        load_catalogue(tmp_path)
+    assert [fault.file for fault in caught.value.faults] == [tmp_path]
+
+
+def test_a_folder_that_is_missing_or_none(tmp_path: Path) -> None:
+    with pytest.raises(CatalogueError, match=r"nowhere: there is no such folder$"):
+        load_catalogue(tmp_path / "nowhere")
+    (tmp_path / "arm.toml").write_text(VALID, encoding="utf-8")
+    with pytest.raises(CatalogueError, match=r"arm\.toml: is no folder$"):
+        load_catalogue(tmp_path / "arm.toml")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no such files on this system")
+@pytest.mark.timeout(ANSWER)
+def test_pipes_and_devices_are_refused_and_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.toml")
+    (tmp_path / "endless.toml").symlink_to("/dev/zero")
+    (tmp_path / "terminal.toml").symlink_to("/dev/null")
+    with pytest.raises(CatalogueError) as caught:
+        load_catalogue(tmp_path)
+    names = ["endless", "pipe", "terminal"]
+    assert [fault.file.stem for fault in caught.value.faults] == names
+    assert {fault.reason for fault in caught.value.faults} == {
+        "cannot be read: it is a pipe or device"
+    }
+
+
+def test_a_file_that_is_far_too_large(tmp_path: Path) -> None:
+    with (tmp_path / "large.toml").open("wb") as file:
+        file.truncate(10**10)
+    with pytest.raises(CatalogueError, match=r"larger than 1024 KiB"):
+        load_catalogue(tmp_path)
 
 
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:
