@@ -1,14 +1,16 @@
 """The settings of an installation: environment variables that begin with DH_GRADER."""
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 from urllib.parse import urlsplit
 
 from pydantic import Field, ValidationError, field_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from service.catalogue import FeedbackLevel, shipped_folder
+from service.submissions.lookup import nearest
 
 PREFIX = "DH_GRADER_"
 # Stands for the folder of the exercises that come with the program.
@@ -26,6 +28,7 @@ class Settings(BaseSettings):
 
     host: str = Field("127.0.0.1", description="The address that `serve` listens on.")
     port: int = Field(8000, ge=0, le=65535, description="Its port; 0 takes a free one.")
+    workers: int = Field(1, ge=1, le=64, description="How many processes `serve` starts.")
     exercises_dir: Annotated[tuple[Path, ...], NoDecode] = Field(
         default_factory=lambda: (shipped_folder(),),
         description="The folder of exercise files, or several with the separator of PATH between "
@@ -54,6 +57,17 @@ class Settings(BaseSettings):
     log_level: Literal["critical", "error", "warning", "info", "debug"] = Field(
         "info", description="What is logged."
     )
+    log_addresses: bool = Field(
+        True, description="Whether the lines on requests name the addresses of clients."
+    )
+
+    @field_validator("host")
+    @classmethod
+    def _is_named(cls, host: str) -> str:
+        # An empty one would listen everywhere, which must be asked for by its name.
+        if not host or host.split() != [host]:
+            raise ValueError("is no address; write 127.0.0.1 for this machine, 0.0.0.0 for all")
+        return host
 
     @field_validator("feedback", "log_level", mode="before")
     @classmethod
@@ -81,19 +95,49 @@ class Settings(BaseSettings):
     @classmethod
     def _are_origins(cls, origins: tuple[str, ...]) -> tuple[str, ...]:
         for origin in origins:
-            parts = urlsplit(origin)
-            if origin != "*" and origin != f"{parts.scheme}://{parts.netloc}":
-                raise ValueError(f"{origin!r} is no origin; write scheme and host, without a path")
+            if origin != "*" and origin != _origin_in(origin):
+                raise ValueError(
+                    f"{origin!r} is no origin; write scheme and host in small letters, without a "
+                    "path, such as https://course.example.edu"
+                )
         return origins
 
 
-def load_settings() -> Settings:
-    """The settings of this process. Raises SettingsError."""
+def load_settings(**options: Any) -> Settings:
+    """The settings of this process; an option that is given counts more than its variable.
+
+    Raises SettingsError.
+    """
+    if unknown := list(_unknown()):
+        raise SettingsError("\n".join(unknown))
     try:
-        return Settings()
+        return Settings(**{name: value for name, value in options.items() if value is not None})
     except ValidationError as error:
         lines = [
             f"{PREFIX}{str(detail['loc'][0]).upper()}: {detail['msg']}"
             for detail in error.errors(include_url=False)
         ]
         raise SettingsError("\n".join(lines)) from error
+
+
+def _unknown() -> Iterator[str]:
+    """The complaints about variables that are named like settings and are none."""
+    for variable in sorted(os.environ):
+        prefix, name = variable[: len(PREFIX)].upper(), variable[len(PREFIX) :].lower()
+        if prefix == PREFIX and name not in Settings.model_fields:
+            meant = nearest(name, Settings.model_fields)
+            advice = f"; did you mean {PREFIX}{meant.upper()}?" if meant else ""
+            yield f"{variable}: there is no such setting{advice}"
+
+
+def _origin_in(text: str) -> str:
+    """The origin that a browser would send for an address."""
+    try:
+        parts = urlsplit(text)
+        port = f":{parts.port}" if parts.port is not None else ""
+    except ValueError:
+        return ""
+    host = (parts.hostname or "").replace("*", "")
+    bracketed = f"[{host}]" if ":" in host else host
+    usual = {"http": ":80", "https": ":443"}.get(parts.scheme)
+    return f"{parts.scheme}://{bracketed}{'' if port == usual else port}" if host else ""

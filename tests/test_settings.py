@@ -44,6 +44,17 @@ def test_the_environment_decides(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
         ("DH_GRADER_FEEDBACK", "everything"),
         ("DH_GRADER_CORS_ORIGINS", "course.example"),
         ("DH_GRADER_CORS_ORIGINS", "https://course.example/page"),
+        ("DH_GRADER_CORS_ORIGINS", "https://"),
+        ("DH_GRADER_CORS_ORIGINS", "https://*.example"),
+        ("DH_GRADER_CORS_ORIGINS", "https://user@course.example"),
+        ("DH_GRADER_CORS_ORIGINS", "https://course.example:443"),
+        ("DH_GRADER_CORS_ORIGINS", "https://Course.example"),
+        ("DH_GRADER_CORS_ORIGINS", "https://course.example:port"),
+        ("DH_GRADER_CORS_ORIGINS", "https://a.example,https://"),
+        ("DH_GRADER_HOST", ""),
+        ("DH_GRADER_HOST", " "),
+        ("DH_GRADER_HOST", "127.0.0.1 0.0.0.0"),
+        ("DH_GRADER_WORKERS", "0"),
     ],
 )
 def test_an_unusable_setting_is_named(
@@ -52,6 +63,41 @@ def test_an_unusable_setting_is_named(
     monkeypatch.setenv(name, value)
     with pytest.raises(SettingsError, match=name):
         load_settings()
+
+
+@pytest.mark.parametrize(
+    "origin", ["*", "http://localhost:3000", "https://[::1]:8443", "https://course.example"]
+)
+def test_an_origin_as_a_browser_sends_it(monkeypatch: pytest.MonkeyPatch, origin: str) -> None:
+    monkeypatch.setenv("DH_GRADER_CORS_ORIGINS", origin)
+    assert load_settings().cors_origins == (origin,)
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("DH_GRADER_FEEDBAK", "; did you mean DH_GRADER_FEEDBACK?"),
+        ("DH_GRADER_EXERCISE_DIR", "; did you mean DH_GRADER_EXERCISES_DIR?"),
+        ("dh_grader_solution", "; did you mean DH_GRADER_SOLUTIONS?"),
+        ("DH_GRADER_ZZZ", ""),
+    ],
+)
+def test_a_misspelt_setting_is_refused_with_the_nearest(
+    monkeypatch: pytest.MonkeyPatch, name: str, meant: str
+) -> None:
+    monkeypatch.setenv(name, "x")
+    with pytest.raises(SettingsError) as refused:
+        load_settings()
+    assert str(refused.value) == f"{name}: there is no such setting{meant}"
+
+
+def test_an_option_counts_more_than_its_variable(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("DH_GRADER_PORT", "9000")
+    monkeypatch.setenv("DH_GRADER_HOST", "0.0.0.0")
+    settings = load_settings(port=9001, host=None)
+    assert (settings.port, settings.host) == (9001, "0.0.0.0")
+    with pytest.raises(SettingsError, match="DH_GRADER_HOST"):
+        load_settings(host="")
 
 
 def test_every_setting_says_what_it_is() -> None:
