@@ -2,9 +2,9 @@
 
 from fastapi import FastAPI
 
-from service.api.application import application
-from service.catalogue import CatalogueError, open_catalogue
+from service.catalogue import CatalogueError
 from service.kinds_check import check_kinds
+from service.server.installed import installed_app
 from service.settings import SettingsError, load_settings
 
 
@@ -12,14 +12,7 @@ def create() -> FastAPI:
     """The service. Ends the process with the reason where a setting or exercise is unusable."""
     check_kinds()
     try:
-        settings = load_settings()
-        catalogue = open_catalogue(settings.exercises_dir, reload=settings.reload_exercises)
-        return application(
-            catalogue,
-            settings.cors_origins,
-            solutions=settings.solutions,
-            feedback=settings.feedback,
-        )
+        return installed_app(load_settings())
     except (SettingsError, CatalogueError) as error:
         raise SystemExit(f"dh-grader cannot start:\n{error}") from error
 

@@ -21,7 +21,7 @@ TESTS = ROOT / "tests"
 PACKAGES = (
     "version", "expressions", "grids", "kinematics", "catalogue", "grading", "solutions", "figures",
     "authoring", "submissions", "formats", "attempts", "access", "client", "settings",
-    "kinds_check", "api", "web", "cli", "app", "__main__",
+    "kinds_check", "api", "web", "server", "cli", "app", "__main__",
 )  # fmt: skip
 
 # The same inside grading, floor by floor. Rooms of one floor may import each other, as long as no

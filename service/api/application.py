@@ -1,7 +1,7 @@
 """The application: routes, limits and headers put together."""
 
 import gc
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from typing import Any
 
@@ -17,6 +17,9 @@ from service.api.openapi import any_other_failure, with_problem_schema
 from service.catalogue import FeedbackLevel
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.version import VERSION
+
+# What stands around an application.
+Layer = Callable[[ASGIApp], ASGIApp]
 
 DESCRIPTION = """
 Grades Denavit-Hartenberg tables, transforms and forward kinematics, row by row, and says why.
@@ -41,8 +44,9 @@ async def _freeze_gc(_: FastAPI) -> AsyncIterator[None]:
 class _Api(FastAPI):
     """FastAPI with its outermost layers outside the framework's own error pages and limit."""
 
-    def __init__(self, cors_origins: tuple[str, ...]) -> None:
+    def __init__(self, cors_origins: tuple[str, ...], turns: Layer | None) -> None:
         self._cors_origins = cors_origins
+        self._turns = turns
         super().__init__(
             title="DH Grader",
             version=VERSION,
@@ -54,8 +58,14 @@ class _Api(FastAPI):
         )
 
     def build_middleware_stack(self) -> ASGIApp:
-        """The framework's layers, then the boundary, then CORS: a page may read problems, too."""
-        app: ASGIApp = BoundaryMiddleware(super().build_middleware_stack())
+        """The framework's layers, the turns between clients, the boundary.
+
+        Then CORS: a page may read problems, too.
+        """
+        app: ASGIApp = super().build_middleware_stack()
+        if self._turns is not None:
+            app = self._turns(app)
+        app = BoundaryMiddleware(app)
         if self._cors_origins:
             app = CORSMiddleware(
                 app,
@@ -76,13 +86,14 @@ def application(
     *,
     solutions: bool = False,
     feedback: FeedbackLevel = FeedbackLevel.FULL,
+    turns: Layer | None = None,
 ) -> FastAPI:
     """The HTTP service for these exercises; pages of ``cors_origins`` may call it.
 
     With ``solutions`` it shows the model solutions to whoever asks. Reports tell no more than
-    ``feedback``, nor than their exercise allows.
+    ``feedback``, nor than their exercise allows. ``turns`` decides who comes next.
     """
-    app = _Api(cors_origins)
+    app = _Api(cors_origins, turns)
     problems.install(app)
     for router in (
         exercises.routes(catalogue, feedback),

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from service.catalogue import open_catalogue
+from service.cli.terminal import give_up
 from service.settings import load_settings
 
 
@@ -13,26 +13,16 @@ def command(
         str | None, typer.Option(help="The address to listen on; 0.0.0.0 for all. [127.0.0.1]")
     ] = None,
     port: Annotated[
-        int | None, typer.Option(min=0, max=65535, help="The port; 0 takes a free one. [8000]")
+        int | None, typer.Option(help="The port; 0 takes a free one. [8000]", show_default=False)
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(help="How many processes serve. [1]", show_default=False)
     ] = None,
 ) -> None:
     """Start the service; the environment variables DH_GRADER_… set it up."""
-    settings = load_settings()
-    catalogue = open_catalogue(settings.exercises_dir, reload=settings.reload_exercises)
+    settings = load_settings(host=host, port=port, workers=workers)
     # Only here: the web framework is half of the program's weight, and grading needs none of it.
-    import uvicorn
+    from service.server.start import serve
 
-    from service.api.application import application
-
-    uvicorn.run(
-        application(
-            catalogue,
-            settings.cors_origins,
-            solutions=settings.solutions,
-            feedback=settings.feedback,
-        ),
-        host=settings.host if host is None else host,
-        port=settings.port if port is None else port,
-        log_level=settings.log_level,
-        server_header=False,
-    )
+    if not serve(settings):
+        give_up("The service could not start.")

@@ -1,0 +1,23 @@
+"""The application of this installation, as its settings want it."""
+
+from fastapi import FastAPI
+
+from service.api.application import application
+from service.catalogue import open_catalogue
+from service.server.access_log import set_up_access_log
+from service.server.admission import FairAdmission
+from service.settings import Settings
+
+
+def installed_app(settings: Settings) -> FastAPI:
+    """The application, with fair admission. Raises CatalogueError."""
+    catalogue = open_catalogue(settings.exercises_dir, reload=settings.reload_exercises)
+    app = application(
+        catalogue,
+        settings.cors_origins,
+        solutions=settings.solutions,
+        feedback=settings.feedback,
+        turns=FairAdmission,
+    )
+    set_up_access_log(addresses=settings.log_addresses)
+    return app

@@ -1,0 +1,34 @@
+"""What one process takes from its clients, each number with its reason."""
+
+from typing import Final
+
+# Everything of a request that is not its content: the head, the sizes of chunks, the trailers.
+# Browsers send 1 to 4 kB, proxies with large cookies 16.
+MAX_FRAME: Final = 64 * 1024
+# The longest address of this service has less than 200 characters.
+MAX_URL: Final = 8 * 1024
+MAX_HEADERS: Final = 100
+
+# Seconds from the first byte of a request to its last, for an answer to be taken, and without a
+# request. 256 KiB in 30 s is 9 kB/s, which the slowest mobile line reaches.
+PATIENCE: Final = 30.0
+# Seconds in which a client that was refused while it was still sending may read why.
+LINGER: Final = 2.0
+# What is read of it meanwhile, and thrown away.
+MAX_DISCARDED: Final = 2 * 1024 * 1024
+# Seconds between two looks at the clock.
+SWEEP: Final = 0.5
+
+# About 20 kB of memory each. When there are as many, those that keep the process waiting make room.
+MAX_CONNECTIONS: Final = 1000
+# Beyond them, where all are being answered: room for questions about the service's health.
+RESERVE: Final = 32
+# Files that the program itself opens.
+OTHER_FILES: Final = 64
+# Bytes of requests that have not arrived whole, of all connections.
+MAX_UNFINISHED: Final = 32 * 1024 * 1024
+
+# From the signal to end until the last answers are given up.
+GRACE: Final = 8.0
+# Where a supervisor asks; these wait for nobody.
+HEALTH: Final = frozenset({"/healthz", "/readyz"})

@@ -1,0 +1,79 @@
+"""One process that serves: uvicorn with connections under limits, and an end in good order."""
+
+import asyncio
+import contextlib
+import os
+import signal
+import socket
+from collections.abc import Iterator
+from types import FrameType
+from typing import Final
+
+import uvicorn
+
+from service.server.limits import GRACE
+from service.server.protocol import GuardedProtocol, GuardedState
+
+_SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
+
+
+class Server(uvicorn.Server):
+    """A server that ends by a signal: it answers what it has, for ten seconds at most."""
+
+    def __init__(self, config: uvicorn.Config, parent: int | None = None) -> None:
+        super().__init__(config)
+        self.server_state: GuardedState = GuardedState()
+        # The supervisor of this worker, which alone sends signals and must not die before it.
+        self._parent = parent
+
+    @contextlib.contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """End in good order by the first signal; the exit code is then 0."""
+        before = {number: signal.signal(number, self.handle_exit) for number in _SIGNALS}
+        try:
+            yield
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:  # noqa: ARG002
+        """Begin to end; by a second signal at once."""
+        if self._parent is not None:
+            # The terminal's Ctrl+C goes to the workers as well; the supervisor counts.
+            self.should_exit = self.should_exit or sig == signal.SIGTERM
+        elif self.should_exit:
+            signal.signal(sig, signal.SIG_DFL)
+            signal.raise_signal(sig)
+        else:
+            self.should_exit = True
+
+    async def on_tick(self, counter: int) -> bool:
+        """Whether to end: by a signal, or because nobody is left to send one."""
+        orphaned = self._parent is not None and os.getppid() != self._parent
+        return await super().on_tick(counter) or orphaned
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Answer what has come whole, wait a while for the rest, and hang up on what is left."""
+        for server in self.servers:
+            server.close()
+        for listener in sockets or []:
+            listener.close()
+        connections = self.server_state.connections
+        for connection in self._guarded():
+            connection.shutdown()
+        loop = asyncio.get_running_loop()
+        end = loop.time() + GRACE
+        while connections and loop.time() < end:
+            await asyncio.sleep(0.02)
+        for connection in self._guarded():
+            connection.reset()
+        if tasks := list(self.server_state.tasks):
+            # They find that nobody listens any more.
+            _, hanging = await asyncio.wait(tasks, timeout=0.5)
+            for task in hanging:
+                task.cancel()
+        await self.lifespan.shutdown()
+
+    def _guarded(self) -> list[GuardedProtocol]:
+        found = list(self.server_state.connections)
+        return [connection for connection in found if isinstance(connection, GuardedProtocol)]

@@ -1,0 +1,56 @@
+"""`dh-grader serve`: the settings put into effect, in one process or several."""
+
+import signal
+import socket
+import sys
+from functools import partial
+
+import uvicorn
+
+from service.catalogue import CatalogueError
+from service.server.installed import installed_app
+from service.server.process import Server
+from service.server.protocol import GuardedProtocol
+from service.server.workers import Supervisor
+from service.settings import Settings
+
+
+def serve(settings: Settings) -> bool:
+    """Serve until a signal comes; false where the port cannot be had.
+
+    Raises CatalogueError.
+    """
+    app = installed_app(settings)
+    if settings.workers == 1:
+        server = Server(_config(settings, app))
+        server.run()
+        return server.started
+    config = _config(settings, app)
+    # The workers read the exercises themselves: here they were read to see that they can be used.
+    listener = config.bind_socket()
+    return Supervisor(partial(_work, settings), listener, settings.workers).run()
+
+
+def _config(settings: Settings, app: object) -> uvicorn.Config:
+    return uvicorn.Config(
+        app,  # type: ignore[arg-type]
+        host=settings.host,
+        port=settings.port,
+        http=GuardedProtocol,
+        ws="none",
+        log_level=settings.log_level,
+        server_header=False,
+        workers=settings.workers,
+    )
+
+
+def _work(settings: Settings, listener: socket.socket, parent: int) -> None:
+    """Serve in one of several processes."""
+    # Until the server has its own handlers, a Ctrl+C of the terminal is the supervisor's affair.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        app = installed_app(settings)
+    except CatalogueError as error:
+        print(error, file=sys.stderr)  # noqa: T201 - the reason why this process ends
+        raise SystemExit(1) from error
+    Server(_config(settings, app), parent).run(sockets=[listener])

@@ -1,0 +1,104 @@
+"""Several processes that serve one port, and the process that looks after them."""
+
+import logging
+import multiprocessing
+import os
+import signal
+import socket
+import time
+from collections.abc import Callable
+from multiprocessing.connection import wait
+from multiprocessing.process import BaseProcess
+from typing import Final
+
+from service.server.limits import GRACE
+
+# Seconds beyond the grace of a worker until it is killed.
+_MARGIN: Final = 1.5
+# Seconds until a worker that has ended is started anew.
+_PAUSE: Final = 1.0
+
+_log = logging.getLogger("uvicorn.error")
+
+
+class Supervisor:
+    """Keeps so many workers at work until a signal comes."""
+
+    def __init__(
+        self, work: Callable[[socket.socket, int], None], listener: socket.socket, number: int
+    ) -> None:
+        self._work = work
+        self._listener = listener
+        self._number = number
+        self._workers: list[BaseProcess] = []
+        self._signals = 0
+
+    def run(self) -> bool:
+        """Run until a signal comes; false where no worker could start."""
+        # What is written here wakes the process from its wait.
+        awake, alarm = socket.socketpair()
+        with awake, alarm:
+            alarm.setblocking(False)
+            signal.set_wakeup_fd(alarm.fileno())
+            for number in (signal.SIGINT, signal.SIGTERM):
+                signal.signal(number, self._note)
+            self._workers = [self._start() for _ in range(self._number)]
+            started = self._watch(awake)
+            self._listener.close()
+            self._end(awake)
+            signal.set_wakeup_fd(-1)
+        return started
+
+    def _note(self, *_: object) -> None:
+        self._signals += 1
+
+    def _start(self) -> BaseProcess:
+        # A fresh interpreter: a fork would take over locks that another thread holds.
+        context = multiprocessing.get_context("spawn")
+        worker = context.Process(target=self._work, args=(self._listener, os.getpid()))
+        worker.start()
+        return worker
+
+    def _watch(self, awake: socket.socket) -> bool:
+        """Start anew whoever ends, until a signal comes; false where all end at their start."""
+        while True:
+            wait([awake, *(worker.sentinel for worker in self._workers)])
+            if self._stopped():
+                return True
+            gone = [worker for worker in self._workers if not worker.is_alive()]
+            if len(gone) == len(self._workers) and all(worker.exitcode == 1 for worker in gone):
+                return False
+            for worker in gone:
+                _log.error("Worker %s has ended (exit code %s)", worker.pid, worker.exitcode)
+            wait([awake], _PAUSE)
+            if self._stopped():
+                return True
+            here = [worker for worker in self._workers if worker not in gone]
+            self._workers = here + [self._start() for _ in gone]
+
+    def _stopped(self) -> bool:
+        return self._signals > 0
+
+    def _end(self, awake: socket.socket) -> None:
+        """Have the workers end in good order; by a second signal, or in the end, at once."""
+        for worker in self._workers:
+            worker.terminate()
+        end = time.monotonic() + GRACE + _MARGIN
+        while alive := [worker for worker in self._workers if worker.is_alive()]:
+            left = end - time.monotonic()
+            if self._signals > 1 or left <= 0:
+                for worker in alive:
+                    worker.kill()
+                break
+            awake.setblocking(False)
+            _drain(awake)
+            wait([awake, *(worker.sentinel for worker in alive)], left)
+        for worker in self._workers:
+            worker.join()
+
+
+def _drain(awake: socket.socket) -> None:
+    try:
+        awake.recv(64)
+    except BlockingIOError:
+        return

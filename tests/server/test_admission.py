@@ -1,0 +1,286 @@
+"""Requests are let through in turn by client, and nobody's queue is endless."""
+
+import asyncio
+import json
+import time
+from collections.abc import Callable, Coroutine
+from typing import Any
+
+import pytest
+
+from service.server import admission
+from service.server.admission import OF_ALL, OF_ONE, FairAdmission, Metered
+from service.submissions.strict_json import MAX_BODY_SIZE
+
+Messages = list[dict[str, Any]]
+
+
+class Client:
+    """One connection that sends one request, and what it got."""
+
+    def __init__(
+        self, address: str, port: int = 1, body: bytes = b"{}", path: str = "/v1/preview"
+    ) -> None:
+        self.scope = {
+            "type": "http", "method": "POST", "path": path, "headers": [], "query_string": b"",
+            "client": (address, port),
+        }  # fmt: skip
+        self._body: list[bytes] = [body[i : i + 65536] for i in range(0, len(body), 65536)]
+        self.gone = asyncio.Event()
+        self.answer: Messages = []
+
+    async def receive(self) -> dict[str, Any]:
+        if self._body:
+            part = self._body.pop(0)
+            return {"type": "http.request", "body": part, "more_body": bool(self._body)}
+        await self.gone.wait()
+        return {"type": "http.disconnect"}
+
+    async def send(self, message: Any) -> None:
+        self.answer.append(message)
+
+    @property
+    def status(self) -> int | None:
+        return self.answer[0]["status"] if self.answer else None
+
+
+class Application:
+    """Notes whose request it answers, with its body, and keeps the process busy meanwhile."""
+
+    def __init__(self, seconds: Callable[[str], float] = lambda _: 0.0) -> None:
+        self.served: list[str] = []
+        self.bodies: list[bytes] = []
+        self._seconds = seconds
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        body, more = b"", True
+        while more:
+            message = await receive()
+            if message["type"] == "http.disconnect":
+                return
+            body += message["body"]
+            more = message["more_body"]
+        self.bodies.append(body)
+        client = scope["client"][0]
+        self.served.append(client)
+        end = time.thread_time() + self._seconds(client)
+        while time.thread_time() < end:
+            pass
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+        await send({"type": "http.response.body", "body": b""})
+
+
+def run(story: Coroutine[Any, Any, None]) -> None:
+    asyncio.run(story)
+
+
+def begin(app: FairAdmission, *clients: Client) -> list["asyncio.Task[None]"]:
+    return [
+        asyncio.create_task(app(client.scope, client.receive, client.send)) for client in clients
+    ]
+
+
+async def passes(number: int) -> None:
+    for _ in range(number):
+        await asyncio.sleep(0)
+
+
+@pytest.fixture
+def alike(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Lets all requests take the same time."""
+    monkeypatch.setattr(admission, "thread_time", lambda: 0.0)
+
+
+@pytest.mark.usefixtures("alike")
+def test_whoever_comes_last_of_many_connections_is_the_second_to_be_served() -> None:
+    async def story() -> None:
+        inner = Application()
+        app = FairAdmission(inner)
+        tasks = begin(app, *(Client("attacker", port) for port in range(16)), Client("honest"))
+        await asyncio.gather(*tasks)
+        assert inner.served[:3] == ["attacker", "honest", "attacker"]
+        assert len(inner.served) == 17
+
+    run(story())
+
+
+@pytest.mark.usefixtures("alike")
+def test_what_arrives_while_another_is_answered_is_heard_before_the_next_is_begun() -> None:
+    async def story() -> None:
+        inner = Application()
+        app = FairAdmission(inner)
+        waiting = begin(app, *(Client("attacker", port) for port in range(16)))
+        served_between = []
+        for _ in range(5):
+            # As a socket would be read, once in a pass of the loop.
+            before = len(inner.served)
+            client = Client("honest")
+            await asyncio.gather(*begin(app, client))
+            served_between.append(inner.served[before:].index("honest"))
+        # At most the one that was begun already comes before, and one of the next turn.
+        assert max(served_between) <= 2
+        await asyncio.gather(*waiting)
+
+    run(story())
+
+
+def test_costly_requests_wait_for_many_small_ones() -> None:
+    async def story() -> None:
+        inner = Application(lambda client: 0.02 if client == "attacker" else 0.0)
+        app = FairAdmission(inner)
+        tasks = begin(app, *(Client("attacker", port) for port in range(4)))
+        await passes(3)
+        tasks += begin(app, *(Client("honest", port) for port in range(100)))
+        await asyncio.gather(*tasks)
+        # One was served at its arrival, and one before the others were heard.
+        assert inner.served.index("honest") <= 2
+        first = inner.served.index("honest")
+        assert set(inner.served[first : first + 100]) == {"honest"}
+
+    run(story())
+
+
+def test_beyond_its_queue_a_client_is_told_to_come_again() -> None:
+    async def story() -> None:
+        inner = Application()
+        app = FairAdmission(inner)
+        many = [Client("many", port) for port in range(OF_ONE[0] + 11)]
+        other = Client("other")
+        await asyncio.gather(*begin(app, *many, other))
+        statuses = [client.status for client in many]
+        # One is begun at once, and so many may wait.
+        assert statuses.count(200) == OF_ONE[0] + 1
+        assert statuses.count(429) == 10
+        assert other.status == 200
+        refused = many[statuses.index(429)].answer
+        headers = dict(refused[0]["headers"])
+        assert headers[b"content-type"] == b"application/problem+json"
+        assert 1 <= int(headers[b"retry-after"]) <= 30
+        assert json.loads(refused[1]["body"])["status"] == 429
+
+    run(story())
+
+
+@pytest.mark.parametrize("size", [0, 1])
+def test_the_bytes_that_wait_are_bounded_as_well(
+    monkeypatch: pytest.MonkeyPatch, size: int
+) -> None:
+    monkeypatch.setattr(admission, "OF_ONE", (1000, 3000))
+
+    async def story() -> None:
+        app = FairAdmission(Application())
+        clients = [Client("a", port, b" " * (1000 + size)) for port in range(4)]
+        await asyncio.gather(*begin(app, *clients))
+        assert [client.status for client in clients].count(429) == size
+
+    run(story())
+
+
+def test_beyond_the_queue_of_all_the_service_is_busy() -> None:
+    async def story() -> None:
+        app = FairAdmission(Application())
+        clients = [Client(f"10.0.0.{i}") for i in range(OF_ALL[0] + 2)]
+        await asyncio.gather(*begin(app, *clients))
+        statuses = [client.status for client in clients]
+        assert (statuses.count(200), statuses.count(503)) == (OF_ALL[0] + 1, 1)
+        assert b"retry-after" in dict(clients[statuses.index(503)].answer[0]["headers"])
+
+    run(story())
+
+
+def test_questions_about_health_wait_for_nobody() -> None:
+    async def story() -> None:
+        inner = Application()
+        app = FairAdmission(inner)
+        tasks = begin(app, *(Client("a", port) for port in range(5)))
+        tasks += begin(app, Client("supervisor", path="/healthz"))
+        await passes(1)
+        assert inner.served == ["a", "supervisor"]
+        await asyncio.gather(*tasks)
+
+    run(story())
+
+
+def test_whoever_has_gone_is_not_served() -> None:
+    async def story() -> None:
+        inner = Application()
+        app = FairAdmission(inner)
+        gone = Client("gone")
+        gone.gone.set()
+        await asyncio.gather(*begin(app, Client("a"), Client("b"), gone))
+        assert inner.served == ["a", "b"]
+
+    run(story())
+
+
+def test_a_cancelled_request_does_not_stop_the_others() -> None:
+    async def story() -> None:
+        inner = Application()
+        app = FairAdmission(inner)
+        tasks = begin(app, *(Client(name) for name in "abc"))
+        await passes(1)
+        tasks[1].cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+        assert inner.served == ["a", "c"]
+
+    run(story())
+
+
+@pytest.mark.parametrize("size", [0, 2, 65537, MAX_BODY_SIZE, MAX_BODY_SIZE + 1, 3 * 10**6])
+def test_the_application_reads_the_body_as_it_was_sent(size: int) -> None:
+    async def story() -> None:
+        inner = Application()
+        body = bytes(range(256)) * (size // 256) + b"x" * (size % 256)
+        client = Client("a", body=body)
+        client._body = client._body or [b""]
+        await asyncio.gather(*begin(FairAdmission(inner), client))
+        assert inner.bodies == [body]
+
+    run(story())
+
+
+def test_an_error_of_the_application_passes_and_the_next_is_served() -> None:
+    class Broken(Application):
+        async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+            if scope["client"][0] == "broken":
+                raise ZeroDivisionError
+            await super().__call__(scope, receive, send)
+
+    async def story() -> None:
+        inner = Broken()
+        tasks = begin(FairAdmission(inner), Client("broken"), Client("a"))
+        failed, _ = await asyncio.gather(*tasks, return_exceptions=True)
+        assert isinstance(failed, ZeroDivisionError)
+        assert inner.served == ["a"]
+
+    run(story())
+
+
+def test_only_the_time_of_a_request_s_own_steps_is_measured() -> None:
+    def work(seconds: float) -> None:
+        end = time.thread_time() + seconds
+        while time.thread_time() < end:
+            pass
+
+    async def steps() -> None:
+        work(0.02)
+        await asyncio.sleep(0)
+        work(0.02)
+        with pytest.raises(KeyError):
+            await asyncio.wait_for(failing(), 5)
+
+    async def failing() -> None:
+        await asyncio.sleep(0.001)
+        raise KeyError
+
+    async def others() -> None:
+        work(0.2)
+
+    async def measured() -> float:
+        metered = Metered(steps())
+        other = asyncio.ensure_future(others())
+        await metered
+        await other
+        return metered.seconds
+
+    assert 0.04 <= asyncio.run(measured()) < 0.15
