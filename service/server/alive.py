@@ -18,6 +18,8 @@ def main() -> int:
         return int(connection.getresponse().status != 200)
     except (OSError, HTTPException):
         return 1
+    finally:
+        connection.close()
 
 
 _ANYWHERE = {"0.0.0.0": "127.0.0.1", "::": "::1"}

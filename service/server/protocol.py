@@ -15,6 +15,7 @@ from typing import Any, Final
 import httptools
 from starlette.types import Receive, Scope, Send
 from uvicorn.config import Config
+from uvicorn.protocols.http.flow_control import FlowControl
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol, RequestResponseCycle
 from uvicorn.server import ServerState
 
@@ -50,10 +51,32 @@ class _Wire:
         return getattr(self._transport, name)
 
 
+class _Valve(FlowControl):
+    """Flow control under which an answer that is at work cannot have the next request read."""
+
+    shut = False
+
+    def resume_reading(self) -> None:
+        """Read on, unless the next request has to wait."""
+        if not self.shut:
+            super().resume_reading()
+
+    def hold(self) -> None:
+        """Read nothing until ``release``."""
+        self.shut = True
+        self.pause_reading()
+
+    def release(self) -> None:
+        """Read on."""
+        self.shut = False
+        self.resume_reading()
+
+
 class GuardedProtocol(HttpToolsProtocol):
     """One connection."""
 
     server_state: GuardedState
+    flow: _Valve
 
     def __init__(
         self,
@@ -84,6 +107,7 @@ class GuardedProtocol(HttpToolsProtocol):
         """Begin, or hang up at once where there is no room."""
         super().connection_made(transport)
         self._raw = transport
+        self.flow = _Valve(transport)
         self.transport = _Wire(transport, self.finish)  # type: ignore[assignment]
         self.address = client_key(self.client[0]) if self.client else ""
         if not self.crowd.enter(self, self.loop):
@@ -129,11 +153,13 @@ class GuardedProtocol(HttpToolsProtocol):
             self.crowd.hold(self, len(framing) + framing.content)
             if self._ended:
                 self.reset()
+            elif self.flow.shut:
+                self.flow.release()
             return
         self.crowd.hold(self, 0)
         if len(framing):
             # The next request of a pipeline waits until this one is answered.
-            self.flow.pause_reading()
+            self.flow.hold()
 
     def _parse(self, piece: bytes) -> None:
         framing = self._framing
@@ -179,14 +205,16 @@ class GuardedProtocol(HttpToolsProtocol):
         if self._stopping or (self._ended and not len(self._framing)):
             self.finish()
             return
-        self.flow.resume_reading()
         if len(self._framing):
-            # Others come first, and whoever does not read answers gets none.
+            # Others come first, and whoever does not read answers gets none. Nothing more is read
+            # until what has come is used up.
             self.loop.call_soon(self._advance_if_read)
+        else:
+            self.flow.release()
 
     def _advance_if_read(self) -> None:
         if self.flow.write_paused:
-            self.flow.pause_reading()
+            self.flow.hold()
         elif not self._finishing and not self._framing.whole:
             self._advance()
 
@@ -236,7 +264,6 @@ class GuardedProtocol(HttpToolsProtocol):
         if self.waiting_since is None:
             self.deadline = float("inf")
         elif len(self._framing):
-            self.flow.resume_reading()
             self.loop.call_soon(self._advance_if_read)
 
     # Ends.
@@ -275,7 +302,7 @@ class GuardedProtocol(HttpToolsProtocol):
             return
         # A connection that is closed while it has unread bytes is reset, and the answer with it.
         self.deadline = now + LINGER
-        self.flow.resume_reading()
+        self.flow.release()
         if self._raw.can_write_eof():
             self._raw.write_eof()
 

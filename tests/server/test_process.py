@@ -1,0 +1,194 @@
+"""How a real process ends, alone and with workers, and what it does when one of them is lost."""
+
+import os
+import signal
+import socket
+import sys
+import time
+from collections.abc import Callable
+from contextlib import ExitStack, suppress
+from pathlib import Path
+
+import pytest
+
+from service.server.limits import MAX_CONNECTIONS
+from tests.guards import ANSWER
+from tests.server.raw import HEALTH, Service, answers, preview, received, service
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
+
+IMPATIENT = "tests.server.impatient"
+# Seconds within which a process must have ended, by issue of its promise.
+AT_MOST = 10.0
+HALF = len(preview()) - 20
+
+
+def until(holds: Callable[[], bool]) -> None:
+    """Wait for a condition; the test's own timeout bounds that."""
+    while not holds():
+        time.sleep(0.02)
+
+
+def refuses(running: Service) -> bool:
+    try:
+        socket.create_connection(("127.0.0.1", running.port), ANSWER).close()
+    except OSError:
+        return True
+    return False
+
+
+def runs(process: int) -> bool:
+    """Whether a process runs: it may have ended, and nobody has asked for its exit code yet."""
+    try:
+        state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return False
+    return state != "Z"
+
+
+def workers(running: Service) -> set[int]:
+    """The processes whose parent is the service, without the tracker of multiprocessing."""
+    found = set()
+    for folder in Path("/proc").glob("[0-9]*"):
+        with suppress(OSError):
+            parent = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
+            if parent == running.process.pid and b"resource_tracker" not in (
+                (folder / "cmdline").read_bytes()
+            ):
+                found.add(int(folder.name))
+    return found
+
+
+def check_end(running: Service) -> None:
+    """Ask it to end while one request is half there, and others are not begun."""
+    with (
+        running.connect(preview()[:HALF]) as half,
+        running.connect(b"GET /healthz HTT") as head,
+        running.connect() as idle,
+    ):
+        # Answers on other connections say that these have been accepted.
+        for _ in range(5):
+            running.ask(HEALTH)
+        running.process.terminate()
+        until(lambda: refuses(running))
+        assert received(idle) == b""
+        assert received(head) == b""
+        half.sendall(preview()[HALF:])
+        (answer,) = answers(half)
+        assert answer.status == 200
+        assert answer.headers["connection"] == "close"
+    assert running.process.wait(ANSWER) == 0
+
+
+def test_what_is_under_way_is_finished_and_what_is_not_begun_is_hung_up_on(
+    tmp_path: Path,
+) -> None:
+    with service(tmp_path) as running:
+        check_end(running)
+
+
+def test_half_a_body_does_not_keep_it_and_is_reset(tmp_path: Path) -> None:
+    with (
+        service(tmp_path, module=IMPATIENT) as running,
+        running.connect(preview()[:HALF]) as half,
+    ):
+        running.ask(HEALTH)
+        began = time.monotonic()
+        assert running.end() == 0
+        assert time.monotonic() - began < AT_MOST
+        with pytest.raises(ConnectionResetError):
+            half.recv(100)
+
+
+@pytest.mark.parametrize("options", [(), ("--workers", "2")], ids=["alone", "workers"])
+def test_a_second_signal_ends_it_at_once(tmp_path: Path, options: tuple[str, ...]) -> None:
+    with service(tmp_path, *options) as running, running.connect(preview()[:HALF]):
+        running.ask(HEALTH)
+        running.ask(HEALTH)
+        staff = workers(running)
+        running.process.send_signal(signal.SIGINT)
+        until(lambda: refuses(running))
+        assert running.process.poll() is None
+        began = time.monotonic()
+        running.process.terminate()
+        running.process.wait(ANSWER)
+        # Without it, the half body would keep it for eight seconds.
+        assert time.monotonic() - began < 5
+        until(lambda: not any(map(runs, staff)))
+
+
+def test_answers_are_whole_when_it_ends_in_the_midst_of_them(tmp_path: Path) -> None:
+    pipelined = 200
+    with service(tmp_path, module=IMPATIENT) as running:
+        with ExitStack() as stack:
+            lines = [stack.enter_context(running.connect(preview() * pipelined)) for _ in range(20)]
+            lines[0].recv(1)
+            assert running.end() == 0
+            # Fails where one is cut off.
+            found = [answer.status for line in lines[1:] for answer in answers(line)]
+        assert set(found) == {200}
+        assert len(found) < 19 * pipelined
+
+
+def test_a_worker_that_is_lost_is_replaced_and_all_end_in_good_order(tmp_path: Path) -> None:
+    with service(tmp_path, "--workers", "2") as running:
+        until(lambda: running.log.count("startup complete") == 2)
+        before = workers(running)
+        assert len(before) == 2
+        os.kill(min(before), signal.SIGKILL)
+        until(lambda: running.log.count("startup complete") == 3)
+        after = workers(running)
+        assert len(after) == 2
+        assert len(after & before) == 1
+        check_end(running)
+
+
+def test_workers_end_when_nobody_looks_after_them(tmp_path: Path) -> None:
+    with service(tmp_path, "--workers", "2") as running:
+        until(lambda: running.log.count("startup complete") == 2)
+        staff = workers(running)
+        running.process.kill()
+        running.process.wait(ANSWER)
+        until(lambda: not any(map(runs, staff)))
+
+
+def test_many_open_connections_leave_room_and_little_memory(tmp_path: Path) -> None:
+    more = MAX_CONNECTIONS + 300
+    with service(tmp_path) as running:
+        running.ask(preview())
+        before = running.memory()
+        with ExitStack() as lines:
+            for number in range(more):
+                head = b"POST /v1/preview HTTP/1.1\r\nHost: x\r\n"
+                lines.enter_context(running.connect(head))
+                if number % 100 == 0:
+                    (answer,) = running.ask(HEALTH)
+                    assert answer.status == 200
+            (answer,) = running.ask(preview())
+            assert answer.status == 200
+            assert running.memory() - before < 100
+        assert running.end() == 0
+
+
+def test_addresses_can_be_left_out_of_the_log(tmp_path: Path) -> None:
+    with service(tmp_path, DH_GRADER_LOG_ADDRESSES="false") as running:
+        running.ask(b"GET /healthz?name=Ada HTTP/1.1\r\nHost: x\r\n\r\n")
+        running.ask(b"NONSENSE\r\n\r\n")
+        assert running.end() == 0
+        requests = [line for line in running.log.splitlines() if "HTTP/1.1" in line]
+    assert requests == [
+        'INFO:     - - "GET /healthz HTTP/1.1" 200 OK',
+        'INFO:     - - "- - HTTP/1.1" 400 Bad Request',
+    ]
+
+
+def test_a_port_that_is_taken_is_a_reason(tmp_path: Path) -> None:
+    with service(tmp_path) as running:
+        other = tmp_path / "other"
+        other.mkdir()
+        with (
+            pytest.raises(AssertionError, match=r"(?i)address already in use"),
+            service(other, "--port", str(running.port), "--workers", "2"),
+        ):
+            pass
+        assert running.end() == 0
