@@ -23,7 +23,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test coverage lint format bench fuzz campaign policies lock clean
+.PHONY: help install run test coverage lint format bench fuzz attack campaign policies lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' Makefile
@@ -56,6 +56,9 @@ bench: $(dev) ## measure against the budgets
 
 fuzz: $(dev) ## read 100,000 hostile texts (COUNT=, SEED=)
 	$(python) -m tests.fuzz --count "$(COUNT)" --seed "$(SEED)"
+
+attack: $(dev) ## attack a real process for ten minutes, and see that honest clients are served
+	$(python) -m tests.attack
 
 campaign: $(dev) ## grade tables in random frames, TABLES= of each robot and convention (SEED=)
 	$(python) -m tests.frame_choice --tables "$(TABLES)" --seed "$(SEED)"

@@ -1,0 +1,93 @@
+"""Honest clients: what they wait for their answers while somebody else attacks."""
+
+import http.client
+import json
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+from tests.benchmarks.answers import one_student_s_table, table
+from tests.guards import ANSWER
+from tests.server.raw import Service
+
+CLIENTS = 6
+GRADE = "/v1/exercises/stanford-arm/grade"
+
+
+@dataclass
+class Waits:
+    """How long answers took, in seconds, and how many never came."""
+
+    seconds: list[float] = field(default_factory=list)
+    failures: list[str] = field(default_factory=list)
+
+    def quantile(self, share: float) -> float:
+        """The wait that so many were not above, in seconds."""
+        ordered = sorted(self.seconds) or [float("nan")]
+        return ordered[min(int(len(ordered) * share), len(ordered) - 1)]
+
+    def __str__(self) -> str:
+        """The waits in milliseconds."""
+        p50, p99, longest = (1e3 * self.quantile(share) for share in (0.5, 0.99, 1.0))
+        failed = f", {len(self.failures)} failed: {self.failures[0]}" if self.failures else ""
+        return (
+            f"{len(self.seconds)} answers, p50 {p50:.0f} p99 {p99:.0f} max {longest:.0f} ms{failed}"
+        )
+
+
+def submission(number: int) -> bytes:
+    """A table as a student writes it, spelled in a way of its own; one in three is wrong."""
+    return json.dumps({"answers": {"table": table(one_student_s_table(number))}}).encode()
+
+
+@contextmanager
+def watched(running: Service, source: str = "127.0.0.2") -> Iterator[tuple[Waits, Waits]]:
+    """The waits of honest submissions, and of questions about health, as long as this lasts."""
+    submissions, health = Waits(), Waits()
+    over = threading.Event()
+
+    def ask(waits: Waits, send: Callable[[http.client.HTTPConnection], None], pause: float) -> None:
+        connection = http.client.HTTPConnection(
+            "127.0.0.1", running.port, timeout=ANSWER, source_address=(source, 0)
+        )
+        while not over.is_set():
+            began = time.perf_counter()
+            try:
+                send(connection)
+                response = connection.getresponse()
+                response.read()
+                if response.status == 200:
+                    waits.seconds.append(time.perf_counter() - began)
+                else:
+                    waits.failures.append(str(response.status))
+            except (OSError, http.client.HTTPException) as error:
+                waits.failures.append(repr(error))
+                connection.close()
+            over.wait(pause)
+        connection.close()
+
+    numbers = iter(range(10**9))
+    lock = threading.Lock()
+
+    def grade(connection: http.client.HTTPConnection) -> None:
+        with lock:
+            number = next(numbers)
+        connection.request("POST", GRADE, submission(number))
+
+    def alive(connection: http.client.HTTPConnection) -> None:
+        connection.request("GET", "/healthz")
+
+    threads = [
+        *(threading.Thread(target=ask, args=(submissions, grade, 0.0)) for _ in range(CLIENTS)),
+        threading.Thread(target=ask, args=(health, alive, 0.05)),
+    ]
+    for thread in threads:
+        thread.start()
+    try:
+        yield submissions, health
+    finally:
+        over.set()
+        for thread in threads:
+            thread.join()
