@@ -1,11 +1,14 @@
-"""Fair admission: requests come in turn by client, one at a time, and nobody's queue is endless.
+"""Fair admission: requests come in turn by client, and nobody's queue is endless.
 
 A grading keeps the process busy until it is done. What arrives meanwhile must be heard before the
 next is begun: else a client that sends on many connections at once is served on all of them first.
+Looking at the sockets after each small request would cost as much as the request, so these go on
+for a slice of time.
 """
 
 import asyncio
 import math
+from collections import deque
 from collections.abc import Awaitable, Callable, Generator
 from functools import partial
 from time import thread_time
@@ -13,6 +16,7 @@ from typing import Any, Final
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from service.api.problems import ProblemError
 from service.server.crowd import client_key
 from service.server.fair_queue import FairQueue, Ticket
 from service.server.limits import HEALTH
@@ -23,6 +27,13 @@ from service.submissions.strict_json import MAX_BODY_SIZE
 # submissions in the same second, is served within that second.
 OF_ONE: Final = (128, 8 * 1024 * 1024)
 OF_ALL: Final = (1024, 32 * 1024 * 1024)
+# Seconds of processor time until the sockets are looked at, and how many requests are called up at
+# once to use them.
+SLICE: Final = 0.002
+_CALLED: Final = 8
+# How many small answers, on health and refusals, are given each time the sockets are looked at. On
+# a thousand connections, they alone would keep the process busy.
+SMALL: Final = 4
 # The share of the last request in the mean time that a request takes.
 _RECENT: Final = 0.02
 _LONGEST_RETRY: Final = 30
@@ -61,13 +72,20 @@ class FairAdmission:
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
         self._queue = FairQueue()
-        # Whether a request has been begun since the sockets were looked at.
-        self._taken = False
+        # Processor time and small answers since the sockets were looked at; whether they will be.
+        self._spent = 0.0
+        self._small = 0
+        self._looking = False
+        self._small_ones: deque[asyncio.Future[None]] = deque()
         self._mean = 0.0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one ASGI connection."""
-        if scope["type"] != "http" or scope["path"] in HEALTH:
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        if scope["path"] in HEALTH:
+            await self._small_turn()
             await self.app(scope, receive, send)
             return
         body, ended = await _body(receive)
@@ -75,25 +93,28 @@ class FairAdmission:
             return
         host, port = scope.get("client") or ("", 0)
         ticket = Ticket(client_key(host), port, len(body))
-        if self._taken:
+        if len(self._queue) or self._spent >= SLICE:
             refusal = self._refusal(ticket)
             if refusal is not None:
+                body = b""
+                await self._small_turn()
                 await refusal.response(scope["path"])(scope, receive, send)
                 return
             await self._turn(ticket)
             if ended and _gone(receive):
                 return
         else:
-            self._begin()
             self._queue.begin(ticket)
         metered = Metered(self.app(scope, _again(body, ended, receive), send))
         try:
             await metered
         finally:
+            self._spent += metered.seconds
+            self._look_soon()
             self._queue.charge(ticket, metered.seconds)
             self._mean += _RECENT * (metered.seconds - self._mean)
 
-    def _refusal(self, ticket: Ticket) -> Any:
+    def _refusal(self, ticket: Ticket) -> ProblemError | None:
         """The problem of a request for which there is no place in the queue, or None."""
         queue = self._queue
         requests, size = queue.of(ticket.client)
@@ -107,27 +128,53 @@ class FairAdmission:
         return min(max(1, math.ceil(requests * self._mean)), _LONGEST_RETRY)
 
     async def _turn(self, ticket: Ticket) -> None:
-        """Wait until it is this request's turn."""
-        ticket.turn = asyncio.get_running_loop().create_future()
-        self._queue.push(ticket)
-        await ticket.turn
+        """Wait until it is this request's turn and there is time."""
+        again = False
+        while True:
+            ticket.turn = asyncio.get_running_loop().create_future()
+            self._queue.push(ticket, again=again)
+            self._look_soon()
+            await ticket.turn
+            if self._spent < SLICE:
+                return
+            again = True
 
-    def _begin(self) -> None:
-        """Take the place of the request that is begun until the sockets have been looked at."""
-        self._taken = True
-        # Twice: what is called soon once comes before what the sockets have.
-        loop = asyncio.get_running_loop()
-        loop.call_soon(loop.call_soon, self._next)
+    async def _small_turn(self) -> None:
+        """Wait, where too many small answers are asked for at once."""
+        if self._small >= SMALL:
+            turn = asyncio.get_running_loop().create_future()
+            self._small_ones.append(turn)
+            await turn
+        else:
+            self._small += 1
+            self._look_soon()
+
+    def _look_soon(self) -> None:
+        """Go on as soon as the sockets have been looked at."""
+        if not self._looking:
+            self._looking = True
+            # Twice: what is called soon once comes before what the sockets have.
+            loop = asyncio.get_running_loop()
+            loop.call_soon(loop.call_soon, self._next)
 
     def _next(self) -> None:
-        """Begin the request whose turn it is."""
-        self._taken = False
-        while len(self._queue):
-            ticket = self._queue.pop()
-            if not ticket.turn.done():
-                ticket.turn.set_result(None)
-                self._begin()
-                return
+        """Call up those whose turn it is; who finds no time waits again."""
+        self._looking, self._spent, self._small = False, 0.0, 0
+        called = 0
+        while len(self._queue) and called < _CALLED:
+            called += _wake(self._queue.pop().turn)
+        while self._small_ones and self._small < SMALL:
+            self._small += _wake(self._small_ones.popleft())
+        if called or self._small:
+            self._look_soon()
+
+
+def _wake(turn: asyncio.Future[None]) -> bool:
+    """Let the request go on that waits for this, unless it has been given up."""
+    if turn.done():
+        return False
+    turn.set_result(None)
+    return True
 
 
 async def _body(receive: Receive) -> tuple[bytes | None, bool]:

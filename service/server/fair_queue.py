@@ -73,24 +73,26 @@ class FairQueue:
         self._connections: dict[str, _Accounts] = {}
         self._count: dict[str, int] = {}
         self._bytes: dict[str, int] = {}
+        self._length = 0
+        # How many bytes the requests have that wait.
+        self.size = 0
 
     def __len__(self) -> int:
         """How many requests wait."""
-        return sum(self._count.values())
-
-    @property
-    def size(self) -> int:
-        """How many bytes they have."""
-        return sum(self._bytes.values())
+        return self._length
 
     def of(self, client: str) -> tuple[int, int]:
         """How many requests of a client wait, and how many bytes they have."""
         return self._count.get(client, 0), self._bytes.get(client, 0)
 
-    def push(self, ticket: Ticket) -> None:
-        """Let a request wait."""
+    def push(self, ticket: Ticket, *, again: bool = False) -> None:
+        """Let a request wait; ``again`` where it had its turn and found no time."""
         queues = self._waiting.setdefault(ticket.client, {})
-        queues.setdefault(ticket.connection, deque()).append(ticket)
+        queue = queues.setdefault(ticket.connection, deque())
+        if again:
+            queue.appendleft(ticket)
+        else:
+            queue.append(ticket)
         self._note(ticket, 1)
 
     def pop(self) -> Ticket:
@@ -127,6 +129,8 @@ class FairQueue:
         return found
 
     def _note(self, ticket: Ticket, sign: int) -> None:
+        self._length += sign
+        self.size += sign * ticket.size
         self._count[ticket.client] = self._count.get(ticket.client, 0) + sign
         self._bytes[ticket.client] = self._bytes.get(ticket.client, 0) + sign * ticket.size
         if not self._count[ticket.client]:

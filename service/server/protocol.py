@@ -179,10 +179,16 @@ class GuardedProtocol(HttpToolsProtocol):
 
     def _length(self) -> int | None:
         """How long the body is by the head, which the parser has found right."""
-        headers = dict(self.headers)
-        if b"transfer-encoding" in headers:
-            return None
-        return int(headers.get(b"content-length", b"0"))
+        length = 0
+        for name, value in self.scope["headers"]:
+            if name == b"transfer-encoding":
+                return None
+            if name == b"content-length":
+                length = int(value)
+        return length
+
+    def _path(self) -> str:
+        return self.url.partition(b"?")[0].decode("latin-1")
 
     def _arrived(self) -> None:
         """A request has come whole. From now on, the client waits for this process."""
@@ -220,18 +226,15 @@ class GuardedProtocol(HttpToolsProtocol):
 
     # What the parser and the answer call.
 
-    def on_header(self, name: bytes, value: bytes) -> None:
-        """Take a header; what stands behind the body says nothing to us."""
-        if self._framing.in_head:
-            super().on_header(name, value)
-
     def on_headers_complete(self) -> None:
         """Begin with the answer."""
         if self.parser.get_http_version() not in ("1.0", "1.1"):
             raise ValueError("another version of HTTP")
-        path = self.url.partition(b"?")[0].decode("latin-1")
-        self.app = _no_room if self.crowd.full and path not in HEALTH else self.config.loaded_app
+        full = self.crowd.full and self._path() not in HEALTH
+        self.app = _no_room if full else self.config.loaded_app
         super().on_headers_complete()
+        # What stands behind the body says nothing to the application, which has the list before.
+        self.headers = []
         if self._stopping:
             self.cycle.keep_alive = False
 
@@ -273,7 +276,7 @@ class GuardedProtocol(HttpToolsProtocol):
         if self._give_up() and self.cycle.response_started:
             self.reset()
             return
-        path = self.url.partition(b"?")[0].decode("latin-1") if not self._framing.in_head else ""
+        path = "" if self._framing.in_head else self._path()
         answer = problem.response(path)
         date = formatdate(usegmt=True).encode()
         headers = [(b"date", date), (b"x-content-type-options", b"nosniff"), *answer.raw_headers]

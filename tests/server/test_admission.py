@@ -1,6 +1,7 @@
 """Requests are let through in turn by client, and nobody's queue is endless."""
 
 import asyncio
+import itertools
 import json
 import time
 from collections.abc import Callable, Coroutine
@@ -9,7 +10,7 @@ from typing import Any
 import pytest
 
 from service.server import admission
-from service.server.admission import OF_ALL, OF_ONE, FairAdmission, Metered
+from service.server.admission import OF_ALL, OF_ONE, SLICE, FairAdmission, Metered
 from service.submissions.strict_json import MAX_BODY_SIZE
 
 Messages = list[dict[str, Any]]
@@ -87,8 +88,9 @@ async def passes(number: int) -> None:
 
 @pytest.fixture
 def alike(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Lets all requests take the same time."""
-    monkeypatch.setattr(admission, "thread_time", lambda: 0.0)
+    """Lets all requests take the same time: a slice each."""
+    clock = itertools.count()
+    monkeypatch.setattr(admission, "thread_time", lambda: next(clock) * 1.01 * SLICE)
 
 
 @pytest.mark.usefixtures("alike")
@@ -140,6 +142,7 @@ def test_costly_requests_wait_for_many_small_ones() -> None:
     run(story())
 
 
+@pytest.mark.usefixtures("alike")
 def test_beyond_its_queue_a_client_is_told_to_come_again() -> None:
     async def story() -> None:
         inner = Application()
@@ -161,6 +164,7 @@ def test_beyond_its_queue_a_client_is_told_to_come_again() -> None:
     run(story())
 
 
+@pytest.mark.usefixtures("alike")
 @pytest.mark.parametrize("size", [0, 1])
 def test_the_bytes_that_wait_are_bounded_as_well(
     monkeypatch: pytest.MonkeyPatch, size: int
@@ -176,6 +180,7 @@ def test_the_bytes_that_wait_are_bounded_as_well(
     run(story())
 
 
+@pytest.mark.usefixtures("alike")
 def test_beyond_the_queue_of_all_the_service_is_busy() -> None:
     async def story() -> None:
         app = FairAdmission(Application())
@@ -188,6 +193,7 @@ def test_beyond_the_queue_of_all_the_service_is_busy() -> None:
     run(story())
 
 
+@pytest.mark.usefixtures("alike")
 def test_questions_about_health_wait_for_nobody() -> None:
     async def story() -> None:
         inner = Application()
@@ -201,6 +207,30 @@ def test_questions_about_health_wait_for_nobody() -> None:
     run(story())
 
 
+@pytest.mark.usefixtures("alike")
+def test_small_answers_leave_room_for_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(admission, "OF_ONE", (1, 10**6))
+
+    async def story() -> None:
+        inner = Application()
+        app = FairAdmission(inner)
+        many = [Client("many", port) for port in range(40)]
+        asking = [Client("many", port, path="/healthz") for port in range(40)]
+        other = [Client("other"), Client("third")]
+        tasks = begin(app, *many, *asking, *other)
+        while other[1].status is None:
+            await passes(1)
+        # Three submissions are served, one after the other; four small answers beside each.
+        statuses = [client.status for client in (*many, *asking)]
+        assert sum(status is not None for status in statuses) <= 4 * 4
+        await asyncio.gather(*tasks)
+        assert [client.status for client in many].count(429) == 38
+        assert {client.status for client in asking} == {200}
+
+    run(story())
+
+
+@pytest.mark.usefixtures("alike")
 def test_whoever_has_gone_is_not_served() -> None:
     async def story() -> None:
         inner = Application()
@@ -213,6 +243,7 @@ def test_whoever_has_gone_is_not_served() -> None:
     run(story())
 
 
+@pytest.mark.usefixtures("alike")
 def test_a_cancelled_request_does_not_stop_the_others() -> None:
     async def story() -> None:
         inner = Application()
