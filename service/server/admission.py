@@ -93,7 +93,7 @@ class FairAdmission:
             return
         host, port = scope.get("client") or ("", 0)
         ticket = Ticket(client_key(host), port, len(body))
-        if len(self._queue) or self._spent >= SLICE:
+        if len(self._queue) or self._spent >= SLICE or self._queue.owing(ticket):
             refusal = self._refusal(ticket)
             if refusal is not None:
                 body = b""
@@ -103,8 +103,7 @@ class FairAdmission:
             await self._turn(ticket)
             if ended and _gone(receive):
                 return
-        else:
-            self._queue.begin(ticket)
+        self._queue.begin(ticket)
         metered = Metered(self.app(scope, _again(body, ended, receive), send))
         try:
             await metered
@@ -162,6 +161,9 @@ class FairAdmission:
         self._looking, self._spent, self._small = False, 0.0, 0
         called = 0
         while len(self._queue) and called < _CALLED:
+            if called and self._queue.owing(self._queue.next()):
+                # Others may have arrived by the time that the first is done.
+                break
             called += _wake(self._queue.pop().turn)
         while self._small_ones and self._small < SMALL:
             self._small += _wake(self._small_ones.popleft())

@@ -47,12 +47,15 @@ class _Accounts:
     def start(self, key: Hashable) -> float:
         return max(self.now, self.spent.get(key, 0.0))
 
+    def owed(self, key: Hashable) -> float:
+        return self.spent.get(key, 0.0) - self.now
+
     def least(self, keys: Iterable[Any]) -> Any:
         """Of these, the one that has had the least; of equals the first."""
         return min(keys, key=self.start)
 
     def begin(self, key: Hashable) -> None:
-        """Note that it is somebody's turn: nobody who waits has had less."""
+        """Note that somebody's request is begun: nobody who waits has had less."""
         self.now = self.start(key)
 
     def charge(self, key: Hashable, amount: float) -> None:
@@ -95,22 +98,36 @@ class FairQueue:
             queue.append(ticket)
         self._note(ticket, 1)
 
-    def pop(self) -> Ticket:
-        """Take the request whose turn it is. Raises ValueError where none waits."""
+    def next(self) -> Ticket:
+        """The request whose turn it is. Raises ValueError where none waits."""
         client = self._clients.least(self._waiting)
         queues = self._waiting[client]
-        connection = self._accounts(client).least(queues)
-        ticket = queues[connection].popleft()
+        return queues[self._accounts(client).least(queues)][0]
+
+    def pop(self) -> Ticket:
+        """Take the request whose turn it is. Raises ValueError where none waits.
+
+        It counts as the least that there is, so that several are taken in turn.
+        """
+        ticket = self.next()
+        client, connection = ticket.client, ticket.connection
+        queues = self._waiting[client]
+        queues[connection].popleft()
         if not queues[connection]:
             del queues[connection]
         if not queues:
             del self._waiting[client]
         self._note(ticket, -1)
-        self.begin(ticket)
+        self.charge(ticket, LEAST)
         return ticket
 
+    def owing(self, ticket: Ticket) -> bool:
+        """Whether a request is of somebody who has had more than others, by more than a little."""
+        accounts = self._accounts(ticket.client)
+        return self._clients.owed(ticket.client) > LIGHT or accounts.owed(ticket.connection) > LIGHT
+
     def begin(self, ticket: Ticket) -> None:
-        """Note that it is a request's turn."""
+        """Note that a request is begun: nobody who waits has had less."""
         self._clients.begin(ticket.client)
         self._accounts(ticket.client).begin(ticket.connection)
 

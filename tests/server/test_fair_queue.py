@@ -13,11 +13,17 @@ def wait(queue: FairQueue, client: str, connection: int = 0, size: int = 1) -> T
     return ticket
 
 
+def take(queue: FairQueue) -> Ticket:
+    ticket = queue.pop()
+    queue.begin(ticket)
+    return ticket
+
+
 def serve(queue: FairQueue, costs: dict[str, float], turns: int) -> list[str]:
     """Serve for so many turns clients that ask again at once, and say whose turns they were."""
     served = []
     for _ in range(turns):
-        ticket = queue.pop()
+        ticket = take(queue)
         served.append(ticket.client)
         queue.charge(ticket, costs[ticket.client])
         queue.push(ticket)
@@ -35,7 +41,7 @@ def test_sixteen_connections_have_one_turn() -> None:
     queue = FairQueue()
     for connection in range(16):
         wait(queue, "many", connection)
-    queue.charge(queue.pop(), 0.002)
+    queue.charge(take(queue), 0.002)
     wait(queue, "one")
     assert queue.pop().client == "one"
 
@@ -60,7 +66,7 @@ def test_connections_of_one_address_are_told_apart() -> None:
         wait(queue, "campus", connection)
     costly = 0
     for _ in range(3000):
-        ticket = queue.pop()
+        ticket = take(queue)
         attacks = isinstance(ticket.connection, int) and ticket.connection < 16
         costly += attacks
         queue.charge(ticket, 0.040 if attacks else 0.0015)
@@ -72,7 +78,7 @@ def test_connections_of_one_address_are_told_apart() -> None:
 def test_nobody_waits_for_ever() -> None:
     queue = FairQueue()
     wait(queue, "heavy")
-    queue.charge(queue.pop(), 1000.0)
+    queue.charge(take(queue), 1000.0)
     wait(queue, "heavy")
     wait(queue, "light")
     served = serve(queue, {"heavy": 1000.0, "light": 0.002}, 600)
@@ -120,10 +126,10 @@ def test_accounts_of_many_clients_take_no_room() -> None:
     queue = FairQueue()
     for number in range(3_000):
         wait(queue, f"client {number}", number)
-        queue.charge(queue.pop(), 0.001)
+        queue.charge(take(queue), 0.001)
     for number in range(3_000):
         wait(queue, "one", number)
-        queue.charge(queue.pop(), 0.001)
+        queue.charge(take(queue), 0.001)
     assert len(queue._clients.spent) <= 1001
     assert len(queue._connections) <= 1001
     assert all(len(accounts.spent) <= 1001 for accounts in queue._connections.values())
