@@ -122,7 +122,7 @@ class GuardedProtocol(HttpToolsProtocol):
     def eof_received(self) -> bool:  # type: ignore[override]
         """Answer what has come whole; the client sends no more, but may listen."""
         self._ended = True
-        return not self._finishing and (self._framing.whole or len(self._framing) > 0)
+        return self._framing.whole and not self._finishing
 
     def data_received(self, data: bytes) -> None:
         """Take what has come."""
@@ -151,9 +151,7 @@ class GuardedProtocol(HttpToolsProtocol):
             return
         if not framing.whole:
             self.crowd.hold(self, len(framing) + framing.content)
-            if self._ended:
-                self.reset()
-            elif self.flow.shut:
+            if self.flow.shut:
                 self.flow.release()
             return
         self.crowd.hold(self, 0)
@@ -208,7 +206,7 @@ class GuardedProtocol(HttpToolsProtocol):
         self._complete = False
         self._framing.start_next()
         self._wait()
-        if self._stopping or (self._ended and not len(self._framing)):
+        if self._stopping or self._ended:
             self.finish()
             return
         if len(self._framing):

@@ -191,6 +191,11 @@ def test_answers_that_nobody_reads_stop_the_reading(impatient: Service) -> None:
     assert answer.status == 200
 
 
+@pytest.mark.parametrize("sent", [b"", b"GET /heal", preview()[:-3]], ids=["", "head", "body"])
+def test_whoever_gives_up_is_let_go_at_once(impatient: Service, sent: bytes) -> None:
+    assert impatient.ask(sent) == []
+
+
 def test_a_client_that_only_listens_gets_its_answer(impatient: Service) -> None:
     (answer,) = impatient.ask(preview())
     assert answer.json()["ok"] is True
