@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, Protocol
 
 from service.catalogue import Exercise, FeedbackLevel
@@ -66,6 +67,11 @@ class Grading:
         typed = [each.typed for each in expressions if each is not None and each.source != "0"]
         degrees = self.reader.angle_unit == "degrees"
         return spelling_of(typed, self.exercise.vocabulary, degrees=degrees)
+
+    def symbol_names(self, entries: Iterable[Entry]) -> Callable[[str], str]:
+        """The names of symbols as the entries of a part have them, found when one is asked for."""
+        spelling = cache(lambda: self.spelling(entries))
+        return lambda symbol: spelling().names.get(symbol, symbol)
 
     @property
     def corrects(self) -> bool:

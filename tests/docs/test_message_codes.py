@@ -93,6 +93,10 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
         ),
     ),
     ((SINGLE,), (f"{DIAGNOSIS}matrix_entry.py", VALUES)),
+    (
+        ("Slips behind a pose",),
+        (f"{DIAGNOSIS}joint_slips.py", f"{DIAGNOSIS}table_slips.py", f"{DIAGNOSIS}slip_search.py"),
+    ),
     (("Positions",), (f"{DIAGNOSIS}position.py",)),
     (("Angles",), (f"{DIAGNOSIS}angle.py", f"{DIAGNOSIS}euler_triple.py", VALUES)),
     (("Screws",), (f"{DIAGNOSIS}screw_axis.py",)),
@@ -238,7 +242,7 @@ def test_an_entry_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) 
     assert (full - {"rotation_not_orthonormal"}, score) == ({line.code}, set())
 
 
-@examples("Positions")
+@examples("Slips behind a pose", "Positions")
 def test_a_position_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
     exercise, [answer] = catalogue["planar-rr"], line.example
     assert codes_of(exercise, "position", answer) == ({line.code}, set())

@@ -190,11 +190,11 @@ SLIPS: dict[str, Slip] = {
         "What was inverted is the product",
         WHOLE,
     ),
-    "position of another frame": (
+    "position without the tool": (
         STANFORD,
         with_position(STANFORD_POSE, product(STANFORD_LINKS[:5])[:3, 3]),
-        ["wrong_frame"],
-        "The position comes from the pose of frame {5}",
+        ["distance_left_out"],
+        "The offset d6 along the axis of joint 6 is left out",
         POSITION,
     ),
     "rotation of another frame": (
@@ -207,8 +207,8 @@ SLIPS: dict[str, Slip] = {
     "rotation and position, each its own way": (
         STANFORD,
         with_rotation(with_position(STANFORD_POSE, product(STANFORD_LINKS[:5])[:3, 3]), R.T),
-        ["transposed_rotation", "wrong_frame"],
-        "The position comes from",
+        ["transposed_rotation", "distance_left_out"],
+        "d6",
         WHOLE,
     ),
     "columns in another order": (

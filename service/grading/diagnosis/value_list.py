@@ -1,19 +1,40 @@
 """Slips in a list of single values, each of its own quantity."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from service.expressions.printing.spelling import PLAIN
 from service.grading.diagnosis.angle import diagnose_angle
 from service.grading.diagnosis.formula_repair import WrongEntry
 from service.grading.diagnosis.matrix_entry import diagnose
+from service.grading.diagnosis.slip_search import SlipSearch
+from service.grading.diagnosis.slipped_answers import SlippedAnswers
+from service.grading.diagnosis.wrong_value import Mask
 from service.grading.feedback import Finding
 from service.grading.judging.value_list import ComparedValues
 from service.grading.part import Grading
 
 
+def search_of(
+    answers: SlippedAnswers | None, compared: ComparedValues, wrong: Mask, grading: Grading
+) -> SlipSearch | None:
+    """The search for slips of the table behind a list of values; None for None."""
+    if answers is None:
+        return None
+    student = compared.student
+    return SlipSearch(
+        answers,
+        grading.samples,
+        student.values,
+        compared.expected,
+        wrong,
+        scale=compared.scales(grading),
+        angle=np.array([[quantity == "angle"] for quantity in student.quantities]),
+        name=grading.symbol_names(student.entries),
+    )
+
+
 def slips_of(
-    compared: ComparedValues, wrong: NDArray[np.bool_], grading: Grading
+    compared: ComparedValues, wrong: Mask, grading: Grading
 ) -> dict[tuple[int, int], Finding]:
     """The finding on each wrong value that was read, at (its place, 0)."""
     student, scales = compared.student, compared.scales(grading)

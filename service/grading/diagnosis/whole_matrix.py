@@ -3,9 +3,9 @@
 Entries that a hypothesis explains need no finding of their own.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from itertools import permutations
+from itertools import chain, permutations
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from service.grading.tolerances import EXACT_VALUE, ROUNDED_VALUE
 from service.kinematics.transforms import Numbers, inverse
 
 Block = tuple[slice, slice]
+Misconceptions = tuple[Callable[[MatrixCase], Hypotheses], ...]
 
 ROTATION_BLOCK: Block = (slice(0, 3), slice(0, 3))
 POSITION_BLOCK: Block = (slice(0, 3), slice(3, 4))
@@ -141,10 +142,16 @@ def _line_sign(code: str, indices: list[int], frame: str) -> Finding:
     )
 
 
-OF_UPPER_ROWS = (inverse_transform, other_pose, inverse_of_other_pose)
-OF_ROTATION = (transposed_rotation, columns_exchanged, other_rotation)
-OF_POSITION = (other_position,)
-MISCONCEPTIONS = (transposed_matrix, *OF_UPPER_ROWS, *OF_ROTATION, *OF_POSITION, line_sign)
+# In front of the slips of tables stand misconceptions that are likelier than any of them, behind
+# them those that are less so.
+OF_UPPER_ROWS = ((inverse_transform,), (other_pose, inverse_of_other_pose))
+OF_ROTATION = ((transposed_rotation,), (columns_exchanged, other_rotation))
+OF_POSITION = ((), (other_position,))
+MISCONCEPTIONS = (
+    transposed_matrix,
+    *chain.from_iterable(OF_UPPER_ROWS + OF_ROTATION + OF_POSITION),
+    line_sign,
+)
 
 
 # --- checks
@@ -210,7 +217,7 @@ def explain(case: MatrixCase) -> list[Explanation]:
     bottom = bottom_row(case)
     explained = [Explanation(bottom, case.mask(BOTTOM_ROW))] if bottom else []
     if case.wrong[UPPER_ROWS].any():
-        explained += as_explanations(case, explanation(case, OF_UPPER_ROWS)) or _of_blocks(case)
+        explained += _of_block(case, UPPER_ROWS, *OF_UPPER_ROWS) or _of_blocks(case)
     return explained
 
 
@@ -218,9 +225,41 @@ def _of_blocks(case: MatrixCase) -> list[Explanation]:
     explained: list[Explanation] = []
     for block, misconceptions in ((ROTATION_BLOCK, OF_ROTATION), (POSITION_BLOCK, OF_POSITION)):
         if case.wrong[block].any():
-            explained += as_explanations(case, explanation(case, misconceptions))
+            explained += _of_block(case, block, *misconceptions)
     rest = replace(case, wrong=unexplained(case, explained))
     return explained + as_explanations(rest, explanation(rest, (line_sign,)))
+
+
+def _of_block(
+    case: MatrixCase, block: Block, likelier: Misconceptions, less_likely: Misconceptions
+) -> list[Explanation]:
+    """What explains a block: a likely misconception, a slip of the table, or an unlikely one."""
+    return (
+        as_explanations(case, explanation(case, likelier))
+        or _of_slips(case, block)
+        or as_explanations(case, explanation(case, less_likely))
+    )
+
+
+def _of_slips(case: MatrixCase, block: Block) -> list[Explanation]:
+    """The slips of the table that explain a block.
+
+    A turned frame, of which only axes have the wrong sign, is left to ``line_sign``. So is a single
+    wrong entry to itself, unless the slip explains the whole matrix.
+    """
+    entries = case.mask(block)
+    if case.slips is None or (case.wrong[block].sum() == 1 and block != UPPER_ROWS):
+        return []
+    finding = case.slips.finding(entries)
+    if finding is None or (finding.code == "half_turn" and _is_of_signs(case, entries)):
+        return []
+    return [Explanation(finding, entries)]
+
+
+def _is_of_signs(case: MatrixCase, entries: Mask) -> bool:
+    """Whether the wrong signs of whole lines explain all that is wrong in these entries."""
+    signs = explanation(case, (line_sign,))
+    return signs is not None and not (case.wrong & entries & ~case.mask(signs.entries)).any()
 
 
 def unexplained(case: MatrixCase, explained: Sequence[Explanation]) -> Mask:

@@ -11,7 +11,7 @@ from service.grading.feedback import ROUNDED, Finding
 from service.grading.part import Grading
 from service.grading.reading.entry import Entry
 from service.grading.reading.value_list import StudentValues
-from service.grading.report import CellReport, ReadEntry, RowReport, Verdict, row_report
+from service.grading.report import CellReport, Place, ReadEntry, RowReport, Verdict, row_report
 
 _EXACT = int(Match.EXACT)
 
@@ -53,6 +53,11 @@ def value_rows(
     """Rows of one value each; ``found`` is the Match of each, ``(n,)``."""
     column = [[entry] for entry in student.entries]
     return entry_rows(column, found[:, None], slips, grading)
+
+
+def value_places(marked: NDArray[np.bool_]) -> tuple[Place, ...]:
+    """The places of the marked values ``(n,)`` of a list."""
+    return tuple(Place(str(i + 1), "1") for i in np.flatnonzero(marked).tolist())
 
 
 @lru_cache(maxsize=64)

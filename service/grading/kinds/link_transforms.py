@@ -1,12 +1,14 @@
 """Answer kind ``link_transforms``: the matrices A_1 … A_n that a table's rows stand for."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from service.catalogue.formulas import HOMOGENEOUS
 from service.catalogue.parts.link_transforms import LinkTransformsSpec
 from service.grading.diagnosis.matrix_entry import WORK_BUDGET
+from service.grading.diagnosis.slipped_link import slipped_link
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.follow_through import stands_still
 from service.grading.judging.content import of_links
@@ -69,11 +71,12 @@ def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> J
     rows: list[RowReport] = []
     messages: list[Feedback] = []
     expected = np.moveaxis(right, 1, -1)
-    for label, matrix, values in zip(labels, answer.matrices, expected, strict=True):
+    for i, (label, matrix) in enumerate(zip(labels, answer.matrices, strict=True)):
         judged = matrix_rows(
             matrix,
-            ExpectedMatrix(values, HOMOGENEOUS, rigid=True),
+            ExpectedMatrix(expected[i], HOMOGENEOUS, rigid=True),
             grading,
+            slipped=partial(slipped_link, i, right[i], part.convention, grading),
             work_budget=WORK_BUDGET / len(labels),
             name=f"A{label}",
         )

@@ -6,6 +6,7 @@ from service.catalogue.parts.rotation import RotationSpec
 from service.grading.diagnosis.link_products import Chain, chains_of
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
 from service.grading.diagnosis.rotation_steps import Step, explain_steps
+from service.grading.diagnosis.slipped_answers import SlippedAnswers, slipped_answers
 from service.grading.judging.content import of_rigid
 from service.grading.judging.expected import (
     as_entries,
@@ -40,8 +41,12 @@ def judge(part: RotationSpec, answer: StudentMatrix, grading: Grading) -> Judged
     def explanations(case: MatrixCase) -> list[Explanation]:
         return explain_steps(case, steps)
 
+    def slipped() -> SlippedAnswers | None:
+        answers = slipped_answers(part, grading)
+        return answers and answers.of(lambda poses: poses[:, :3, :3])
+
     expected = ExpectedMatrix(_expected(part, steps, grading), ROTATION, rigid=True)
-    judged = matrix_rows(answer, expected, grading, chains, explanations)
+    judged = matrix_rows(answer, expected, grading, chains, explanations, slipped)
     content = of_rigid(expected.values, part, grading)
     return Judged(judged.rows, content, judged.feedback)
 

@@ -8,6 +8,7 @@ from service.catalogue.parts.transform import TransformSpec
 from service.grading.diagnosis.exponentials import explain_product
 from service.grading.diagnosis.link_products import Chain, chains_of
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
+from service.grading.diagnosis.slipped_answers import SlippedAnswers, slipped_answers
 from service.grading.follow_through import stands_still
 from service.grading.judging.content import of_rigid
 from service.grading.judging.expected import as_entries, asked_pose, formula_values, is_whole_chain
@@ -39,8 +40,11 @@ def judge(part: TransformSpec, answer: StudentMatrix, grading: Grading) -> Judge
     def explanations(case: MatrixCase) -> list[Explanation]:
         return explain_product(case, exercise, grading.samples) if whole else []
 
+    def slipped() -> SlippedAnswers | None:
+        return slipped_answers(part, grading)
+
     expected = ExpectedMatrix(values, HOMOGENEOUS, rigid=True)
-    judged = matrix_rows(answer, expected, grading, chains, explanations)
+    judged = matrix_rows(answer, expected, grading, chains, explanations, slipped)
     may_stand_still = whole and not judged.is_right
     return Judged(
         judged.rows,
