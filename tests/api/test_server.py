@@ -59,6 +59,16 @@ def test_it_grades_and_does_not_name_its_server(port: int) -> None:
     assert response.headers["x-content-type-options"] == "nosniff"
 
 
+def test_it_grades_many_in_one_request(port: int) -> None:
+    content = (ROOT / "docs" / "examples" / "many.json").read_bytes()
+    url = f"http://127.0.0.1:{port}/v1/grade"
+    response = httpx.post(url, content=content, trust_env=False, timeout=ANSWER)
+    assert response.status_code == 200
+    right, refused = response.json()["results"]
+    assert (right["report"]["exercise"], right["report"]["points"]) == ("planar-rr", 2)
+    assert refused["problem"]["status"] == 404
+
+
 def test_head_has_no_body_on_the_wire(port: int) -> None:
     url = f"http://127.0.0.1:{port}/v1/exercises"
     with httpx.Client(trust_env=False, timeout=ANSWER) as client:
