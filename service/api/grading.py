@@ -8,7 +8,7 @@ from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, Field
 
 from service.api.bodies import body_as, checked
-from service.api.lookup import Catalogue, Location, exercise_or_404, require_parts
+from service.api.lookup import Catalogue, ExerciseId, Location, exercise_or_404, require_parts
 from service.api.openapi import posting
 from service.api.problems import ProblemDocument, ProblemError, failed
 from service.catalogue import Exercise, FeedbackLevel, least
@@ -47,9 +47,10 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel) -> APIRouter:
         "/exercises/{exercise_id}/grade",
         operation_id="grade",
         summary="Grade a submission",
+        response_description="The report.",
         **posting(GradeRequest, Report, "grade", HTTPStatus.NOT_FOUND),
     )
-    async def grade_one(exercise_id: str, request: Request) -> Response:
+    async def grade_one(exercise_id: ExerciseId, request: Request) -> Response:
         """Grade answers, row by row and cell by cell. Nothing is recorded.
 
         Whatever a student wrote, the answer is a report: what cannot be read is `unreadable` there,
@@ -65,6 +66,7 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel) -> APIRouter:
         "/grade",
         operation_id="gradeMany",
         summary="Grade many submissions",
+        response_description="A result for each submission, in their order.",
         **posting(GradeManyRequest, GradeManyResponse, "grade-many"),
     )
     async def grade_many(request: Request) -> Response:

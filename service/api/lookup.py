@@ -3,12 +3,16 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from http import HTTPStatus
+from typing import Annotated
+
+from fastapi import Path
 
 from service.api.problems import ProblemError, invalid
 from service.catalogue import Exercise
 from service.submissions.lookup import UnknownExerciseError, find_exercise
 
 Catalogue = Mapping[str, Exercise]
+ExerciseId = Annotated[str, Path(description="The id of an exercise.", examples=["stanford-arm"])]
 # The steps from the whole body to a place in it.
 Location = tuple[str | int, ...]
 

@@ -10,18 +10,22 @@ import httpx
 import pytest
 from fastapi import FastAPI
 
-from service.api import grading
 from service.api.application import application
 from service.catalogue import Exercise, FeedbackLevel
+from service.grading import grade
 from service.submissions.body import MAX_SUBMISSIONS
 from service.submissions.strict_json import MAX_BODY_SIZE, MAX_BRACKETS
 
 URL = "/v1/grade"
 # From the exercise's source: Spong's planar arm with two links.
 POSITION = ["a1 c1 + a2 c12", "a1 s1 + a2 s12"]
-RIGHT = {"exercise": "planar-rr", "answers": {"position": POSITION}}
-WRONG = {"exercise": "planar-rr", "answers": {"position": ["a1 c1", "a1 s1 +"]}}
-OTHER = {"exercise": "planar-rrr", "answers": {"table": "l1, 0, 0, q1"}, "feedback": "score"}
+RIGHT: dict[str, Any] = {"exercise": "planar-rr", "answers": {"position": POSITION}}
+WRONG: dict[str, Any] = {"exercise": "planar-rr", "answers": {"position": ["a1 c1", "a1 s1 +"]}}
+OTHER: dict[str, Any] = {
+    "exercise": "planar-rrr",
+    "answers": {"table": "l1, 0, 0, q1"},
+    "feedback": "score",
+}
 
 
 def results(client: httpx.Client, *submissions: object) -> list[dict[str, Any]]:
@@ -141,14 +145,13 @@ def test_no_report_tells_more_than_the_service_allows(
 def test_a_failure_of_the_program_costs_one_submission(
     client: httpx.Client, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    grade = grading.grade
 
     def breaks(exercise: Exercise, submission: Any) -> Any:
         if not submission.answers:
             raise ZeroDivisionError("a secret")
         return grade(exercise, submission)
 
-    monkeypatch.setattr(grading, "grade", breaks)
+    monkeypatch.setattr("service.api.grading.grade", breaks)
     first, broken, last = results(client, RIGHT, {**RIGHT, "answers": {}}, RIGHT)
     assert first == last == {"report": alone(client, RIGHT).json()}
     assert broken["problem"]["status"] == 500
@@ -160,7 +163,6 @@ def test_others_are_served_between_two_gradings(
     app: FastAPI, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     events: list[str] = []
-    grade = grading.grade
 
     def noted(exercise: Exercise, submission: Any) -> Any:
         events.append("grading")
@@ -176,7 +178,7 @@ def test_others_are_served_between_two_gradings(
             events.append("served")
             await many
 
-    monkeypatch.setattr(grading, "grade", noted)
+    monkeypatch.setattr("service.api.grading.grade", noted)
     asyncio.run(asked_meanwhile())
     assert events.count("grading") == 60
     assert events[-1] == "grading"
