@@ -9,7 +9,7 @@ from fastapi import FastAPI
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp
 
-from service.api import exercises, grading, health, preview, problems
+from service.api import exercises, grading, health, preview, problems, reference
 from service.api import solutions as model_solutions
 from service.api.boundary import BoundaryMiddleware
 from service.api.lookup import Catalogue
@@ -39,6 +39,7 @@ class _Api(FastAPI):
         super().__init__(
             **HEADING,
             version=VERSION,
+            docs_url=None,
             redoc_url=None,
             redirect_slashes=False,
             max_body_size=MAX_BODY_SIZE,
@@ -86,4 +87,5 @@ def application(
         model_solutions.routes(catalogue, shown=solutions),
     ):
         app.include_router(router, responses=other_failures())
+    app.include_router(reference.routes())
     return app
