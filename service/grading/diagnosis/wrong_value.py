@@ -201,17 +201,19 @@ def undefined(case: WrongValue) -> Finding | None:
 
 
 def differs(case: WrongValue, hint: str) -> Finding:
-    """``hint`` and one counterexample, for a value that no known misconception explains."""
+    """``hint`` and one counterexample, for a value that no known misconception explains.
+
+    A bare number has none: that it is what it is tells nothing.
+    """
     # A right number without its formula can be checked only with the values of all symbols.
     alone = case.corrects and case.correction is None
     symbols = case.samples.values.keys() if alone else case.expression.symbols
-    values: dict[str, float | str] = {
-        **case.samples.at(0, symbols),
-        YOURS: _number(case, case.actual),
-    }
-    if case.corrects:
-        values[EXPECTED] = _number(case, case.expected)
-    return finding_on(case, UNEXPLAINED, hint, values)
+    values: dict[str, float | str] = {**case.samples.at(0, symbols)}
+    if values:
+        values[YOURS] = _number(case, case.actual)
+        if case.corrects:
+            values[EXPECTED] = _number(case, case.expected)
+    return finding_on(case, UNEXPLAINED, hint, values or None)
 
 
 def _number(case: WrongValue, values: Numbers) -> float:
