@@ -21,6 +21,7 @@ class DhTableShape(AnswerShape):
 
     posted: ClassVar[str] = '`{"rows": [{"a", "alpha", "d", "theta"}, …]}`'
 
+    form: Literal["dh_table"] = "dh_table"
     columns: list[str]
     rows: list[str] = Field(
         description="Row labels in order: joint numbers, `e` for the end effector. Where either "

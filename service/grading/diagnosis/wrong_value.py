@@ -99,7 +99,7 @@ class WrongCell(WrongValue):
 
     ``contained`` says how often the student's cell contains which joint variables, None if not
     linearly; ``required`` how often the expected one does. ``shared`` says that the joint's axis
-    has a parallel neighbour, so that offsets along it add up.
+    has a parallel neighbour, so that offsets along it add up. ``joints`` are all of the robot's.
     """
 
     column: int
@@ -107,6 +107,7 @@ class WrongCell(WrongValue):
     contained: Mapping[Joint, int] | None
     required: Mapping[Joint, int]
     shared: bool = False
+    joints: tuple[Joint, ...] = ()
 
     @property
     def symbol(self) -> str:

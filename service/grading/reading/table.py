@@ -1,18 +1,21 @@
 """A DH table as handed in, JSON or pasted text -> its rows and their numbers."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 
 from service.expressions import Expression, Vocabulary
 from service.expressions import read as read_expression
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
+from service.grading.reading.absent_variables import absent_names
 from service.grading.reading.column_headers import QUANTITIES
 from service.grading.reading.entry import MISSING, Entry, Reader, entry_values, unreadable
 from service.grading.reading.pasted import from_grid_error
 from service.grading.reading.pasted_table import entries_of, read_pasted_table
-from service.grading.reading.table_json import canonical_table
+from service.grading.reading.table_json import canonical_table, has_unnamed_columns
 from service.grading.report import Severity
 from service.grading.samples import Samples
 from service.grids import GridError
@@ -79,29 +82,37 @@ class StudentRow:
 class StudentTable:
     """A table as read: its rows, and the numbers of all of them, ``(rows, 4, SAMPLES)``.
 
-    ``convention`` is what the answer itself says, if it says so.
+    ``convention`` is what the answer itself says, if it says so. ``reread`` reads its columns in
+    another order, where nothing but their order says what they hold.
     """
 
     rows: tuple[StudentRow, ...]
     values: Table
     convention: Convention | None
     findings: tuple[Finding, ...] = ()
+    reread: "Reread | None" = field(default=None, compare=False)
 
 
-def read_table(answer: object, reader: Reader) -> StudentTable:
+# Reads a table with its columns in another order of "a", "alpha", "d" and "theta".
+Reread: TypeAlias = Callable[[Sequence[str]], StudentTable]
+
+
+def read_table(answer: object, reader: Reader, order: Sequence[str] = COLUMNS) -> StudentTable:
     """The table in a JSON answer ``{"rows": [{"a", "alpha", "d", "theta"} …], "convention"?}``.
 
     It may have other shapes that mean the same (``table_json``), and it, or its rows, may be
-    pasted text.
+    pasted text. Columns without names are in ``order``.
 
     Raises UnreadableAnswerError where the answer has no rows at all; a row or cell that cannot be
     read costs only itself.
     """
     if isinstance(answer, str):
         answer = {"rows": answer}
-    answer = canonical_table(answer)
+    reread = partial(read_table, answer, reader)
+    is_unnamed = has_unnamed_columns(answer)
+    answer = canonical_table(answer, order)
     if isinstance(answer, Mapping) and isinstance(answer.get("rows"), str):
-        return _pasted(answer["rows"], answer.get("convention"), reader)
+        return _pasted(answer["rows"], answer.get("convention"), reader, order, reread)
     if not isinstance(answer, Mapping) or not isinstance(answer.get("rows"), list):
         raise UnreadableAnswerError(
             reading_error(
@@ -113,21 +124,26 @@ def read_table(answer: object, reader: Reader) -> StudentTable:
     if len(rows) > MAX_ROWS:
         raise UnreadableAnswerError(_too_many_rows(len(rows)))
     convention, findings = _convention(answer.get("convention"))
-    return _table([_entries(row, reader) for row in rows], convention, findings, reader)
+    entries = [_entries(row, reader) for row in rows]
+    table = _table(entries, convention, findings, reader)
+    return replace(table, reread=reread) if is_unnamed else table
 
 
-def _pasted(text: str, stated: object, reader: Reader) -> StudentTable:
+def _pasted(
+    text: str, stated: object, reader: Reader, order: Sequence[str], reread: Reread
+) -> StudentTable:
     convention, findings = _convention(stated)
     if not text.strip():
         return StudentTable((), _NO_ROWS, convention, findings)
     try:
-        pasted = read_pasted_table(text, reader)
+        pasted = read_pasted_table(text, reader, order)
     except GridError as error:
         raise UnreadableAnswerError(from_grid_error(error)) from error
     if len(pasted.rows) > MAX_ROWS:
         raise UnreadableAnswerError(_too_many_rows(len(pasted.rows)))
     entries = entries_of(pasted, reader)
-    return _table(entries, convention, (*findings, *pasted.findings), reader)
+    table = _table(entries, convention, (*findings, *pasted.findings), reader)
+    return table if pasted.is_named else replace(table, reread=reread)
 
 
 def _table(
@@ -156,6 +172,8 @@ _NO_ROWS: Table = np.empty((0, len(COLUMNS), 0))
 
 def _values(rows: Sequence[tuple[Entry, ...]], samples: Samples) -> Table:
     cells = [entry for entries in rows for entry in entries]
+    if absent := absent_names((entry.expression for entry in cells), samples):
+        samples = samples.with_names(absent)
     numbers = entry_values(cells, (*QUANTITIES.values(),) * len(rows), samples)
     return numbers.reshape(len(rows), len(COLUMNS), -1)
 
@@ -197,6 +215,11 @@ def _entries(row: object, reader: Reader) -> tuple[Entry, ...]:
 
 
 _NO_ROW = reading_error("wrong_shape", 'A row is written {"a": …, "alpha": …, "d": …, "theta": …}.')
+
+
+def table_values(rows: Sequence[StudentRow], samples: Samples) -> Table:
+    """The numbers of the rows at other samples, as they were handed in: ``(rows, 4, samples)``."""
+    return _values([row.entries for row in rows], samples)
 
 
 def values_of(rows: Sequence[StudentRow]) -> Table:
