@@ -91,6 +91,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
             f"{DIAGNOSIS}exponentials.py",
             f"{DIAGNOSIS}whole_matrix.py",
             f"{DIAGNOSIS}link_products.py",
+            f"{DIAGNOSIS}link_slips.py",
             f"{DIAGNOSIS}rotation_steps.py",
             f"{DIAGNOSIS}inverse_slips.py",
             f"{DIAGNOSIS}motion_slips.py",
