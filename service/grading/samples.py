@@ -30,8 +30,7 @@ class Samples:
 
     Samples 0..15 are drawn freely. Samples 16..31 repeat their link parameters with other joint
     values, so that a change between the halves is due to the joints alone. ``in_degrees`` are the
-    angles whose values a student reads in degrees. The numbers of sample 0 are short, so that a
-    counterexample can be checked with a pocket calculator.
+    angles whose values a student reads in degrees.
     """
 
     values: Mapping[str, Numbers]
@@ -91,10 +90,9 @@ class Samples:
 
     def at(self, sample: int, names: Set[str]) -> dict[str, float]:
         """The values of the named symbols in one sample, short enough to be read."""
+        units = {name: math.degrees if name in self.in_degrees else float for name in names}
         return {
-            name: _short(
-                math.degrees(values[sample]) if name in self.in_degrees else values[sample]
-            )
+            name: float(f"{units[name](values[sample]):.4g}")
             for name, values in self.values.items()
             if name in names
         }
@@ -109,24 +107,13 @@ def draw(exercise: Exercise, answers: object, *, degrees: bool = False) -> Sampl
     split = len(joints) * SAMPLES
     of_joints = uniform[:split].reshape(len(joints), SAMPLES)
     of_others = np.tile(uniform[split:].reshape(len(others), HALF), 2)
-    values = {
-        variable.name: variable.low + (variable.high - variable.low) * row
-        for variable, row in zip((*joints, *others), (*of_joints, *of_others), strict=True)
-    }
-    in_degrees = frozenset(v.name for v in exercise.variables if degrees and v.kind == "angle")
-    for variable in (*joints, *others):
-        number = values[variable.name][0]
-        is_degrees = variable.name in in_degrees
-        short = math.radians(_short(math.degrees(number))) if is_degrees else _short(number)
-        # Of link parameters both halves have the same values.
-        places = [0] if variable.joint is not None else [0, HALF]
-        values[variable.name][places] = np.clip(short, variable.low, variable.high)
-    return Samples(values, in_degrees)
-
-
-def _short(number: float) -> float:
-    """The number with four figures."""
-    return float(f"{number:.4g}")
+    return Samples(
+        {
+            variable.name: variable.low + (variable.high - variable.low) * row
+            for variable, row in zip((*joints, *others), (*of_joints, *of_others), strict=True)
+        },
+        frozenset(v.name for v in exercise.variables if degrees and v.kind == "angle"),
+    )
 
 
 def _canonical(answers: object) -> str:

@@ -48,22 +48,9 @@ def test_every_submission_and_every_version_has_its_own_draw(
     catalogue: Mapping[str, Exercise],
 ) -> None:
     exercise = catalogue["scara"]
-    draws = [draw(exercise, answers).values["a1"][1] for answers in range(500)]
+    draws = [draw(exercise, answers).values["a1"][0] for answers in range(500)]
     assert len(set(draws)) == 500
-    assert draw(catalogue["rrrp"], 0).values["q1"][1] != draw(exercise, 0).values["theta1"][1]
-
-
-@pytest.mark.parametrize("degrees", [False, True])
-def test_the_numbers_of_a_counterexample_are_short(
-    degrees: bool, catalogue: Mapping[str, Exercise]
-) -> None:
-    """What is printed of sample 0 is what was used, so that a pocket calculator agrees."""
-    exercise = catalogue["planar-rr"]
-    samples = draw(exercise, "x", degrees=degrees)
-    for name, printed in samples.at(0, {"theta1", "theta2", "a1"}).items():
-        used = np.radians(printed) if name in samples.in_degrees else printed
-        assert samples.values[name][0] == pytest.approx(used, rel=1e-14)
-        assert len(f"{abs(printed)}".replace(".", "").lstrip("0")) <= 4
+    assert draw(catalogue["rrrp"], 0).values["q1"][0] != draw(exercise, 0).values["theta1"][0]
 
 
 def _nested(inside: object) -> object:
@@ -86,7 +73,7 @@ def test_what_json_refuses_has_a_draw_and_so_has_what_stands_beside_it(
     exercise = catalogue["scara"]
 
     def drawn(*answers: object) -> float:
-        return float(draw(exercise, [*answers, refused]).values["a1"][1])
+        return float(draw(exercise, [*answers, refused]).values["a1"][0])
 
     assert drawn() == drawn()
     assert drawn({"a": 1, "b": 2}) == drawn({"b": 2, "a": 1})
