@@ -92,13 +92,24 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
             f"{DIAGNOSIS}exponentials.py",
             f"{DIAGNOSIS}whole_matrix.py",
             f"{DIAGNOSIS}link_products.py",
+            f"{DIAGNOSIS}link_slips.py",
             f"{DIAGNOSIS}rotation_steps.py",
+            f"{DIAGNOSIS}inverse_slips.py",
+            f"{DIAGNOSIS}motion_slips.py",
         ),
     ),
     ((SINGLE,), (f"{DIAGNOSIS}matrix_entry.py", VALUES)),
     (("Positions",), (f"{DIAGNOSIS}position.py",)),
-    (("Angles",), (f"{DIAGNOSIS}angle.py", f"{DIAGNOSIS}euler_triple.py", VALUES)),
-    (("Screws",), (f"{DIAGNOSIS}screw_axis.py",)),
+    (
+        ("Angles",),
+        (
+            f"{DIAGNOSIS}angle.py",
+            f"{DIAGNOSIS}angle_sum.py",
+            f"{DIAGNOSIS}euler_triple.py",
+            VALUES,
+        ),
+    ),
+    (("Screws",), (f"{DIAGNOSIS}screw_axis.py", f"{DIAGNOSIS}home_position.py")),
     (("Parts as a whole",), ("grading/follow_through.py",)),
 )
 
