@@ -35,8 +35,16 @@ class CellChange:
     offset: float = 0.0
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Change:
+    """What the right answer is worked out again with: other symbols, another cell."""
+
+    symbols: tuple[SymbolChange, ...] = ()
+    cell: CellChange | None = None
+
+
 @dataclass(frozen=True, slots=True)
-class Slip:
+class Slip(Change):
     """A slip by its code, with what it changes.
 
     ``clause`` says what is wrong, as a clause that can stand in a list of several, and ``advice``
@@ -49,41 +57,39 @@ class Slip:
     clause: str
     advice: str
     correction: str = ""
-    symbols: tuple[SymbolChange, ...] = ()
-    cell: CellChange | None = None
 
 
-def changed_values(slips: Sequence[Slip], values: SymbolValues) -> dict[str, Numbers]:
-    """The values ``(K · samples,)`` that K slips leave each symbol, one slip after the other."""
+def changed_values(changes: Sequence[Change], values: SymbolValues) -> dict[str, Numbers]:
+    """The values ``(K · samples,)`` that K changes leave each symbol, those of one in a row."""
     names = list(values)
     places = {name: i for i, name in enumerate(names)}
     right = np.array([values[name] for name in names])
-    stacked = np.repeat(right[:, None], len(slips), axis=1)
-    changes = [(k, change) for k, slip in enumerate(slips) for change in slip.symbols]
-    if changes:
-        targets = [places[change.symbol] for _, change in changes]
-        sources = [places[change.source] for _, change in changes]
-        factors = np.array([[change.factor] for _, change in changes])
-        offsets = np.array([[change.offset] for _, change in changes])
-        stacked[targets, [k for k, _ in changes]] = factors * right[sources] + offsets
+    stacked = np.repeat(right[:, None], len(changes), axis=1)
+    changed = [(k, symbol) for k, change in enumerate(changes) for symbol in change.symbols]
+    if changed:
+        targets = [places[each.symbol] for _, each in changed]
+        sources = [places[each.source] for _, each in changed]
+        factors = np.array([[each.factor] for _, each in changed])
+        offsets = np.array([[each.offset] for _, each in changed])
+        stacked[targets, [k for k, _ in changed]] = factors * right[sources] + offsets
     return dict(zip(names, stacked.reshape(len(names), -1), strict=True))
 
 
 def change_cells(
-    slips: Sequence[Slip], tables: Table, constants: Table, first_row: int = 0
+    changes: Sequence[Change], tables: Table, constants: Table, first_row: int = 0
 ) -> None:
-    """Change the cells of ``tables`` ``(rows, 4, K, count)``, one for each slip, in place.
+    """Change the cells of ``tables`` ``(rows, 4, K, count)``, one for each change, in place.
 
     ``constants`` ``(rows, 4, count)`` is the right table with all joint variables 0. Both may begin
     with another than the table's ``first_row``.
     """
-    changes = [(k, slip.cell) for k, slip in enumerate(slips) if slip.cell is not None]
-    if changes:
+    changed = [(k, change.cell) for k, change in enumerate(changes) if change.cell is not None]
+    if changed:
         rows, columns = (
-            [cell.row - first_row for _, cell in changes],
-            [cell.column for _, cell in changes],
+            [cell.row - first_row for _, cell in changed],
+            [cell.column for _, cell in changed],
         )
-        factors = np.array([[cell.factor - 1.0] for _, cell in changes])
-        offsets = np.array([[cell.offset] for _, cell in changes])
+        factors = np.array([[cell.factor - 1.0] for _, cell in changed])
+        offsets = np.array([[cell.offset] for _, cell in changed])
         added = factors * constants[rows, columns] + offsets
-        tables[rows, columns, [k for k, _ in changes]] += added
+        tables[rows, columns, [k for k, _ in changed]] += added

@@ -72,6 +72,8 @@ class SlipSearch:
 
     def explaining(self, entries: Mask) -> list[Slip]:
         """The slips that explain all of these entries ``(...)`` that were read, likeliest first."""
+        if not self.answers.slips:
+            return []
         read = entries & np.isfinite(self.actual).all(axis=-1)
         fits, changes = self._at_first
         found = np.flatnonzero(fits[:, read].all(axis=1) & changes[:, read].any(axis=1))

@@ -15,7 +15,7 @@ from service.grading.diagnosis.joint_slips import (
     joint_slips,
     length_slips,
 )
-from service.grading.diagnosis.slip import Slip, change_cells, changed_values
+from service.grading.diagnosis.slip import Change, Slip, change_cells, changed_values
 from service.grading.diagnosis.table_slips import table_slips
 from service.grading.judging.expected import as_entries
 from service.grading.part import Grading
@@ -23,36 +23,40 @@ from service.grading.samples import Samples
 from service.kinematics.chain import Table, frames
 from service.kinematics.transforms import Numbers, inverse
 
-AnswersAt = Callable[[Sequence[Slip], Samples], Numbers]
+AnswersAt = Callable[[Sequence[Change], Samples], Numbers]
 
 
 @dataclass(frozen=True)
 class SlippedAnswers:
     """What the right answer becomes by each of the ``slips``.
 
-    ``at`` gives the answers ``(K, ..., samples)`` that K slips lead to.
+    ``at`` gives the answers ``(K, ..., samples)`` that K changes lead to.
+    ``by_symbols`` says that they follow each symbol, and not the joint variables alone.
     """
 
     slips: tuple[Slip, ...]
     at: AnswersAt
+    by_symbols: bool = True
 
     def of(self, entries: Callable[[Numbers], Numbers]) -> "SlippedAnswers":
         """Those of some of the entries only: of a position, where these are poses."""
-        return SlippedAnswers(self.slips, lambda slips, samples: entries(self.at(slips, samples)))
+        return SlippedAnswers(
+            self.slips, lambda changes, samples: entries(self.at(changes, samples))
+        )
 
 
 def slipped_answers(part: PartSpec, grading: Grading) -> SlippedAnswers | None:
-    """The answers to a part about the exercise's robot; None where there is none.
+    """The answers to a part; None where neither a robot nor formulas give it.
 
     They are poses ``(K, 4, 4, samples)``, or ``(K, rows, columns, samples)`` where the part has
     formulas of its own.
     """
     exercise = grading.exercise
-    if grading.following or exercise.reference is None:
+    if grading.following:
         return None
     if exercise.formulas.get(part.id) is not None:
         return _of_formulas(part, exercise, grading.samples)
-    if not isinstance(part, PosePartSpec):
+    if exercise.reference is None or not isinstance(part, PosePartSpec):
         return None
     poses = _of_table if isinstance(exercise.reference, Robot) else _of_screws
     return poses(part, exercise, grading.samples)
@@ -68,8 +72,8 @@ def _of_table(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Slipp
         values = samples.values
         return at_home(robot.joints, values, samples.count) if part.home else values
 
-    def at(slips: Sequence[Slip], samples: Samples) -> Numbers:
-        tables = slipped_tables(table, slips, values_at(samples), samples.count)
+    def at(changes: Sequence[Change], samples: Samples) -> Numbers:
+        tables = slipped_tables(table, changes, values_at(samples), samples.count)
         reached = frames(tables, table.convention)
         return as_entries(inverse(reached[start]) @ reached[to])
 
@@ -79,12 +83,12 @@ def _of_table(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Slipp
 
 
 def slipped_tables(
-    table: ReferenceTable, slips: Sequence[Slip], values: SymbolValues, count: int
+    table: ReferenceTable, changes: Sequence[Change], values: SymbolValues, count: int
 ) -> Table:
-    """The tables ``(rows, 4, K, count)`` that K slips lead to."""
-    changed = changed_values(slips, values)
-    tables = table.values(changed, len(slips) * count).reshape(len(table.rows), 4, -1, count)
-    change_cells(slips, tables, table.values(at_home(table.joints, values, count), count))
+    """The tables ``(rows, 4, K, count)`` that K changes lead to."""
+    changed = changed_values(changes, values)
+    tables = table.values(changed, len(changes) * count).reshape(len(table.rows), 4, -1, count)
+    change_cells(changes, tables, table.values(at_home(table.joints, values, count), count))
     return tables
 
 
@@ -112,18 +116,20 @@ def _of_formulas(part: PartSpec, exercise: Exercise, samples: Samples) -> Slippe
 def _stacked(answer: Callable[[SymbolValues, int], Numbers]) -> AnswersAt:
     """``answer`` at the values that slips leave, all of them worked out at once."""
 
-    def at(slips: Sequence[Slip], samples: Samples) -> Numbers:
-        values = changed_values(slips, samples.values)
-        found = answer(values, len(slips) * samples.count)
-        split = found.reshape(*found.shape[:-1], len(slips), samples.count)
+    def at(changes: Sequence[Change], samples: Samples) -> Numbers:
+        values = changed_values(changes, samples.values)
+        found = answer(values, len(changes) * samples.count)
+        split = found.reshape(*found.shape[:-1], len(changes), samples.count)
         return np.moveaxis(split, -2, 0)
 
     return at
 
 
 def _general_slips(exercise: Exercise, samples: Samples) -> tuple[Slip, ...]:
-    """The slips in the joints and lengths of a robot, whatever it is described by."""
+    """The slips in the joints and lengths of a robot, however it is described; else none."""
     joints = exercise.joints
+    if not joints:
+        return ()
     variables = {joint.variable for joint in joints}
     lengths = [
         variable.name

@@ -4,13 +4,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from service.catalogue import Joint
+from service.catalogue import Joint, ReferenceTable
+from service.catalogue.robot import at_home
 from service.expressions.evaluation.samples import SymbolValues
 from service.grading.comparison import difference
-from service.grading.diagnosis.joint_slips import axis_direction, joint_slips
-from service.grading.diagnosis.slip import Slip, change_cells, changed_values
-from service.grading.diagnosis.slipped_answers import SlippedAnswers
-from service.grading.diagnosis.table_slips import row_slips
+from service.grading.diagnosis.joint_slips import axis_direction, joint_slips, length_slips
+from service.grading.diagnosis.slip import Change, change_cells, changed_values
+from service.grading.diagnosis.slipped_answers import AnswersAt, SlippedAnswers, slipped_tables
+from service.grading.diagnosis.table_slips import lengths_of, row_slips
 from service.grading.joint_motion import changes
 from service.grading.judging.expected import as_entries
 from service.grading.judging.own_frames.reference import reference_values
@@ -34,35 +35,58 @@ def slipped_link(
     """
     if grading.following:
         return None
-    exercise, samples = grading.exercise, grading.samples
-    table = exercise.robot.tables[convention]
+    samples = grading.samples
+    table = grading.exercise.robot.tables[convention]
     cells = dh_row(right, convention)
     given = reference_values(table, samples)[row]
-    own_frames = bool(np.abs(difference(cells, given, IS_ANGLE[:, None])).max() > SAME_MOTION)
+    axis = axis_direction(grading.exercise, samples.subset(1))
+    of_joint = joint_slips(table.joints[row : row + 1], table.joints, axis)
+    if np.abs(difference(cells, given, IS_ANGLE[:, None])).max() < SAME_MOTION:
+        few = samples.subset(1)
+        home = table.values(at_home(table.joints, few.values, few.count), few.count)[row]
+        of_row = row_slips(table, row, home[:, 0].tolist(), axis)
+        of_lengths = length_slips(*lengths_of(table))
+        # In one row alone a length stands in the place of another, and is not exchanged.
+        single = (slip for slip in of_lengths if len(slip.symbols) == 1)
+        return SlippedAnswers((*of_joint, *of_row, *single), _of_reference(table, row))
     joint = table.joints[row] if row < len(table.joints) else None
     senses = _senses(cells, joint, samples)
+    constants = cells - _motion(senses, joint, samples.values)
+    of_row = row_slips(table, row, constants[:, 0].tolist(), axis, own_frames=True)
+    at = _of_own_row(row, constants, senses, joint, convention)
+    return SlippedAnswers((*of_joint, *of_row), at, by_symbols=False)
 
-    def motion(values: SymbolValues) -> Numbers:
-        """By how much the joint moves each cell, ``(4, ...)``."""
-        return np.multiply.outer(senses, values[joint.variable] if joint else np.zeros(1))
 
-    constants = cells - motion(samples.values)
+def _of_reference(table: ReferenceTable, row: int) -> AnswersAt:
+    """The link transforms of a row of the reference."""
 
-    def at(slips: Sequence[Slip], samples: Samples) -> Numbers:
+    def at(changes: Sequence[Change], samples: Samples) -> Numbers:
+        tables = slipped_tables(table, changes, samples.values, samples.count)
+        return as_entries(links(tables[row : row + 1], table.convention)[0])
+
+    return at
+
+
+def _of_own_row(
+    row: int, constants: Numbers, senses: Numbers, joint: Joint | None, convention: Convention
+) -> AnswersAt:
+    """Those of a row in other frames, of which the ``constants`` ``(4, SAMPLES)`` are known."""
+
+    def at(changes: Sequence[Change], samples: Samples) -> Numbers:
         count = samples.count
         fixed = constants if count == SAMPLES else Samples.subset_of(constants, count // 2)
-        moved = motion(changed_values(slips, samples.values))
-        rows = np.repeat(fixed[:, None], len(slips), axis=1)
+        moved = _motion(senses, joint, changed_values(changes, samples.values))
+        rows = np.repeat(fixed[:, None], len(changes), axis=1)
         rows += moved.reshape(4, -1, count) if joint else 0.0
-        change_cells(slips, rows[None], fixed[None], first_row=row)
+        change_cells(changes, rows[None], fixed[None], first_row=row)
         return as_entries(links(rows[None], convention)[0])
 
-    axis = axis_direction(exercise, samples.subset(1))
-    slips = (
-        *joint_slips(table.joints[row : row + 1], table.joints, axis),
-        *row_slips(table, row, constants[:, 0].tolist(), axis, own_frames=own_frames),
-    )
-    return SlippedAnswers(slips, at)
+    return at
+
+
+def _motion(senses: Numbers, joint: Joint | None, values: SymbolValues) -> Numbers:
+    """By how much the joint moves each cell, ``(4, ...)``."""
+    return np.multiply.outer(senses, values[joint.variable] if joint else np.zeros(1))
 
 
 def _senses(cells: Numbers, joint: Joint | None, samples: Samples) -> Numbers:

@@ -45,10 +45,10 @@ def table_slips(table: ReferenceTable, constants: Table, axis: Axis) -> Iterator
     yield from home_slip(table.joints)
     for i in range(len(table.rows)):
         yield from row_slips(table, i, constants[i, :, 0].tolist(), axis)
-    yield from length_slips(*_lengths(table))
+    yield from length_slips(*lengths_of(table))
 
 
-def _lengths(table: ReferenceTable) -> tuple[list[str], list[str]]:
+def lengths_of(table: ReferenceTable) -> tuple[list[str], list[str]]:
     """The lengths of the table in order, and those that stand in one cell, alone."""
     cells = [_letters(table, i, column) for i in range(len(table.rows)) for column in (A, D)]
     names = list(dict.fromkeys(name for cell in cells for name in sorted(cell)))

@@ -6,12 +6,13 @@ from itertools import chain
 
 import numpy as np
 
-from service.expressions.printing.spelling import PLAIN
 from service.grading.comparison import Match
 from service.grading.diagnosis.formula_repair import WrongEntry
+from service.grading.diagnosis.given_motion import GivenMotion
 from service.grading.diagnosis.link_products import Chain
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
 from service.grading.diagnosis.matrix_entry import WORK_BUDGET, diagnose_entries
+from service.grading.diagnosis.missing_symbol import Requirements
 from service.grading.diagnosis.slip_search import SlipSearch
 from service.grading.diagnosis.slipped_answers import SlippedAnswers
 from service.grading.diagnosis.whole_matrix import check_yourself, explain, unexplained
@@ -49,6 +50,10 @@ def _no_slips() -> SlippedAnswers | None:
     return None
 
 
+def _no_motion(_samples: Samples) -> GivenMotion | None:
+    return None
+
+
 def matrix_rows(
     student: StudentMatrix,
     expected: ExpectedMatrix,
@@ -56,16 +61,17 @@ def matrix_rows(
     chains: Callable[[Samples], tuple[Chain, ...]] = _no_chains,
     explanations: Callable[[MatrixCase], list[Explanation]] = _no_explanations,
     slipped: Callable[[], SlippedAnswers | None] = _no_slips,
+    motion: Callable[[Samples], GivenMotion | None] = _no_motion,
     work_budget: float = WORK_BUDGET,
     name: str = "",
 ) -> MatrixRows:
     """The rows of a matrix, with what explains its wrong entries.
 
     ``chains`` gives, at the samples it is handed, the links that the matrix is the product of;
-    ``explanations`` explains the matrix by what else it is made of, and is asked first;
-    ``slipped`` gives what it becomes by slips of the table. All are asked only where something is
-    wrong. ``work_budget`` bounds how much is taken apart. A ``name``
-    tells one matrix of several: its rows are then "A2.1" and so on.
+    ``explanations`` explains the matrix by what else it is made of, and is asked first; ``motion``
+    gives, like ``chains``, what formulas say that it is made of, ``slipped`` what it becomes by
+    slips of the table. All are asked only where something is wrong. ``work_budget`` bounds how much
+    is taken apart. A ``name`` tells one matrix of several: its rows are then "A2.1" and so on.
     """
     labels = [f"{name}.{i + 1}" if name else str(i + 1) for i in range(len(student.entries))]
     found = expected.matches(student, grading.exercise.length_scale, grading.samples)
@@ -88,9 +94,10 @@ def matrix_rows(
         rigid=expected.rigid,
         chains=chains(grading.samples.subset(SUBSET)),
         slips=search,
+        motion=motion(grading.samples.subset(SUBSET)),
     )
     explained = explanations(case) or explain(case)
-    spelling = grading.spelling(chain(*student.entries)) if grading.corrects else PLAIN
+    spelling = grading.spelling(chain(*student.entries))
     entries = {
         (int(i), int(j)): WrongEntry(
             expression=expression,
@@ -107,7 +114,12 @@ def matrix_rows(
         for i, j in np.argwhere(unexplained(case, explained) | (found == Match.UNDEFINED))
         if (expression := student.entries[i][j].expression) is not None
     }
-    slips = diagnose_entries(entries, work_budget)
+    requirements = (
+        None
+        if answers is None
+        else Requirements(answers, grading.exercise, grading.samples, expected.values, scale)
+    )
+    slips = diagnose_entries(entries, work_budget, requirements)
     check = check_yourself(case, slips)
     findings = [(each.finding, _cells(each.entries & case.wrong, labels)) for each in explained]
     findings += [(check, tuple(map(Place, labels[:3])))] if check else []

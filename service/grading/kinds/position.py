@@ -6,7 +6,9 @@ from service.catalogue import Robot
 from service.catalogue.parts.position import PositionSpec
 from service.expressions import Kind
 from service.grading.comparison import Match
+from service.grading.diagnosis.given_motion import GivenMotion
 from service.grading.diagnosis.link_products import chains_of
+from service.grading.diagnosis.motion_slips import explain_displacements
 from service.grading.diagnosis.position import WrongPosition, explain_position
 from service.grading.diagnosis.slipped_answers import SlippedAnswers, slipped_answers
 from service.grading.diagnosis.value_list import search_of, slips_of
@@ -37,8 +39,9 @@ def judge(part: PositionSpec, answer: StudentValues, grading: Grading) -> Judged
     found = compared.matches(grading)
     wrong = found < Match.ROUNDED
     different = found == Match.DIFFERENT
-    explained = _explained(part, compared, different, grading) if wrong.any() else None
-    slips = slips_of(compared, wrong & ~(different & bool(explained)), grading)
+    answers = _slipped(part, grading) if wrong.any() else None
+    explained = _explained(part, compared, different, answers, grading) if wrong.any() else None
+    slips = slips_of(compared, wrong & ~(different & bool(explained)), grading, answers)
     rows = value_rows(answer, found, slips, grading)
     content = of_list(known_cells(expected, 0.0, compared.scales(grading)))
     return Judged(rows, content, grading.visible(*explained) if explained else ())
@@ -57,7 +60,11 @@ def _axes(part: PositionSpec) -> list[int]:
 
 
 def _explained(
-    part: PositionSpec, compared: ComparedValues, wrong: Mask, grading: Grading
+    part: PositionSpec,
+    compared: ComparedValues,
+    wrong: Mask,
+    answers: SlippedAnswers | None,
+    grading: Grading,
 ) -> tuple[tuple[Finding], tuple[Place, ...]] | None:
     """What explains all wrong coordinates, with their places."""
     exercise = grading.exercise
@@ -69,7 +76,9 @@ def _explained(
         axes=tuple(_axes(part)),
         chains=chains_of(exercise, grading.samples) if linked else (),
     )
-    finding = explain_position(case, search_of(_slipped(part, grading), compared, wrong, grading))
+    search = search_of(answers, compared, wrong, grading)
+    motion = GivenMotion.of(part.id, exercise, grading.samples)
+    finding = explain_position(case, search) or explain_displacements(case, motion)
     return ((finding,), value_places(wrong)) if finding else None
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from service.catalogue.parts.vector import VectorSpec
 from service.grading.comparison import Match
-from service.grading.diagnosis.slipped_answers import slipped_answers
+from service.grading.diagnosis.slipped_answers import SlippedAnswers, slipped_answers
 from service.grading.diagnosis.value_list import search_of, slips_of
 from service.grading.diagnosis.wrong_value import Mask
 from service.grading.feedback import Finding
@@ -36,18 +36,20 @@ def judge(part: VectorSpec, answer: StudentValues, grading: Grading) -> Judged:
         spelling = grading.spelling(answer.entries)
         corrections = [spelled(formula.tree, spelling) for formula in formulas]
     different = found == Match.DIFFERENT
-    explained = _slip(part, compared, different, grading) if different.sum() > 1 else None
+    answers = slipped_answers(part, grading) if wrong.any() else None
+    answers = answers and answers.of(lambda grid: grid[:, 0])
+    explained = _slip(answers, compared, different, grading) if different.sum() > 1 else None
     wrong &= ~(different & bool(explained))
-    slips = slips_of(ComparedValues(answer, expected, corrections), wrong, grading)
+    corrected = ComparedValues(answer, expected, corrections)
+    slips = slips_of(corrected, wrong, grading, answers)
     content = of_list(known_cells(expected, 0.0, compared.scales(grading)))
     feedback = grading.visible((explained,), value_places(different)) if explained else ()
     return Judged(value_rows(answer, found, slips, grading), content, feedback)
 
 
 def _slip(
-    part: VectorSpec, compared: ComparedValues, wrong: Mask, grading: Grading
+    answers: SlippedAnswers | None, compared: ComparedValues, wrong: Mask, grading: Grading
 ) -> Finding | None:
     """The slip of the table of which all wrong values follow; one alone has its own message."""
-    answers = slipped_answers(part, grading)
-    search = search_of(answers and answers.of(lambda grid: grid[:, 0]), compared, wrong, grading)
+    search = search_of(answers, compared, wrong, grading)
     return search.finding(np.ones_like(wrong)) if search else None
