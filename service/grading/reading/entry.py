@@ -75,10 +75,11 @@ class Reader:
         ``in_table`` says that it is a cell of a DH table, where a star marks the joint variable.
         """
         budget = self.budget
+        is_counted = False
         if isinstance(raw, str):
             if not raw.strip():
                 return MISSING
-            if len(raw) <= LIMITS.characters:
+            if is_counted := len(raw) <= LIMITS.characters:
                 budget.characters -= len(raw)
         elif raw is None:
             return MISSING
@@ -95,7 +96,7 @@ class Reader:
                 repairs=budget.repairs > 0,
             )
         except ExpressionError as error:
-            budget.repairs -= 1
+            budget.charge_unreadable(len(raw) if is_counted else 0)
             return unreadable(_from_error(error))
         if not expression.notes:
             return Entry(expression)
@@ -132,7 +133,7 @@ def _bounds(quantities: tuple[Kind, ...]) -> Numbers:
 
 _TOO_MUCH = reading_error(
     "too_long",
-    f"The answers hold more than {MAX_CHARACTERS} characters together; what follows is not read.",
+    f"The answers are too long: they have more than {MAX_CHARACTERS:,} characters together.",
 )
 
 MISSING = Entry(
