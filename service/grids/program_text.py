@@ -15,11 +15,13 @@ MAKERS: Final = frozenset(
     | {"ImmutableDenseMatrix", "Array", "list", "tuple", "sym", "simplify", "trigsimp", "expand"}
     | {"trigreduce", "ratsimp"}
 )
-_HARMLESS: Final = re.compile(
+# Imports, and symbols that are declared.
+_STATEMENT: Final = (
     r"[ \t]*(?:(?:import|from|syms|clc|clear|close|format|pkg|load|with)\b.*"
-    r"|[\w, \t]{1,80}=[ \t]*(?:\w{1,20}\.)?(?:symbols|Symbol|var|sym)\([^()\[\]{}]{0,200}\)[ \t;]*"
-    r")?(?:\n|\Z)"
+    r"|[\w, \t]{1,80}=[ \t]*(?:\w{1,20}\.)?(?:symbols|Symbol|var|sym)\([^()\[\]{}]{0,200}\)[ \t;]*)"
 )
+_HARMLESS: Final = re.compile(rf"(?:{_STATEMENT}|[ \t]*)(?:\n|\Z)")
+_HARMLESS_LINE: Final = re.compile(rf"^{_STATEMENT}$", re.MULTILINE)
 # The left sides of an equation or assignment: T = A1*A2 = …, A1(q1) := …, A1 : …
 _NAMES: Final = re.compile(
     r"\s*(?:(?!\d+[.*\s])[\w\\](?:[\w.{}^\\'*@→ \t]|\([\w,:→ ]{0,40}\)|\[\d{1,2}\]){0,80}"
@@ -146,17 +148,16 @@ def _head(text: str) -> tuple[int, re.Match[str] | None] | None:
     return at, None
 
 
-def behind_harmless_lines(text: str) -> int:
-    """The place behind the lines at the top that make no matrix, such as imports."""
-    at = 0
-    while at < len(text) and (line := _HARMLESS.match(text, at)):
-        at = line.end()
-    return at
+def without_harmless_lines(source: SourceText) -> SourceText:
+    """The text without the lines that make no matrix, such as imports."""
+    return joined(source.split(_HARMLESS_LINE), source.whole[0])
 
 
 def behind_names(text: str) -> int:
     """The place behind harmless lines and the left side of an equation, where a matrix begins."""
-    at = behind_harmless_lines(text)
+    at = 0
+    while at < len(text) and (line := _HARMLESS.match(text, at)):
+        at = line.end()
     names = _NAMES.match(text, at)
     assert names is not None
     return names.end()

@@ -13,7 +13,7 @@ from service.grids.grid import Grid, GridError
 from service.grids.limits import GRID_LIMITS
 from service.grids.lists import lines_of
 from service.grids.pairs import CLOSES, split, strict_pairs
-from service.grids.program_text import MAKERS, TAIL, behind_harmless_lines, without_remarks
+from service.grids.program_text import MAKERS, TAIL, without_harmless_lines, without_remarks
 from service.grids.registry import grid_of, pasted_source
 from service.grids.source_text import SourceText, joined
 
@@ -84,11 +84,13 @@ def _read(piece: SourceText) -> Grid | GridError:
 
 def _several(source: SourceText) -> list[tuple[SourceText, SourceText]]:
     source = without_remarks(_headings_out_of_comments(source))
-    labelled = list(_labelled(source))
-    if len(labelled) == 1:
-        [(name, content)] = labelled
-        return [(name, piece) for piece in _listed(content)]
-    return labelled
+    source = without_harmless_lines(source)
+    nameless = source.cut(0, 0)
+    return [
+        (nameless if i else name, piece)
+        for name, content in _labelled(source)
+        for i, piece in enumerate(_listed(content))
+    ]
 
 
 def _headings_out_of_comments(source: SourceText) -> SourceText:
@@ -135,8 +137,8 @@ def _labelled(source: SourceText) -> Iterator[tuple[SourceText, SourceText]]:
 
 
 def _holds_something(content: SourceText) -> bool:
-    """Whether this is more than words, imports, and products of matrices by name."""
-    text = content.text[behind_harmless_lines(content.text) :].strip(TAIL)
+    """Whether this is more than words, and products of matrices by name."""
+    text = content.text.strip(TAIL)
     return _PRODUCT.fullmatch(text) is None and _PROSE.fullmatch(text) is None
 
 
