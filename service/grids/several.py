@@ -21,11 +21,11 @@ _HIDDEN: Final = "\x01"
 # A name such as A_1, T(q1) or A{2}; what stands in its brackets is hidden.
 _NAME: Final = (
     r"(?:\{\})?(?!\d+[.*\s])[\w\\{^]"
-    rf"(?:[\w.^\\'*@→ \t]|[({{\[]{_HIDDEN}{{0,40}}[)}}\]]){{0,80}}"
+    rf"(?:[\w.^\\'*@→ \t]|[({{\[]{_HIDDEN}{{0,40}}[)}}\]]){{0,48}}"
 )
 _NUMBERED: Final = r"(?:[A-Za-z]{1,14}[ \t]{1,3}){0,3}[A-Za-z_^]{0,4}[\d_^→]{1,8}"
 _HEADING: Final = re.compile(
-    rf"(?:^|[;,\n]|(?<=[\])}}]))[ \t]*(?P<name>{_NAME})(?::=|[:=])(?!=)"
+    rf"(?:^|[;,\n])[ \t]*(?P<name>{_NAME})(?::=|[:=])(?!=)"
     rf"|(?:^|\n)[ \t]*(?P<line>{_NUMBERED})[ \t]*(?=\r?\n)"
 )
 _COMMENT: Final = re.compile(rf"^[ \t]*(?:%+|#+|//+)[ \t]*({_NUMBERED})[ \t:=]*$", re.MULTILINE)
@@ -35,7 +35,9 @@ _PRODUCT: Final = re.compile(
 _PROSE: Final = re.compile(r"[^\W\d]{0,20}(?:[ \n,.:;]{1,3}[^\W\d]{1,20}){0,40}")
 # A list of matrices stands in the brackets of a list, and these in those of a function.
 _NESTING: Final = 3
-_GROUP: Final = re.compile(rf"(?:(?P<maker>[A-Za-z_][\w.]{{0,60}})[ \t]*)?[\[({{]{_HIDDEN}*[\])}}]")
+_GROUP: Final = re.compile(
+    rf"(?:(?<![\w.])(?P<maker>[A-Za-z_][\w.]{{0,60}})[ \t]*)?[\[({{]{_HIDDEN}*[\])}}]"
+)
 _BLANK_LINES: Final = re.compile(r"\n(?:[ \t]*\r?\n)+")
 
 
