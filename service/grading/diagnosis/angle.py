@@ -4,6 +4,7 @@ import numpy as np
 
 from service.expressions.tree import Call, Node
 from service.grading.comparison import difference
+from service.grading.diagnosis.angle_sum import explain_sum
 from service.grading.diagnosis.formula_rewriting import nodes
 from service.grading.diagnosis.wrong_value import (
     Hypotheses,
@@ -107,6 +108,7 @@ MISCONCEPTIONS = (sign, *OF_UNIT, *OF_TURNS)
 
 def diagnose_angle(case: WrongValue) -> Finding:
     """The finding on a wrong angle."""
-    return diagnosed(case, MISCONCEPTIONS, CHECKS) or differs(
-        case, "This angle is not right; work it out again."
+    found = diagnosed(case, MISCONCEPTIONS, CHECKS) or explain_sum(case)
+    return found or differs(
+        case, "This angle is not right: look which turns lie between the two directions."
     )

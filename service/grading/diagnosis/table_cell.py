@@ -21,6 +21,7 @@ from service.grading.joint_motion import coefficients
 from service.grading.judging.table import Judgement, column_scales
 from service.grading.misconception import Repaired, Written, diagnosed
 from service.grading.part import Grading
+from service.grading.reading.absent_variables import absent_names, joint_counted
 from service.grading.reading.table import IS_ANGLE
 from service.grading.tolerances import ROUNDED_VALUE
 from service.kinematics.chain import D
@@ -33,6 +34,19 @@ SUM_COUNTS = (
 ROUNDED_TURN = ROUNDED_VALUE * np.pi
 
 # --- checks of the joint variables in the cell
+
+
+def joint_variable_absent(case: WrongCell) -> Finding | None:
+    """The cell contains a joint variable that the robot does not have."""
+    absent = sorted(absent_names([case.expression], case.samples))
+    if not absent:
+        return None
+    known = {joint.index: joint for joint in case.joints}
+    joint = known.get(joint_counted(absent[0]))
+    why = f"its joints are {min(known)} to {max(known)}"
+    if joint is not None:
+        why = f"joint {joint.index} {_motion(joint)}, and its variable is {case.name(joint)}"
+    return finding_on(case, "joint_variable_absent", f"This robot has no {absent[0]}: {why}.")
 
 
 def joint_variable_missing(case: WrongCell) -> Finding | None:
@@ -200,6 +214,7 @@ def half_turn(case: WrongCell) -> Hypotheses:
 
 
 CHECKS = (
+    joint_variable_absent,
     undefined,
     joint_variable_missing,
     joint_variable_sign,
@@ -285,6 +300,7 @@ def diagnose_cells(judgement: Judgement, grading: Grading) -> dict[tuple[int, in
                 contained=_by_joint(contained, joints),
                 required=_by_joint(required, joints) or {},
                 shared=judged.shared,
+                joints=joints,
             )
         )
     return slips

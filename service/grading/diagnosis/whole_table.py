@@ -148,8 +148,30 @@ def _reordered(order: list[int]) -> Finding:
     )
 
 
+def lengths_exchanged(table: WrittenTable) -> Iterator[RepairedTable]:
+    """Two lengths were taken for each other."""
+    for one, other, change in table.exchanges:
+        finding = partial(_exchanged_lengths, one, other)
+        yield Repaired(table.changed(table.constants + change), finding)
+
+
+def _exchanged_lengths(one: str, other: str) -> Finding:
+    return Finding(
+        "lengths_exchanged",
+        f"{one} and {other} are exchanged: look in the drawing which length each of them is.",
+        f"Exchange {one} and {other}.",
+    )
+
+
 BASIC = written_table.MISCONCEPTIONS
-MISCONCEPTIONS = (*BASIC, link_columns_shifted, column_sign, columns_swapped, row_order)
+MISCONCEPTIONS = (
+    *BASIC,
+    lengths_exchanged,
+    link_columns_shifted,
+    column_sign,
+    columns_swapped,
+    row_order,
+)
 
 
 def _with_another(

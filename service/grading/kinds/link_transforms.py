@@ -1,11 +1,14 @@
 """Answer kind ``link_transforms``: the matrices A_1 … A_n that a table's rows stand for."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from service.catalogue.formulas import HOMOGENEOUS
 from service.catalogue.parts.link_transforms import LinkTransformsSpec
+from service.grading.diagnosis.link_slips import LinkAmongOthers, explain_link
+from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
 from service.grading.diagnosis.matrix_entry import WORK_BUDGET
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.follow_through import stands_still
@@ -81,11 +84,12 @@ def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> J
     rows: list[RowReport] = []
     messages: list[Feedback] = []
     expected = np.moveaxis(right, 1, -1)
-    for label, matrix, values in zip(labels, answer.matrices, expected, strict=True):
+    for i, (label, matrix) in enumerate(zip(labels, answer.matrices, strict=True)):
         judged = matrix_rows(
             matrix,
-            ExpectedMatrix(values, HOMOGENEOUS, rigid=True),
+            ExpectedMatrix(expected[i], HOMOGENEOUS, rigid=True),
             grading,
+            explanations=partial(_by_other_links, right[: i + 1], part, grading),
             work_budget=WORK_BUDGET / len(labels),
             name=f"A{label}",
         )
@@ -98,6 +102,15 @@ def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> J
         stands_still=stands_still(np.moveaxis(answer.values, 1, -1), HOMOGENEOUS, grading),
         chain=answer.chain,
     )
+
+
+def _by_other_links(
+    links: Matrices, part: LinkTransformsSpec, grading: Grading, case: MatrixCase
+) -> list[Explanation]:
+    """What explains the last of ``links`` by those before it."""
+    joints, count = grading.exercise.robot.joints, case.actual.shape[-1] // 2
+    link = LinkAmongOthers.of(links, joints, grading.samples, part.convention, count)
+    return explain_link(link, case)
 
 
 def _content(right: Matrices, part: LinkTransformsSpec, grading: Grading) -> Content:

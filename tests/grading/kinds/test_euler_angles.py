@@ -96,7 +96,7 @@ WRONG: dict[str, tuple[list[Any], set[str], set[str]]] = {
         {"1"},
         {"swapped_atan2"},
     ),
-    "a joint too few": (["theta1", "-theta2", "pi/2"], {"2"}, {"value"}),
+    "a joint too few": (["theta1", "-theta2", "pi/2"], {"2"}, {"joint_variable_missing"}),
     "half a turn": (["theta1 + pi", "-theta2-theta3", "pi/2"], {"1"}, {"half_turn"}),
     "no value": (["theta1", "1/0", "pi/2"], {"2"}, {"undefined"}),
 }
