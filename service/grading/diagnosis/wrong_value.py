@@ -202,10 +202,15 @@ def undefined(case: WrongValue) -> Finding | None:
 
 
 def differs(case: WrongValue, hint: str) -> Finding:
-    """``hint`` and one counterexample, for a value that no known misconception explains."""
+    """``hint`` and one counterexample, for a value that no known misconception explains.
+
+    A number without a symbol is no counterexample: the student knows it.
+    """
     # A right number without its formula can be checked only with the values of all symbols.
     alone = case.corrects and case.correction is None
     symbols = case.samples.values.keys() if alone else case.expression.symbols
+    if not symbols:
+        return finding_on(case, UNEXPLAINED, hint)
     values: dict[str, float | str] = {
         **case.samples.at(0, symbols),
         YOURS: _number(case, case.actual),
