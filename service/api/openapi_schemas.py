@@ -36,6 +36,7 @@ _CHOICES: Final = {
     ("moving", "fixed"): "RotationAxes",
     ("radians", "degrees"): "AngleUnit",
     ("space", "body"): "ScrewFrame",
+    ("unread", "zero"): "EmptyCells",
 }
 
 

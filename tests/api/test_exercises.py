@@ -78,6 +78,7 @@ def test_an_exercise_shows_exactly_what_a_student_may_see(secretive: httpx.Clien
     assert isinstance(version, str)
     assert version
     given = {"frames": "given", "base": "given", "tool": "given", "directions": "given"}
+    given |= {"empty_cells": "unread"}
     table = {"form": "dh_table", "columns": ["a", "alpha", "d", "theta"], "rows": ["1", "2"]}
     four = ["1", "2", "3", "4"]
     assert shown == {

@@ -45,6 +45,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
             "grading/reading/row_labels.py",
             "grading/reading/length_units.py",
             "grading/reading/pasted.py",
+            "grading/reading/matrix_list.py",
             "grading/reading/pasted_table.py",
         ),
     ),
@@ -215,7 +216,7 @@ def test_a_formula_is_read_with_a_note(line: Line) -> None:
 def test_a_pasted_text_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
     exercise, text = catalogue["planar-rr"], line.example[0].replace(" ↵ ", "\n")
     found: set[str] = set()
-    for part_id in ("table", "pose"):
+    for part_id in ("table", "links", "pose"):
         pasted = preview_pasted(text, exercise, part_id)
         found |= {note.code for note in pasted.notes}
         found |= {pasted.problem.code} if pasted.problem else codes_of(exercise, part_id, text)[1]

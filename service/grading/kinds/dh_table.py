@@ -44,7 +44,8 @@ WRONG_THROUGHOUT = 3
 
 def read(part: DhTableSpec, answer: object, grading: Grading) -> StudentTable | None:
     """The rows of a table; None where there are none."""
-    table = read_table(answer, grading.reader)
+    empty_is_zero = part.empty_cells == "zero"
+    table = read_table(answer, grading.reader, empty_is_zero=empty_is_zero)
     return table if table.rows else None
 
 

@@ -161,6 +161,9 @@ MISSING = Entry(
     (reading_error("missing", "Nothing is written here; if the value is zero, write 0."),),
 )
 
+# One of several entries that cannot be read together, the first of which says why.
+UNREADABLE = Entry(None, Verdict.UNREADABLE)
+
 
 def unreadable(finding: Finding) -> Entry:
     """The entry for something that cannot be read, and why."""
