@@ -297,8 +297,8 @@ def test_the_message_on_the_page_is_in_the_report(catalogue: Mapping[str, Exerci
 
 def test_the_limits_of_the_page() -> None:
     for limit in (
-        f"more than {LIMITS.characters} characters",
-        f"more than {LIMITS.nodes} operations and operands",
+        f"more than {LIMITS.characters:,} characters",
+        f"more than {LIMITS.nodes:,} operations and values",
         f"more than {LIMITS.depth} levels deep",
         f"more than {GRID_LIMITS.characters:,} characters",
         f"more than {GRID_LIMITS.rows - 1} rows and a header",
