@@ -10,6 +10,7 @@ import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, Final
 
 from service.catalogue import Exercise, load_catalogue, shipped_folder
@@ -18,7 +19,7 @@ from service.grading import FeedbackLevel, Submission, grade
 from service.grading.reading.preview import preview_pasted
 from service.grading.report import Feedback, Place, messages_of
 from tests.docs import test_message_codes as messages_page
-from tests.docs.codes import codes_in, sources
+from tests.docs.codes import sources
 from tests.docs.templates import Template, templates_in
 from tests.expressions.corpus_files import ROBOT, cases, repair_cases, repairs
 from tests.grading.support.robots import COLUMNS, EXACT, STANFORD
@@ -81,7 +82,8 @@ def pasted_texts() -> Iterator[str]:
     for line in messages_page.LINES:
         if line.section in sections and line.example:
             yield line.example[0].replace(END, "\n")
-    yield from _written()["pasted"]
+    for text in _written()["pasted"]:
+        yield text if isinstance(text, str) else text["text"] * text["times"]
 
 
 def answers(catalogue: Mapping[str, Exercise]) -> Iterator[Example]:
@@ -123,8 +125,17 @@ def _of_the_page(line: messages_page.Line) -> Example | None:
     return None
 
 
-def _written() -> dict[str, list[Any]]:
-    written: dict[str, list[Any]] = tomllib.loads(EXAMPLES.read_text("utf-8").replace(END, "\\n"))
+def _made() -> dict[str, Exercise]:
+    """The exercises that are made for some of the examples."""
+    with TemporaryDirectory() as folder:
+        for name, text in _written()["made"].items():
+            head = f'title = "{name}"\nsource = "made"\nstatement = "Made for this page."\n'
+            (Path(folder) / f"{name}.toml").write_text(head + text, encoding="utf-8")
+        return dict(load_catalogue(Path(folder)))
+
+
+def _written() -> dict[str, Any]:
+    written: dict[str, Any] = tomllib.loads(EXAMPLES.read_text("utf-8").replace(END, "\\n"))
     return written
 
 
@@ -210,11 +221,12 @@ def shown(answer: Any) -> str:
 Known = tuple[Template, frozenset[str]]
 
 
-def known_templates(files: Mapping[str, str]) -> list[Known]:
+def known_templates() -> list[Known]:
     """The templates of the files that read, judge and explain."""
     codes: dict[str, set[str]] = {}
-    for use in codes_in(files):
+    for use in messages_page.program():
         codes.setdefault(use.file, set()).add(use.code)
+    files = sources(ROOT / "service")
     telling = {file: text for file, text in files.items() if file.startswith(_READING)}
     return [
         (template, frozenset(codes.get(template.file, ())))
@@ -225,7 +237,7 @@ def known_templates(files: Mapping[str, str]) -> list[Known]:
 
 def all_said() -> Iterator[Said]:
     """All that the examples draw."""
-    catalogue = load_catalogue(shipped_folder())
+    catalogue = {**load_catalogue(shipped_folder()), **_made()}
     yield from said_of_formulas(formulas())
     yield from said_of_pasted(pasted_texts(), catalogue["planar-rr"])
     yield from said_of_answers(answers(catalogue), catalogue)
@@ -242,7 +254,8 @@ class Row:
 def chosen(said: Iterable[Said], known: Iterable[Known]) -> tuple[list[Row], list[Template]]:
     """The first message with each template, and the templates that none has.
 
-    A short template may stand in many sentences; it is met only by a message of its own file.
+    A short template may stand in many sentences; unless it begins one, it is met only by a message
+    of its own file.
     """
     unmet = list(known)
     rows: list[Row] = []
@@ -251,7 +264,13 @@ def chosen(said: Iterable[Said], known: Iterable[Known]) -> tuple[list[Row], lis
         met = [
             (template, codes)
             for template, codes in unmet
-            if (template.is_telling or not codes or each.code in codes) and template.is_met_by(text)
+            if template.is_met_by(text)
+            and (
+                template.is_telling
+                or not codes
+                or each.code in codes
+                or template.begins(each.sentence)
+            )
         ]
         if met:
             rows.append(Row(_section([template for template, _ in met]), each))
@@ -287,7 +306,7 @@ These have none yet; … stands for what is put in."""
 
 def page() -> str:
     """The whole page, in Markdown."""
-    rows, unmet = chosen(all_said(), known_templates(sources(ROOT / "service")))
+    rows, unmet = chosen(all_said(), known_templates())
     sections = [sections[0] for sections, _ in messages_page.PLACES]
     blocks = [_HEAD]
     for section in [*sections, _SHARED]:

@@ -37,6 +37,10 @@ class Template:
         """Whether it is long enough to be known by itself."""
         return len(_WORD.findall(self.text)) > 4
 
+    def begins(self, sentence: str) -> bool:
+        """Whether the sentence begins with it, and not with what stands in a gap."""
+        return bool(self.pieces[0].strip()) and self._pattern.match(sentence) is not None
+
     def is_met_by(self, text: str) -> bool:
         """Whether the sentence stands somewhere in a text, with something in each gap."""
         return self._longest in text and self._pattern.search(text) is not None
