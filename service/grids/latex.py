@@ -34,7 +34,7 @@ _WRAPPERS: Final = (
     re.compile(
         r"\\(?:begin|end)\s?\{(?:equation|displaymath|math|align|aligned|gather|gathered|table|center"
         r"|figure|document|split|multline|eqnarray|flalign|cases|itemize|enumerate)\*?\}"
-        r"(?:\[[a-zA-Z!]{0,6}\])?"
+        r"(?:\[[a-zA-Z!]{0,6}\])?|\\begin\{array\}\{[clr|]{0,12}\}|\\end\{array\}"
     ),
     re.compile(r"\\(?:left|right|[bB]igg?[lr]?)?\s?\\?[\[\](){}.]|[\[\](){}]"),
     re.compile(

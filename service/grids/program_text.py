@@ -15,11 +15,13 @@ MAKERS: Final = frozenset(
     | {"ImmutableDenseMatrix", "Array", "list", "tuple", "sym", "simplify", "trigsimp", "expand"}
     | {"trigreduce", "ratsimp"}
 )
-_HARMLESS: Final = re.compile(
+# Imports, and symbols that are declared.
+_STATEMENT: Final = (
     r"[ \t]*(?:(?:import|from|syms|clc|clear|close|format|pkg|load|with)\b.*"
-    r"|[\w, \t]{1,80}=[ \t]*(?:\w{1,20}\.)?(?:symbols|Symbol|var|sym)\([^()\[\]{}]{0,200}\)[ \t;]*"
-    r")?(?:\n|\Z)"
+    r"|[\w, \t]{1,80}=[ \t]*(?:\w{1,20}\.)?(?:symbols|Symbol|var|sym)\([^()\[\]{}]{0,200}\)[ \t;]*)"
 )
+_HARMLESS: Final = re.compile(rf"(?:{_STATEMENT}|[ \t]*)(?:\n|\Z)")
+_HARMLESS_LINE: Final = re.compile(rf"^{_STATEMENT}$", re.MULTILINE)
 # The left sides of an equation or assignment: T = A1*A2 = …, A1(q1) := …, A1 : …
 _NAMES: Final = re.compile(
     r"\s*(?:(?!\d+[.*\s])[\w\\](?:[\w.{}^\\'*@→ \t]|\([\w,:→ ]{0,40}\)|\[\d{1,2}\]){0,80}"
@@ -33,19 +35,20 @@ _TITLE: Final = re.compile(
 _CALL: Final = re.compile(
     r"\s*([A-Za-z_][\w.]{0,60})[ \t]*\(\s*(?=[\[({\d]|[A-Za-z_][\w.]{0,60}\()"
 )
+_MOST_FORMS: Final = 3
 _NESTED: Final = re.compile(r"[({]\s*[\[({]|\[|\{\s*['\"]")
 _KEYWORD: Final = re.compile(r"\s*(?:dtype|order|copy|ndmin|storage|shape|datatype)\s*=")
 # Behind % stands a comment, or the name of a constant in Maxima.
 _REMARK: Final = re.compile(
     r"\.\.\.[^\n]*(?:\n|$)|%(?!(?:pi|theta|alpha)(?![A-Za-z]))[^\n]*|#[^\n]*"
-    r"|\(\*(?:[^*]|\*(?!\))){0,200}\*\)|/\*(?:[^*]|\*(?!/)){0,200}\*/"
 )
+_COMMENTS: Final = {"(*": "*)", "/*": "*/"}
 # Mathematica: functions that change nothing in a matrix, in front of it or behind.
 _FORM: Final = re.compile(
     r"(?:MatrixForm|TraditionalForm|InputForm|Simplify|FullSimplify|TrigReduce|Expand)\["
 )
-_FORMS: Final = re.compile(
-    r"(?<!\s)(?:\s*//\s*(?:MatrixForm|TraditionalForm|InputForm|Simplify|FullSimplify|TrigReduce|Expand))+\Z"
+_BEHIND: Final = re.compile(
+    r"//\s{0,3}(?:MatrixForm|TraditionalForm|InputForm|Simplify|FullSimplify|TrigReduce|Expand)\Z"
 )
 TAIL: Final = " \t\r\n;,.$"
 
@@ -94,9 +97,12 @@ def unwrap(source: SourceText, calls: int = 3) -> WrittenMatrix:
 
 def _without_forms(source: SourceText) -> SourceText:
     """The matrix without the functions of Mathematica that only change its form."""
-    if forms := _FORMS.search(source.text):
-        source = source.cut(0, forms.start())
-    for _ in range(3):
+    for _ in range(_MOST_FORMS):
+        behind = _BEHIND.search(source.text, len(source.text) - 24)
+        if behind is None:
+            break
+        source = source.cut(0, behind.start()).strip(TAIL)
+    for _ in range(_MOST_FORMS):
         form = _FORM.match(source.text)
         if form is None or strict_pairs(source)[form.end() - 1] != len(source.text):
             break
@@ -110,6 +116,7 @@ def without_remarks(source: SourceText) -> SourceText:
     pieces: list[SourceText] = []
     start = i = 0
     quote = ""
+    last = max(map(text.rfind, _COMMENTS.values()))
     while i < len(text):
         letter = text[i]
         if quote:
@@ -119,13 +126,26 @@ def without_remarks(source: SourceText) -> SourceText:
                 quote = ""
         elif letter in "'\"" and (i == 0 or not (text[i - 1].isalnum() or text[i - 1] in ")]}.'")):
             quote = letter
-        elif letter in ".%#(/" and (remark := _REMARK.match(text, i)):
+        elif letter in ".%#(/" and (end := _remark_end(text, i, last)):
             blank = SourceText(" ", [source.starts[i]], [source.ends[i]])
             pieces += [source.cut(start, i), blank]
-            start = i = remark.end()
+            start = i = end
             continue
         i += 1
     return joined([*pieces, source.cut(start, len(text))], source.whole[0])
+
+
+def _remark_end(text: str, start: int, last: int) -> int:
+    """The place behind the remark that begins at ``start``, 0 where none does.
+
+    Behind ``last`` no comment in brackets ends.
+    """
+    closer = _COMMENTS.get(text[start : start + 2]) if start < last else None
+    end = text.find(closer, start + 2) if closer else -1
+    if end >= 0:
+        return end + 2
+    remark = _REMARK.match(text, start)
+    return remark.end() if remark else 0
 
 
 def _head(text: str) -> tuple[int, re.Match[str] | None] | None:
@@ -146,17 +166,16 @@ def _head(text: str) -> tuple[int, re.Match[str] | None] | None:
     return at, None
 
 
-def behind_harmless_lines(text: str) -> int:
-    """The place behind the lines at the top that make no matrix, such as imports."""
-    at = 0
-    while at < len(text) and (line := _HARMLESS.match(text, at)):
-        at = line.end()
-    return at
+def without_harmless_lines(source: SourceText) -> SourceText:
+    """The text without the lines that make no matrix, such as imports."""
+    return joined(source.split(_HARMLESS_LINE), source.whole[0])
 
 
 def behind_names(text: str) -> int:
     """The place behind harmless lines and the left side of an equation, where a matrix begins."""
-    at = behind_harmless_lines(text)
+    at = 0
+    while at < len(text) and (line := _HARMLESS.match(text, at)):
+        at = line.end()
     names = _NAMES.match(text, at)
     assert names is not None
     return names.end()

@@ -13,7 +13,7 @@ from service.grids.grid import Grid, GridError
 from service.grids.limits import GRID_LIMITS
 from service.grids.lists import lines_of
 from service.grids.pairs import CLOSES, split, strict_pairs
-from service.grids.program_text import MAKERS, TAIL, behind_harmless_lines, without_remarks
+from service.grids.program_text import MAKERS, TAIL, without_harmless_lines, without_remarks
 from service.grids.registry import grid_of, pasted_source
 from service.grids.source_text import SourceText, joined
 
@@ -21,11 +21,11 @@ _HIDDEN: Final = "\x01"
 # A name such as A_1, T(q1) or A{2}; what stands in its brackets is hidden.
 _NAME: Final = (
     r"(?:\{\})?(?!\d+[.*\s])[\w\\{^]"
-    rf"(?:[\w.^\\'*@→ \t]|[({{\[]{_HIDDEN}{{0,40}}[)}}\]]){{0,80}}"
+    rf"(?:[\w.^\\'*@→ \t]|[({{\[]{_HIDDEN}{{0,40}}[)}}\]]){{0,48}}"
 )
 _NUMBERED: Final = r"(?:[A-Za-z]{1,14}[ \t]{1,3}){0,3}[A-Za-z_^]{0,4}[\d_^→]{1,8}"
 _HEADING: Final = re.compile(
-    rf"(?:^|[;,\n]|(?<=[\])}}]))[ \t]*(?P<name>{_NAME})(?::=|[:=])(?!=)"
+    rf"(?:^|[;,\n])[ \t]*(?P<name>{_NAME})(?::=|[:=])(?!=)"
     rf"|(?:^|\n)[ \t]*(?P<line>{_NUMBERED})[ \t]*(?=\r?\n)"
 )
 _COMMENT: Final = re.compile(rf"^[ \t]*(?:%+|#+|//+)[ \t]*({_NUMBERED})[ \t:=]*$", re.MULTILINE)
@@ -35,7 +35,9 @@ _PRODUCT: Final = re.compile(
 _PROSE: Final = re.compile(r"[^\W\d]{0,20}(?:[ \n,.:;]{1,3}[^\W\d]{1,20}){0,40}")
 # A list of matrices stands in the brackets of a list, and these in those of a function.
 _NESTING: Final = 3
-_GROUP: Final = re.compile(rf"(?:(?P<maker>[A-Za-z_][\w.]{{0,60}})[ \t]*)?[\[({{]{_HIDDEN}*[\])}}]")
+_GROUP: Final = re.compile(
+    rf"(?:(?<![\w.])(?P<maker>[A-Za-z_][\w.]{{0,60}})[ \t]*)?[\[({{]{_HIDDEN}*[\])}}]"
+)
 _BLANK_LINES: Final = re.compile(r"\n(?:[ \t]*\r?\n)+")
 
 
@@ -84,11 +86,13 @@ def _read(piece: SourceText) -> Grid | GridError:
 
 def _several(source: SourceText) -> list[tuple[SourceText, SourceText]]:
     source = without_remarks(_headings_out_of_comments(source))
-    labelled = list(_labelled(source))
-    if len(labelled) == 1:
-        [(name, content)] = labelled
-        return [(name, piece) for piece in _listed(content)]
-    return labelled
+    source = without_harmless_lines(source)
+    nameless = source.cut(0, 0)
+    return [
+        (nameless if i else name, piece)
+        for name, content in _labelled(source)
+        for i, piece in enumerate(_listed(content))
+    ]
 
 
 def _headings_out_of_comments(source: SourceText) -> SourceText:
@@ -135,8 +139,8 @@ def _labelled(source: SourceText) -> Iterator[tuple[SourceText, SourceText]]:
 
 
 def _holds_something(content: SourceText) -> bool:
-    """Whether this is more than words, imports, and products of matrices by name."""
-    text = content.text[behind_harmless_lines(content.text) :].strip(TAIL)
+    """Whether this is more than words, and products of matrices by name."""
+    text = content.text.strip(TAIL)
     return _PRODUCT.fullmatch(text) is None and _PROSE.fullmatch(text) is None
 
 

@@ -99,7 +99,7 @@ def test_a_model_answer_that_cannot_be_handed_in(make_exercise: Make) -> None:
     remarks = told(make_exercise, HEAD + robot("R" * 10, f"[{rows}]") + POSE)
     [remark] = [each for each in remarks if each.level is Level.FAILED]
     assert remark.field == "parts[0]"
-    assert "the right answer to pose has an entry of more than the 500 characters" in remark.text
+    assert "the right answer to pose has an entry of more than the 8000 characters" in remark.text
 
 
 @pytest.mark.parametrize(

@@ -80,6 +80,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
             "grading/judging/row_places.py",
             "grading/judging/own_frames/written_table.py",
             f"{DIAGNOSIS}column_order.py",
+            f"{DIAGNOSIS}intended_table.py",
             f"{DIAGNOSIS}joint_numbering.py",
             f"{DIAGNOSIS}table_freedom.py",
             f"{DIAGNOSIS}whole_table.py",
@@ -301,8 +302,8 @@ def test_the_message_on_the_page_is_in_the_report(catalogue: Mapping[str, Exerci
 
 def test_the_limits_of_the_page() -> None:
     for limit in (
-        f"more than {LIMITS.characters} characters",
-        f"more than {LIMITS.nodes} operations and operands",
+        f"more than {LIMITS.characters:,} characters",
+        f"more than {LIMITS.nodes:,} operations and values",
         f"more than {LIMITS.depth} levels deep",
         f"more than {GRID_LIMITS.characters:,} characters",
         f"more than {GRID_LIMITS.rows - 1} rows and a header",

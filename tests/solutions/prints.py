@@ -23,6 +23,10 @@ from tests.grading.support.submitting import full_marks, handed_in, part
 from tests.solutions.solved import solved
 
 Printer = Callable[[sp.Matrix], str]
+# The labels of matrices and their texts -> one text.
+Join = Callable[[Sequence[tuple[str, str]]], str]
+# What only the reader of expressions does not read yet.
+PENDING = ("jscode", "cxxcode", "mul_symbol=ldot", "MATLAB latex", "TeXForm", "julia_code")
 
 
 def rows(matrix: sp.Matrix, entry: Callable[[sp.Expr], str]) -> list[list[str]]:
@@ -135,7 +139,6 @@ def object_array(matrix: sp.Matrix) -> np.ndarray[tuple[int, ...], np.dtype[np.o
     return np.array(matrix.tolist(), dtype=object)
 
 
-# What only the reader of expressions can read is told in ``PENDING``.
 SYMPY: Mapping[str, Printer] = {
     "str": str,
     "immutable repr": lambda m: repr(sp.ImmutableMatrix(m)),
@@ -152,7 +155,6 @@ SYMPY: Mapping[str, Printer] = {
     "jscode of the entries": c_entries(sp.jscode),
     "cxxcode of the entries": c_entries(sp.cxxcode),
     "rcode of the entries": c_entries(sp.rcode),
-    "python": lambda m: str(sp.python(m)),
 }
 LATEX_OPTIONS: Mapping[str, Mapping[str, object]] = {
     "plain": {},
@@ -219,7 +221,7 @@ AROUND: Mapping[str, Callable[[str], str]] = {
 # --- all link transforms
 
 
-def named(form: str, between: str = "\n") -> Callable[[Sequence[tuple[str, str]]], str]:
+def named(form: str, between: str = "\n") -> Join:
     def write(matrices: Sequence[tuple[str, str]]) -> str:
         return between.join(form.format(label=label, text=text) for label, text in matrices)
 
@@ -230,7 +232,7 @@ def backwards(matrices: Sequence[tuple[str, str]]) -> str:
     return named("A{label} = {text}", "\n\n")(matrices[::-1])
 
 
-LISTS: Mapping[str, Callable[[Sequence[tuple[str, str]]], str]] = {
+LISTS: Mapping[str, Join] = {
     "named": named("A{label} = {text}"),
     "named, ;": named("A_{label} = {text};", "\n\n"),
     "MATLAB": named("A{label} =\n \n{text}\n \n"),
@@ -239,12 +241,12 @@ LISTS: Mapping[str, Callable[[Sequence[tuple[str, str]]], str]] = {
     "backwards": backwards,
     "in order": named("{text}", "\n\n"),
 }
-OF_LATEX: Mapping[str, Callable[[Sequence[tuple[str, str]]], str]] = {
+OF_LATEX: Mapping[str, Join] = {
     "commas": named("A_{label} = {text}", ", \\quad "),
     "display": named("\\[ {{}}^{{}}A_{{{label}}}(q) = {text} \\]"),
     "bold": named("$$\\mathbf{{A}}_{label} = {text}$$"),
 }
-IN_BRACKETS: Mapping[str, Callable[[Sequence[tuple[str, str]]], str]] = {
+IN_BRACKETS: Mapping[str, Join] = {
     "list": lambda matrices: f"[{', '.join(text for _, text in matrices)}]",
 }
 
@@ -255,7 +257,11 @@ class Print(NamedTuple):
     exercise: str
     part: str
     name: str
-    text: str
+    write: Callable[[], str]
+
+    @property
+    def text(self) -> str:
+        return self.write()
 
 
 def matrix_of(exercise: Exercise, algebra: Algebra, entries: Sequence[Sequence[str]]) -> sp.Matrix:
@@ -278,16 +284,12 @@ def matrices(exercise: Exercise) -> Iterator[tuple[str, list[sp.Matrix]]]:
 
 def ways_around(name: str) -> Mapping[str, Callable[[str], str]]:
     """What may stand around one matrix; a drawing begins on a line of its own."""
-    if name == "python":
-        return {"alone": AROUND["alone"]}
     left_out = {"named", "product"} if name in DRAWN else set()
     return {way: AROUND[way] for way in AROUND if way not in left_out}
 
 
-def ways_together(name: str) -> Mapping[str, Callable[[Sequence[tuple[str, str]]], str]]:
+def ways_together(name: str) -> Mapping[str, Join]:
     """The ways in which all link transforms may stand in one text."""
-    if name == "python":
-        return {}
     if name in DRAWN:
         more = ["in order"] if name.startswith("pretty") else []
         return {way: LISTS[way] for way in ("MATLAB", "prompts", "headings", *more)}
@@ -300,15 +302,23 @@ def prints(exercise: Exercise) -> Iterator[Print]:
     for part_id, found in matrices(exercise):
         spec = exercise.part(part_id)
         for name, printer in PRINTERS.items():
-            texts = [printer(matrix) for matrix in found]
             if isinstance(spec, LinkTransformsSpec):
                 labels = exercise.robot.tables[spec.convention].labels
-                labelled = list(zip(labels, texts, strict=True))
-                for together, write in ways_together(name).items():
-                    yield Print(exercise.id, part_id, f"{name}, {together}", write(labelled))
+                for way, join in ways_together(name).items():
+                    write = partial(_joined, join, labels, found, printer)
+                    yield Print(exercise.id, part_id, f"{name}, {way}", write)
             else:
-                for around, wrap in ways_around(name).items():
-                    yield Print(exercise.id, part_id, f"{name}, {around}", wrap(texts[0]))
+                for way, wrap in ways_around(name).items():
+                    write = partial(_wrapped, wrap, found[0], printer)
+                    yield Print(exercise.id, part_id, f"{name}, {way}", write)
+
+
+def _joined(join: Join, labels: Sequence[str], found: Sequence[sp.Matrix], printer: Printer) -> str:
+    return join([(label, printer(each)) for label, each in zip(labels, found, strict=True)])
+
+
+def _wrapped(wrap: Callable[[str], str], matrix: sp.Matrix, printer: Printer) -> str:
+    return wrap(printer(matrix))
 
 
 def refused(each: Print, exercise: Exercise) -> str:

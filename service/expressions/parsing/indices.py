@@ -27,12 +27,17 @@ class Indexed(NamedTuple):
     end: int
 
 
-def indexed(run: str, text: str, end: int, vocabulary: Vocabulary) -> Indexed | None:
-    """``run``, which ends at ``text[end]``, with the index in brackets behind it, if any."""
+def indexed(
+    run: str, text: str, end: int, vocabulary: Vocabulary, *, from_one: bool = False
+) -> Indexed | None:
+    """``run``, which ends at ``text[end]``, with the index in brackets behind it, if any.
+
+    ``from_one`` says that square brackets count from 1, too.
+    """
     match = INDEX.match(text, end)
     if match is None or _STEM.search(run) is None:
         return None
-    style: Style = "[" if match[1] is not None else "("
+    style: Style = "[" if match[1] is not None and not from_one else "("
     number = int(match[1] or match[2] or match[3])
     if style == "[":
         number += _first(run, vocabulary)

@@ -8,12 +8,14 @@ _TAN2 = re.compile(
     r"\\?(?:tan|tang|a ?tan|atang|artan|arctan|arctang)[ _]?\{?2\}?(?=\s*(?:\\left)?\()"
 )
 
+_KNOWN = {"atan2", "arctan2", r"\atan2", r"\arctan2"}
+
 
 @answers("name", "grammar")
 def repair(failure: Failure) -> Repair:
     """Offer atan2."""
     match = _TAN2.search(failure.source)
-    if match is None or match.end() > failure.span[1]:
+    if match is None or match.end() > failure.span[1] or match.group() in _KNOWN:
         return None
     if failure.cause == "grammar" and failure.terminal() != "COMMA":
         return None

@@ -227,7 +227,7 @@ def explain(case: MatrixCase) -> list[Explanation]:
     bottom = bottom_row(case)
     explained = [Explanation(bottom, case.mask(BOTTOM_ROW))] if bottom else []
     if case.wrong[UPPER_ROWS].any():
-        given = GIVEN_UPPER_ROWS if is_given else ()
+        given = GIVEN_UPPER_ROWS if is_given and case.is_transform else ()
         explained += _of_block(case, UPPER_ROWS, *OF_UPPER_ROWS, given) or _of_blocks(case)
     return explained
 

@@ -80,11 +80,13 @@ class Reader:
         and where the variable of a joint that the robot does not have is a wrong one.
         """
         budget = self.budget
+        counted = 0
         if isinstance(raw, str):
             if not raw.strip():
                 return MISSING
             if len(raw) <= LIMITS.characters:
-                budget.characters -= len(raw)
+                counted = len(raw)
+                budget.characters -= counted
         elif raw is None:
             return MISSING
         elif isinstance(raw, bool) or not isinstance(raw, int | float):
@@ -100,9 +102,9 @@ class Reader:
                 repairs=budget.repairs > 0,
             )
         except ExpressionError as error:
-            budget.repairs -= 1
             is_unknown = in_table and error.code in _UNKNOWN_NAMES
             absent = self._in_absent_variables(raw, quantity) if is_unknown else None
+            budget.charge_unreadable(counted)
             if absent is None:
                 return unreadable(_from_error(error))
             expression = absent
@@ -152,7 +154,7 @@ def _bounds(quantities: tuple[Kind, ...]) -> Numbers:
 
 _TOO_MUCH = reading_error(
     "too_long",
-    f"The answers hold more than {MAX_CHARACTERS} characters together; what follows is not read.",
+    f"The answers are too long: they have more than {MAX_CHARACTERS:,} characters together.",
 )
 
 MISSING = Entry(

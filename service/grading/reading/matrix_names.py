@@ -44,7 +44,7 @@ def _number(index: str, count: int) -> int:
 def _by_number(name: Indices, count: int) -> _Place:
     """A_2; or the frames on either side, T^1_2."""
     numbers = [_number(index, count) for index in name]
-    if len(numbers) == 1:
+    if len(numbers) == 1 and (len(name[0]) == 1 or name[0][0] != "0"):
         return numbers[0]
     if len(numbers) == 2 and abs(numbers[0] - numbers[1]) == 1:
         return max(numbers)

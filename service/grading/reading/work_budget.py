@@ -5,10 +5,14 @@ Counted work is the same on every machine, so that the same submission gives the
 
 from dataclasses import dataclass
 
-# A 4×4 matrix of a six-joint arm, multiplied out and not simplified, takes a third of it.
-MAX_CHARACTERS = 12_000
+# The pose of a seven-joint arm, multiplied out, not simplified and printed as LaTeX, has 21,000.
+MAX_CHARACTERS = 24_000
+# What cannot be read takes up to three times as long for each character.
+UNREADABLE_COST = 3
 # To look for the repaired text of an unreadable one costs more than any other reading.
 MAX_REPAIRS = 12
+# A text of so many characters takes one repair more for each further so many.
+CHARACTERS_PER_REPAIR = 250
 
 
 @dataclass(slots=True)
@@ -21,3 +25,8 @@ class WorkBudget:
 
     characters: int = MAX_CHARACTERS
     repairs: int = MAX_REPAIRS
+
+    def charge_unreadable(self, characters: int) -> None:
+        """Count a text that could not be read, whose characters were counted once before."""
+        self.characters -= (UNREADABLE_COST - 1) * characters
+        self.repairs -= 1 + characters // CHARACTERS_PER_REPAIR
