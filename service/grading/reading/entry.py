@@ -75,12 +75,12 @@ class Reader:
         ``in_table`` says that it is a cell of a DH table, where a star marks the joint variable.
         """
         budget = self.budget
-        is_counted = False
+        counted = 0
         if isinstance(raw, str):
             if not raw.strip():
                 return MISSING
-            if is_counted := len(raw) <= LIMITS.characters:
-                budget.characters -= len(raw)
+            counted = len(raw) if len(raw) <= LIMITS.characters else 0
+            budget.characters -= counted
         elif raw is None:
             return MISSING
         elif isinstance(raw, bool) or not isinstance(raw, int | float):
@@ -96,7 +96,7 @@ class Reader:
                 repairs=budget.repairs > 0,
             )
         except ExpressionError as error:
-            budget.charge_unreadable(len(raw) if is_counted else 0)
+            budget.charge_unreadable(counted)
             return unreadable(_from_error(error))
         if not expression.notes:
             return Entry(expression)
