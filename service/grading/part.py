@@ -108,7 +108,8 @@ class Judged:
 
     The rows have no points yet: ``content`` says what their cells are worth. ``slips`` counts those
     that no cell shows, such as a row too many. ``whole_cost`` is the share of the points that a
-    slip of the whole answer costs, where one explains all its wrong cells. ``stands_still`` says
+    slip of the whole answer costs, where one explains all its wrong cells; or all but those that
+    are wrong in ``beside``, the same answer without that slip. ``stands_still`` says
     that no joint moves an answer that must move. ``at_most`` is the same answer judged
     without what must not help: it earns no more than that. ``chain`` gives the answer as a chain,
     if it is one; it is asked only where another part follows this one.
@@ -119,6 +120,7 @@ class Judged:
     feedback: tuple[Feedback, ...] = ()
     slips: int = 0
     whole_cost: float | None = None
+    beside: "Judged | None" = None
     stands_still: bool = False
     at_most: "Judged | None" = None
     chain: Callable[[], StudentChain | None] = _no_chain

@@ -7,6 +7,8 @@ from service.grids import (  # isort: skip
 )  # fmt: skip
 from service.grids.grid import Grid, GridError, GridFormat
 from service.grids.limits import GRID_LIMITS
+from service.grids.program_text import without_title
+from service.grids.session import printed
 from service.grids.source_text import SourceText
 
 # The surest sign comes first: a tag, a command, a bracket; then separators, blanks last of all.
@@ -23,6 +25,16 @@ def read_grid(text: str) -> Grid:
 
     Time is linear in the text, which is bounded by ``GRID_LIMITS``.
     """
+    return grid_of(without_title(pasted_source(text)))
+
+
+def pasted_source(text: str, *, named: bool = False) -> SourceText:
+    """A pasted text within the limits, without the prompts of an interpreter.
+
+    With ``named``, names that were asked for at a prompt stand as headings above their outputs.
+
+    Raises GridError beyond the limits, and where nothing is written.
+    """
     if len(text) > GRID_LIMITS.characters:
         most = GRID_LIMITS.characters
         message = f"This has {len(text)} characters; a pasted text may have {most}."
@@ -37,6 +49,11 @@ def read_grid(text: str) -> Grid:
             "paste only the table or matrix.",
             (0, len(text)),
         )
+    return printed(source, named=named)
+
+
+def grid_of(source: SourceText) -> Grid:
+    """The grid in a piece of a pasted text. Raises GridError where there is none."""
     for candidate in FORMATS:
         if candidate.matches(source.text):
             return candidate.parse(source)
@@ -45,5 +62,5 @@ def read_grid(text: str) -> Grid:
         "This was not recognised as a table or matrix. Put each row on a line of its own with "
         "commas between the values, or paste a table from a spreadsheet, Markdown, LaTeX, MATLAB "
         "or Python.",
-        (0, len(text)),
+        source.whole,
     )

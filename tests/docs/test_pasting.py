@@ -13,22 +13,28 @@ from tests.grading.support.submitting import full_marks, handed_in, part
 
 PAGE = (Path(__file__).parents[2] / "docs" / "pasting.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(
-    r"^```\w+ (table|matrix|refused) ?(\w*)\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE
+    r"^```\w+ (table|matrix|links|refused) ?(\w*)\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE
 )
 READ = [(kind, text) for kind, _, text in BLOCKS if kind != "refused"]
 REFUSED = [(code, text) for kind, code, text in BLOCKS if kind == "refused"]
 
+PARTS = {
+    "table": ("rrrp", "table"),
+    "matrix": ("planar-rrr", "pose"),
+    "links": ("planar-rrr-standard", "links"),
+}
+
 
 def test_every_block_is_an_example() -> None:
     assert len(BLOCKS) == PAGE.count("\n```") / 2
-    assert (len(READ), len(REFUSED)) == (13, 4)
+    assert (len(READ), len(REFUSED)) == (18, 4)
 
 
 @pytest.mark.parametrize(("kind", "text"), READ)
 def test_an_example_gets_full_marks(
     kind: str, text: str, catalogue: Mapping[str, Exercise]
 ) -> None:
-    exercise, part_id = ("rrrp", "table") if kind == "table" else ("planar-rrr", "pose")
+    exercise, part_id = PARTS[kind]
     report = part(handed_in(catalogue[exercise], {part_id: text}), part_id)
     assert full_marks(report), report
 

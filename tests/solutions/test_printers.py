@@ -1,6 +1,10 @@
-"""For every exercise the model solution as SymPy prints it, in four languages, gets full marks."""
+"""For every exercise the model solution gets full marks, printed by any program.
+
+``prints`` holds the printers of matrices and hands in all of them; here are some of each exercise.
+"""
 
 from collections.abc import Callable, Mapping
+from random import Random
 
 import pytest
 import sympy
@@ -10,6 +14,7 @@ from service.catalogue import Exercise, shipped_folder
 from service.expressions import LIMITS, read
 from service.solutions.algebra import Algebra
 from tests.grading.support.submitting import full_marks, handed_in
+from tests.solutions.prints import PENDING, prints, refused
 from tests.solutions.solved import solved
 
 IDS = sorted(file.stem for file in shipped_folder().glob("*.toml"))
@@ -19,8 +24,6 @@ PRINTERS: Mapping[str, Callable[[sympy.Expr], str]] = {
     "octave_code": sympy.octave_code,
     "numpy": NumPyPrinter().doprint,
 }
-
-
 _expressions: dict[tuple[str, str | float], sympy.Expr] = {}
 
 
@@ -76,3 +79,20 @@ def test_the_model_solution_as_sympy_prints_it(
         )
     for part in handed_in(exercise, answers).parts:
         assert full_marks(part), part
+
+
+# So many prints of each exercise, others for each, in a fixed choice.
+SAMPLE = 25
+
+
+@pytest.mark.parametrize("exercise_id", IDS)
+def test_matrices_and_link_transforms_as_programs_print_them(
+    exercise_id: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    exercise = catalogue[exercise_id]
+    found = [each for each in prints(exercise) if not any(name in each.name for name in PENDING)]
+    chosen = Random(exercise_id).sample(found, min(SAMPLE, len(found)))
+    reasons = {each.name: refused(each, exercise) for each in chosen}
+    # The limits of the reader of expressions are its own matter.
+    wrong = {name: why for name, why in reasons.items() if why and "too_long" not in why}
+    assert wrong == {}

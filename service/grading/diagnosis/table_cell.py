@@ -7,6 +7,7 @@ import numpy as np
 from service.catalogue import Joint
 from service.expressions.printing.spelling import PLAIN, spelling_for
 from service.grading.comparison import Match
+from service.grading.diagnosis.quantity import quantity_of
 from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import (
     Hypotheses,
@@ -21,6 +22,7 @@ from service.grading.joint_motion import coefficients
 from service.grading.judging.table import Judgement, column_scales
 from service.grading.misconception import Repaired, Written, diagnosed
 from service.grading.part import Grading
+from service.grading.reading.absent_variables import absent_names, joint_counted
 from service.grading.reading.table import IS_ANGLE
 from service.grading.tolerances import ROUNDED_VALUE
 from service.kinematics.chain import D
@@ -33,6 +35,19 @@ SUM_COUNTS = (
 ROUNDED_TURN = ROUNDED_VALUE * np.pi
 
 # --- checks of the joint variables in the cell
+
+
+def joint_variable_absent(case: WrongCell) -> Finding | None:
+    """The cell contains a joint variable that the robot does not have."""
+    absent = sorted(absent_names([case.expression], case.samples))
+    if not absent:
+        return None
+    known = {joint.index: joint for joint in case.joints}
+    joint = known.get(joint_counted(absent[0]))
+    why = f"its joints are {min(known)} to {max(known)}"
+    if joint is not None:
+        why = f"joint {joint.index} {_motion(joint)}, and its variable is {case.name(joint)}"
+    return finding_on(case, "joint_variable_absent", f"This robot has no {absent[0]}: {why}.")
 
 
 def joint_variable_missing(case: WrongCell) -> Finding | None:
@@ -111,6 +126,17 @@ def joint_variable_extra(case: WrongCell) -> Finding | None:
         case,
         "joint_variable_extra",
         f"The cell contains {listed(extra)}: check which cells of a table change with the joints.",
+    )
+
+
+def wrong_quantity(case: WrongCell) -> Finding | None:
+    """An angle where a length is asked for, or a length where an angle is."""
+    found = quantity_of(case.expression.tree)
+    if found not in ("angle", "length") or (found == "angle") == case.angle:
+        return None
+    asked, written = ("an angle", "a length") if case.angle else ("a length", "an angle")
+    return finding_on(
+        case, "wrong_quantity", f"{case.symbol} is {asked}, but {written} is written here."
     )
 
 
@@ -200,6 +226,7 @@ def half_turn(case: WrongCell) -> Hypotheses:
 
 
 CHECKS = (
+    joint_variable_absent,
     undefined,
     joint_variable_missing,
     joint_variable_sign,
@@ -207,6 +234,7 @@ CHECKS = (
     joint_variable_doubled,
     joint_variable_column,
     joint_variable_extra,
+    wrong_quantity,
 )
 OF_DISTANCE = (distance_left_out, distance_extra)
 OF_ANGLE = (degrees_as_radians, radians_as_degrees, quarter_turn, half_turn)
@@ -285,6 +313,7 @@ def diagnose_cells(judgement: Judgement, grading: Grading) -> dict[tuple[int, in
                 contained=_by_joint(contained, joints),
                 required=_by_joint(required, joints) or {},
                 shared=judged.shared,
+                joints=joints,
             )
         )
     return slips

@@ -17,7 +17,7 @@ def slips_of(
 ) -> dict[tuple[int, int], Finding]:
     """The finding on each wrong value that was read, at (its place, 0)."""
     student, scales = compared.student, compared.scales(grading)
-    spelling = grading.spelling(student.entries) if wrong.any() and grading.corrects else PLAIN
+    spelling = grading.spelling(student.entries) if wrong.any() else PLAIN
     slips: dict[tuple[int, int], Finding] = {}
     for i in np.flatnonzero(wrong).tolist():
         if (expression := student.entries[i].expression) is None:

@@ -9,8 +9,18 @@ from itertools import permutations
 
 import numpy as np
 
+from service.grading.diagnosis import inverse_slips, motion_slips
 from service.grading.diagnosis.link_products import named
-from service.grading.diagnosis.matrix_case import Explanation, MatrixCase, as_explanations
+from service.grading.diagnosis.matrix_case import (
+    BOTTOM_ROW,
+    POSITION_BLOCK,
+    ROTATION_BLOCK,
+    UPPER_ROWS,
+    Block,
+    Explanation,
+    MatrixCase,
+    as_explanations,
+)
 from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, Hypotheses, Mask
 from service.grading.feedback import Finding
@@ -19,13 +29,6 @@ from service.grading.misconception import Written, explanation
 from service.grading.report import Severity
 from service.grading.tolerances import EXACT_VALUE, ROUNDED_VALUE
 from service.kinematics.transforms import Numbers, inverse
-
-Block = tuple[slice, slice]
-
-ROTATION_BLOCK: Block = (slice(0, 3), slice(0, 3))
-POSITION_BLOCK: Block = (slice(0, 3), slice(3, 4))
-UPPER_ROWS: Block = (slice(0, 3), slice(None))
-BOTTOM_ROW: Block = (slice(3, 4), slice(None))
 
 
 def transposed_matrix(case: MatrixCase) -> Hypotheses:
@@ -144,6 +147,10 @@ def _line_sign(code: str, indices: list[int], frame: str) -> Finding:
 OF_UPPER_ROWS = (inverse_transform, other_pose, inverse_of_other_pose)
 OF_ROTATION = (transposed_rotation, columns_exchanged, other_rotation)
 OF_POSITION = (other_position,)
+# The same of transforms and rotations that the exercise gives in formulas.
+GIVEN_UPPER_ROWS = (*inverse_slips.OF_UPPER_ROWS, *motion_slips.OF_UPPER_ROWS)
+GIVEN_ROTATION = (*inverse_slips.OF_ROTATION, *motion_slips.OF_ROTATION)
+GIVEN_POSITION = (*inverse_slips.OF_POSITION, *motion_slips.OF_POSITION)
 MISCONCEPTIONS = (transposed_matrix, *OF_UPPER_ROWS, *OF_ROTATION, *OF_POSITION, line_sign)
 
 
@@ -204,19 +211,25 @@ CHECKS = (bottom_row, left_handed_rotation, rotation_not_orthonormal)
 
 def explain(case: MatrixCase) -> list[Explanation]:
     """What is wrong with the matrix as a whole, or with a large part of it."""
-    transposed = explanation(case, (transposed_matrix,))
+    is_given = case.motion is not None
+    of_matrix = inverse_slips.OF_MATRIX if is_given else ()
+    transposed = explanation(case, (transposed_matrix, *of_matrix))
     if transposed is not None or not case.rigid:
         return as_explanations(case, transposed)
     bottom = bottom_row(case)
     explained = [Explanation(bottom, case.mask(BOTTOM_ROW))] if bottom else []
     if case.wrong[UPPER_ROWS].any():
-        explained += as_explanations(case, explanation(case, OF_UPPER_ROWS)) or _of_blocks(case)
+        of_upper_rows = (*OF_UPPER_ROWS, *(GIVEN_UPPER_ROWS if is_given else ()))
+        explained += as_explanations(case, explanation(case, of_upper_rows)) or _of_blocks(case)
     return explained
 
 
 def _of_blocks(case: MatrixCase) -> list[Explanation]:
     explained: list[Explanation] = []
-    for block, misconceptions in ((ROTATION_BLOCK, OF_ROTATION), (POSITION_BLOCK, OF_POSITION)):
+    is_given = case.motion is not None
+    of_rotation = (*OF_ROTATION, *(GIVEN_ROTATION if is_given else ()))
+    of_position = (*OF_POSITION, *(GIVEN_POSITION if is_given else ()))
+    for block, misconceptions in ((ROTATION_BLOCK, of_rotation), (POSITION_BLOCK, of_position)):
         if case.wrong[block].any():
             explained += as_explanations(case, explanation(case, misconceptions))
     rest = replace(case, wrong=unexplained(case, explained))

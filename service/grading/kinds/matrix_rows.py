@@ -9,6 +9,7 @@ import numpy as np
 from service.expressions.printing.spelling import PLAIN
 from service.grading.comparison import Match
 from service.grading.diagnosis.formula_repair import WrongEntry
+from service.grading.diagnosis.given_motion import GivenMotion
 from service.grading.diagnosis.link_products import Chain
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
 from service.grading.diagnosis.matrix_entry import WORK_BUDGET, diagnose_entries
@@ -43,21 +44,27 @@ def _no_explanations(_case: MatrixCase) -> list[Explanation]:
     return []
 
 
+def _no_motion(_samples: Samples) -> GivenMotion | None:
+    return None
+
+
 def matrix_rows(
     student: StudentMatrix,
     expected: ExpectedMatrix,
     grading: Grading,
     chains: Callable[[Samples], tuple[Chain, ...]] = _no_chains,
     explanations: Callable[[MatrixCase], list[Explanation]] = _no_explanations,
+    motion: Callable[[Samples], GivenMotion | None] = _no_motion,
     work_budget: float = WORK_BUDGET,
     name: str = "",
 ) -> MatrixRows:
     """The rows of a matrix, with what explains its wrong entries.
 
     ``chains`` gives, at the samples it is handed, the links that the matrix is the product of;
-    ``explanations`` explains the matrix by what else it is made of, and is asked first. Both are
-    asked only where something is wrong. ``work_budget`` bounds how much is taken apart. A ``name``
-    tells one matrix of several: its rows are then "A2.1" and so on.
+    ``explanations`` explains the matrix by what else it is made of, and is asked first; ``motion``
+    gives, like ``chains``, what formulas say that it is made of. All are asked only where something
+    is wrong. ``work_budget`` bounds how much is taken apart. A ``name`` tells one matrix of
+    several: its rows are then "A2.1" and so on.
     """
     labels = [f"{name}.{i + 1}" if name else str(i + 1) for i in range(len(student.entries))]
     found = expected.matches(student, grading.exercise.length_scale, grading.samples)
@@ -72,6 +79,7 @@ def matrix_rows(
         wrong=found == Match.DIFFERENT,
         rigid=expected.rigid,
         chains=chains(grading.samples.subset(SUBSET)),
+        motion=motion(grading.samples.subset(SUBSET)),
     )
     explained = explanations(case) or explain(case)
     spelling = grading.spelling(chain(*student.entries)) if grading.corrects else PLAIN

@@ -6,7 +6,9 @@ from service.catalogue import Robot
 from service.catalogue.parts.position import PositionSpec
 from service.expressions import Kind
 from service.grading.comparison import Match
+from service.grading.diagnosis.given_motion import GivenMotion
 from service.grading.diagnosis.link_products import chains_of
+from service.grading.diagnosis.motion_slips import explain_displacements
 from service.grading.diagnosis.position import MISCONCEPTIONS, WrongPosition
 from service.grading.diagnosis.value_list import slips_of
 from service.grading.feedback import Finding
@@ -63,4 +65,5 @@ def _explained(part: PositionSpec, compared: ComparedValues, grading: Grading) -
         axes=tuple(_axes(part)),
         chains=chains_of(exercise, grading.samples) if linked else (),
     )
-    return diagnosed(case, MISCONCEPTIONS)
+    motion = GivenMotion.of(part.id, exercise, grading.samples)
+    return diagnosed(case, MISCONCEPTIONS) or explain_displacements(case, motion)

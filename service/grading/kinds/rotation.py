@@ -3,6 +3,7 @@
 from service.catalogue import Robot
 from service.catalogue.formulas import ROTATION
 from service.catalogue.parts.rotation import RotationSpec
+from service.grading.diagnosis.given_motion import GivenMotion
 from service.grading.diagnosis.link_products import Chain, chains_of
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
 from service.grading.diagnosis.rotation_steps import Step, explain_steps
@@ -37,11 +38,14 @@ def judge(part: RotationSpec, answer: StudentMatrix, grading: Grading) -> Judged
     def chains(samples: Samples) -> tuple[Chain, ...]:
         return chains_of(exercise, samples) if linked else ()
 
+    def motion(samples: Samples) -> GivenMotion | None:
+        return None if steps else GivenMotion.of(part.id, exercise, samples)
+
     def explanations(case: MatrixCase) -> list[Explanation]:
         return explain_steps(case, steps)
 
     expected = ExpectedMatrix(_expected(part, steps, grading), ROTATION, rigid=True)
-    judged = matrix_rows(answer, expected, grading, chains, explanations)
+    judged = matrix_rows(answer, expected, grading, chains, explanations, motion)
     content = of_rigid(expected.values, part, grading)
     return Judged(judged.rows, content, judged.feedback)
 

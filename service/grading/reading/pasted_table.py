@@ -33,24 +33,28 @@ class PastedRow:
 
 @dataclass(frozen=True, slots=True)
 class PastedTable:
-    """A table's rows in the order of its joints, and the header of each of a, α, d, θ."""
+    """A table's rows in the order of its joints, and the header of each of a, α, d, θ.
+
+    ``is_named`` says that the columns have headers.
+    """
 
     rows: tuple[PastedRow, ...]
     headers: tuple[Header, ...]
     findings: tuple[Finding, ...] = ()
+    is_named: bool = True
 
 
-def read_pasted_table(text: str, reader: Reader) -> PastedTable:
+def read_pasted_table(text: str, reader: Reader, order: Sequence[str] = COLUMNS) -> PastedTable:
     """The rows of a pasted DH table.
 
     Columns go by their headers, in any order; without headers there must be four, or five with
-    the rows' numbers in front, in the order a, α, d, θ. Rows go by their labels, where they have
+    the rows' numbers in front, in ``order``. Rows go by their labels, where they have
     any. Raises GridError where the text is no table, or which column is which cannot be told.
     """
     grid = read_grid(text)
     found = _found_headers(grid.rows[0], reader)
     if found is None:
-        columns, labels, findings = _columns_in_order(grid)
+        columns, labels, findings = _columns_in_order(grid, order)
         body = grid.rows
     else:
         columns, labels, findings = _columns_by_headers(grid.rows[0], found)
@@ -62,12 +66,12 @@ def read_pasted_table(text: str, reader: Reader) -> PastedTable:
     width = len(grid.rows[0]) if found is not None else max(map(len, body))
     rows = tuple(_row(row, columns, width) for row in body)
     if labels is not None:
-        order, more = in_order([row[labels] if labels < len(row) else row[0] for row in body])
-        rows = tuple(rows[i] for i in order)
+        labelled, more = in_order([row[labels] if labels < len(row) else row[0] for row in body])
+        rows = tuple(rows[i] for i in labelled)
         findings = (*findings, *more)
     notes = tuple(map(from_note, grid.notes))
     heads = tuple(header for _, header in columns)
-    return PastedTable(rows, heads, (*notes, *findings))
+    return PastedTable(rows, heads, (*notes, *findings), found is not None)
 
 
 def entries_of(table: PastedTable, reader: Reader) -> list[tuple[Entry, ...]]:
@@ -194,7 +198,7 @@ def _convention_hint(
 
 
 def _columns_in_order(
-    grid: Grid,
+    grid: Grid, order: Sequence[str]
 ) -> tuple[tuple[ColumnOrder, ...], int | None, tuple[Finding, ...]]:
     """The columns of a table without headers."""
     width = max(map(len, grid.rows))
@@ -208,7 +212,7 @@ def _columns_in_order(
             place_of(grid.rows[0]),
         )
     first = 1 if has_labels else 0
-    columns = tuple((first + i, Header(column)) for i, column in enumerate(COLUMNS))
+    columns = tuple((first + order.index(column), Header(column)) for column in COLUMNS)
     message = (
         "The columns have no headers and were read in the order a, α, d, θ. If yours is another, "
         "such as θ, d, a, α in the Robotics Toolbox, put headers above them."
