@@ -80,6 +80,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
             "grading/judging/row_places.py",
             "grading/judging/own_frames/written_table.py",
             f"{DIAGNOSIS}column_order.py",
+            f"{DIAGNOSIS}intended_table.py",
             f"{DIAGNOSIS}joint_numbering.py",
             f"{DIAGNOSIS}table_freedom.py",
             f"{DIAGNOSIS}whole_table.py",

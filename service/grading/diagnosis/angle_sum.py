@@ -92,7 +92,7 @@ def left_out(wrong: WrongSum) -> Hypotheses:
 def constant(wrong: WrongSum) -> Hypotheses:
     """No angle is counted."""
     if wrong.counts and np.ptp(wrong.case.actual) < CONSTANT:
-        hint = f"This angle is a constant, but the direction changes with other angles. {SUMMED}"
+        hint = "This angle is a constant, but it must change when the angles before it change."
         yield Written(wrong.case.actual, finding_on(wrong.case, "joint_variable_missing", hint))
 
 

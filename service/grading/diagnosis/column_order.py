@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from service.catalogue import Joint
 from service.grading.comparison import difference
-from service.grading.diagnosis.joint_numbering import IntendedTable
+from service.grading.diagnosis.intended_table import IntendedTable
 from service.grading.diagnosis.quantity import quantity_of
 from service.grading.diagnosis.wording import SYMBOLS
 from service.grading.feedback import Finding

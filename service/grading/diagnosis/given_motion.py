@@ -13,6 +13,7 @@ from itertools import chain, permutations
 import numpy as np
 
 from service.catalogue import Exercise, FormulaGrid, grid_values
+from service.expressions import Expression
 from service.grading.samples import Samples
 from service.grading.tolerances import EXACT_VALUE
 from service.kinematics.transforms import Matrices, Numbers
@@ -55,24 +56,33 @@ class GivenMotion:
         angles = of_kind["angle"] if len(of_kind["angle"]) <= MAX_TURNS else ()
         return cls(grid, samples.values, angles, of_kind["length"])
 
-    def entries(self, zeros: Iterable[str] = ()) -> Numbers:
-        """The numbers ``(rows, columns, samples)`` with 0 for some symbols."""
-        count = len(next(iter(self.values.values())))
-        values = {**self.values, **{name: np.zeros(count) for name in zeros}}
-        with np.errstate(all="ignore"):
-            return grid_values(self.grid, values, count)
-
     def position(self, zeros: Iterable[str] = ()) -> Numbers:
         """The position ``(n, samples)`` with 0 for some symbols."""
-        entries = self.entries(zeros)
-        return entries[0] if len(entries) == 1 else entries[:3, 3]
+        column = self.grid[0] if len(self.grid) == 1 else [row[3] for row in self.grid[:3]]
+        return np.asarray(self._numbers([column], zeros)[0])
 
     def rotation(self, zeros: Iterable[str] = ()) -> Numbers:
         """The rotation ``(3, 3, samples)`` with 0 for some symbols."""
-        return self.entries(zeros)[:3, :3]
+        return self._numbers([row[:3] for row in self.grid[:3]], zeros)
+
+    def _numbers(self, grid: Sequence[Sequence[Expression]], zeros: Iterable[str]) -> Numbers:
+        count = len(next(iter(self.values.values())))
+        values = {**self.values, **{name: np.zeros(count) for name in zeros}}
+        with np.errstate(all="ignore"):
+            return grid_values(tuple(map(tuple, grid)), values, count)
 
     def part(self, displacement: Displacement, straight: Sequence[str] = ()) -> Numbers:
         """A part of the position, not turned by the angles ``straight``."""
+        key = displacement.lengths, tuple(straight)
+        if key not in self._parts:
+            self._parts[key] = self._part(displacement, straight)
+        return self._parts[key]
+
+    @cached_property
+    def _parts(self) -> dict[tuple[tuple[str, ...], tuple[str, ...]], Numbers]:
+        return {}
+
+    def _part(self, displacement: Displacement, straight: Sequence[str]) -> Numbers:
         others = [name for name in self.lengths if name not in displacement.lengths]
         alone = self.position((*others, *straight))
         # What holds no length is a displacement of its own, in numbers.
@@ -111,8 +121,15 @@ class GivenMotion:
 
     def turned(self, order: Sequence[str]) -> Numbers:
         """The product ``(3, 3, samples)`` of single turns."""
-        turns = [self.rotation([name for name in self.angles if name != angle]) for angle in order]
-        return np.moveaxis(product([np.moveaxis(turn, -1, 0) for turn in turns]), 0, -1)
+        return np.moveaxis(product([self._turns[angle] for angle in order]), 0, -1)
+
+    @cached_property
+    def _turns(self) -> dict[str, Matrices]:
+        """The single turn ``(samples, 3, 3)`` by each angle."""
+        return {
+            angle: np.moveaxis(self.rotation(set(self.angles) - {angle}), -1, 0)
+            for angle in self.angles
+        }
 
     @cached_property
     def steps(self) -> list[Matrices] | None:
@@ -123,14 +140,14 @@ class GivenMotion:
         count = len(next(iter(self.values.values())))
         steps = [np.tile(np.eye(4), (count, 1, 1)) for _ in places]
         for step, angle in zip(steps, self.order, strict=False):
-            others = [name for name in self.angles if name != angle]
-            step[:, :3, :3] = np.moveaxis(self.rotation(others), -1, 0)
+            step[:, :3, :3] = self._turns[angle]
         for displacement in self.displacements:
             place = places.get(frozenset(displacement.angles))
             if place is None:
                 return None
             steps[place][:, :3, 3] = self.part(displacement, self.angles).T
-        return steps if _is_zero(np.moveaxis(product(steps), 0, -1) - self.entries()) else None
+        error = np.moveaxis(product(steps), 0, -1) - self._numbers(self.grid, ())
+        return steps if _is_zero(error) else None
 
 
 def _is_zero(numbers: Numbers) -> bool:

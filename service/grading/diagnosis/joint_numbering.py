@@ -2,27 +2,18 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 from service.catalogue import Joint
 from service.expressions import Vocabulary
 from service.expressions.printing.spelling import Spelling
+from service.grading.diagnosis.intended_table import IntendedTable
 from service.grading.feedback import Finding
 from service.grading.part import Grading
 from service.grading.reading.absent_variables import with_absent_variables
 from service.grading.reading.table import StudentRow, StudentTable, table_values
-from service.kinematics.factors import CellIndex
 
 # What a name stands for by a way of counting: the joint variable that is meant.
 Meanings = Mapping[str, str]
-
-
-class IntendedTable(NamedTuple):
-    """A table without a slip that runs through all of it, and the cells that the slip is in."""
-
-    table: StudentTable
-    finding: Finding
-    cells: frozenset[CellIndex]
 
 
 def by_other_numbering(table: StudentTable, grading: Grading) -> IntendedTable | None:

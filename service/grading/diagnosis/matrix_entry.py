@@ -74,8 +74,8 @@ def sum_of_cosines(case: WrongEntry) -> Formulas:
     """The cosine of a sum was taken to be the sum of the cosines; the sine likewise."""
     finding = Finding(
         "sum_of_cosines",
-        "cos(a + b) is not cos(a) + cos(b), nor is sin(a + b) the sum of the sines: add up the "
-        "angles first.",
+        "cos(a + b) is not cos(a) + cos(b), and sin(a + b) is not sin(a) + sin(b): add the angles "
+        "first.",
     )
     if len(case.sines_and_cosines) > 1:
         yield Rewritten(rewriting.sums_merged(case.tree), finding)
@@ -85,8 +85,8 @@ def product_for_sum_angle(case: WrongEntry) -> Formulas:
     """The shorthand c12 was read as c1 c2, s12 as s1 s2, in all places or for some joints."""
     finding = Finding(
         "product_for_sum_angle",
-        "The shorthand with several joint numbers is the cosine or sine of one angle, the sum of "
-        "the joint angles, and not a product of cosines or sines.",
+        "A cosine with several joint numbers is the cosine of the sum of these joint angles, not a "
+        "product of cosines. It is the same for sines.",
     )
     if len(case.sines_and_cosines) > 1:
         yield Rewritten(rewriting.products_merged(case.tree), finding)
@@ -101,8 +101,8 @@ def relative_angle(case: WrongEntry) -> Formulas:
     """
     finding = Finding(
         "relative_angle",
-        "A joint angle counts from the link before, so the direction of a link further out takes "
-        "the sum of the angles up to it.",
+        "A joint angle is measured from the link before: the direction of a link is the sum of all "
+        "joint angles up to it.",
     )
     for first in sorted(case.turning)[:-1] if case.sines_and_cosines else ():
         summed = rewriting.summed_from(first, case.turning)
@@ -115,7 +115,7 @@ def angle_left_out(case: WrongEntry) -> Formulas:
         finding = Finding(
             "joint_variable_missing",
             f"{case.spelling.name(symbol)} is missing in a sine or cosine: the direction of a link "
-            "takes the sum of all joint angles up to it.",
+            "is the sum of all joint angles up to it.",
         )
         yield from _with_angles_changed(case, rewriting.with_angle(symbol), finding)
 
@@ -126,7 +126,7 @@ def angle_too_many(case: WrongEntry) -> Formulas:
         finding = Finding(
             "joint_variable_extra",
             f"{case.spelling.name(symbol)} does not belong in a sine or cosine here: the direction "
-            "of a link takes the joint angles up to it, and none behind it.",
+            "of a link is the sum of the joint angles up to it, and of none behind it.",
         )
         yield from _with_angles_changed(case, rewriting.without_angle(symbol), finding)
 

@@ -7,6 +7,7 @@ import numpy as np
 from service.catalogue import Joint
 from service.expressions.printing.spelling import PLAIN, spelling_for
 from service.grading.comparison import Match
+from service.grading.diagnosis.quantity import quantity_of
 from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import (
     Hypotheses,
@@ -128,6 +129,17 @@ def joint_variable_extra(case: WrongCell) -> Finding | None:
     )
 
 
+def wrong_quantity(case: WrongCell) -> Finding | None:
+    """An angle where a length is asked for, or a length where an angle is."""
+    found = quantity_of(case.expression.tree)
+    if found not in ("angle", "length") or (found == "angle") == case.angle:
+        return None
+    asked, written = ("an angle", "a length") if case.angle else ("a length", "an angle")
+    return finding_on(
+        case, "wrong_quantity", f"{case.symbol} is {asked}, but {written} is written here."
+    )
+
+
 # --- misconceptions about the constant, where the joint variables are right
 
 
@@ -222,6 +234,7 @@ CHECKS = (
     joint_variable_doubled,
     joint_variable_column,
     joint_variable_extra,
+    wrong_quantity,
 )
 OF_DISTANCE = (distance_left_out, distance_extra)
 OF_ANGLE = (degrees_as_radians, radians_as_degrees, quarter_turn, half_turn)

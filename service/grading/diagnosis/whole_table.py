@@ -104,7 +104,7 @@ def columns_swapped(table: WrittenTable) -> Iterator[RepairedTable]:
         moving = np.abs(table.motion[:, one] - table.motion[:, other]).max(axis=-1) > 0
         for row in (None, *range(len(still))):
             rows = slice(None) if row is None else slice(row, row + 1)
-            finding = partial(_swapped, SYMBOLS[one], SYMBOLS[other], row)
+            finding = partial(exchanged_columns, one, other)
             constants = _exchanged(table.constants, rows, one, other)
             if still[rows].any():
                 yield Repaired(table.changed(constants), finding)
@@ -119,13 +119,14 @@ def _exchanged(cells: Table, rows: slice, one: int, other: int) -> Table:
     return exchanged
 
 
-def _swapped(one: str, other: str, row: int | None) -> Finding:
-    where = "" if row is None else f" in row {row + 1}"
+def exchanged_columns(one: int, other: int) -> Finding:
+    """The finding that two columns stand in each other's places, throughout or in a row."""
+    names = SYMBOLS[one], SYMBOLS[other]
     return Finding(
         "columns_swapped",
-        f"{one} and {other} are exchanged{where}: one is measured along or about x, the other "
-        f"along or about z.",
-        f"Exchange {one} and {other}{where}.",
+        f"{names[0]} and {names[1]} are exchanged: {names[0]} is measured {MEASURED[one]}, "
+        f"{names[1]} {MEASURED[other]}.",
+        f"Exchange {names[0]} and {names[1]}.",
     )
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +56,10 @@ def value_rows(
     return entry_rows(column, found[:, None], slips, grading)
 
 
+# The note on the reading of an entry that says the same as a slip.
+NOTES_ON: Final = {"swapped_atan2": "atan2_order"}
+
+
 @lru_cache(maxsize=64)
 def _right(column: str) -> CellReport:
     """The report on a right entry without a message, as most are."""
@@ -75,7 +80,9 @@ def cell_report(
         findings = (*findings, ROUNDED)
     elif entry.expression is not None and match < Match.ROUNDED:
         verdict = Verdict.INCORRECT
-        findings = (*findings, slip) if slip else findings
+        if slip is not None:
+            told = NOTES_ON.get(slip.code) if grading.visible((slip,)) else None
+            findings = (*(note for note in findings if note.code != told), slip)
     return CellReport(column, verdict, grading.visible(findings), _read(entry, grading))
 
 

@@ -6,7 +6,8 @@ import numpy as np
 
 from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.diagnosis.column_order import in_other_orders
-from service.grading.diagnosis.joint_numbering import IntendedTable, by_other_numbering
+from service.grading.diagnosis.intended_table import IntendedTable, with_exchanged_row
+from service.grading.diagnosis.joint_numbering import by_other_numbering
 from service.grading.diagnosis.table_cell import diagnose_cells
 from service.grading.diagnosis.table_explained import explained, freedom_lost
 from service.grading.feedback import Finding
@@ -61,11 +62,17 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     if (intended := by_other_numbering(answer, grading)) is not None:
         without = _judged_as_read(part, intended.table, grading)
         return _with_slip(intended, without, judged, grading)
-    if answer.reread is None or judged.whole_cost is not None:
+    if judged.whole_cost is not None:
         return judged
+    wrong = _wrong_cells(judged)
     for intended in in_other_orders(answer, grading):
         without = _judged_as_read(part, intended.table, grading)
-        if 3 * _wrong_cells(without) <= _wrong_cells(judged):
+        if 3 * _wrong_cells(without) <= wrong:
+            return _with_slip(intended, without, judged, grading)
+    convention = part.convention if part.convention != "either" else answer.convention
+    if (intended := with_exchanged_row(answer, convention, grading)) is not None:
+        without = _judged_as_read(part, intended.table, grading)
+        if 1 < wrong > _wrong_cells(without):
             return _with_slip(intended, without, judged, grading)
     return judged
 

@@ -80,12 +80,13 @@ class Reader:
         and where the variable of a joint that the robot does not have is a wrong one.
         """
         budget = self.budget
-        is_counted = False
+        counted = 0
         if isinstance(raw, str):
             if not raw.strip():
                 return MISSING
-            if is_counted := len(raw) <= LIMITS.characters:
-                budget.characters -= len(raw)
+            if len(raw) <= LIMITS.characters:
+                counted = len(raw)
+                budget.characters -= counted
         elif raw is None:
             return MISSING
         elif isinstance(raw, bool) or not isinstance(raw, int | float):
@@ -103,7 +104,7 @@ class Reader:
         except ExpressionError as error:
             is_unknown = in_table and error.code in _UNKNOWN_NAMES
             absent = self._in_absent_variables(raw, quantity) if is_unknown else None
-            budget.charge_unreadable(len(raw) if is_counted else 0)
+            budget.charge_unreadable(counted)
             if absent is None:
                 return unreadable(_from_error(error))
             expression = absent

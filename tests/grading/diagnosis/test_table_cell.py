@@ -83,6 +83,7 @@ PAIRS = [
             ("theta", 1, "q1 + q2", "q1"),
             ("theta", 1, "-q1", "q1"),
         ),
+        (table_cell.wrong_quantity, ("d", 1, "90deg", "a1"), ("d", 1, "90", "a1")),
         (table_cell.sign, ("a", 1, "-a1", "a1"), ("a", 1, "-a2", "a1")),
         (table_cell.distance_left_out, ("d", 1, "0", "a1"), ("d", 1, "a2", "a1")),
         (table_cell.distance_extra, ("d", 3, "d3 + a1", "d3"), ("a", 3, "a1", "a2")),
