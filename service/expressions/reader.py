@@ -242,7 +242,7 @@ class _Parsed(NamedTuple):
 def _parsed(text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool) -> _Parsed:
     """The syntax tree of ``text`` and its notes. Raises UnreadableError."""
     notes: list[Note] = []
-    if "=" in text or "≔" in text or r"\coloneqq" in text:
+    if "=" in text or "≔" in text:
         text, note = right_side(text, vocabulary)
         notes += (note,) if note else ()
     characters = normalise(text)
