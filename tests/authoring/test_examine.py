@@ -198,6 +198,12 @@ def test_two_parts_with_one_answer(more: str, make_exercise: Make) -> None:
     assert "again has the same answer as tip" in remark.text
 
 
+def test_four_parts_with_one_answer_are_told_once(make_exercise: Make) -> None:
+    parts = "".join(position(name) for name in ("tip", "again", "third", "fourth"))
+    remark = only(told(make_exercise, HEAD + ROBOT + POSE + parts + CHECKS), Level.WARNING)
+    assert "again, third, fourth have the same answer as tip" in remark.text
+
+
 @pytest.mark.parametrize(
     "more", ["to = 1", "home = true", 'coordinates = "xy"', 'from = "tool"\nto = "base"']
 )

@@ -151,12 +151,12 @@ def test_an_error_is_remembered_and_raised_anew(arm: Vocabulary) -> None:
 
 
 def test_an_error_says_what_is_wrong(arm: Vocabulary) -> None:
-    with pytest.raises(ExpressionError, match="ends in `\\+`"):
+    with pytest.raises(ExpressionError, match="after the `\\+` at the end"):
         read("1 +", arm)
 
 
 def test_a_detached_index_is_quoted_as_it_stands(arm: Vocabulary) -> None:
-    message = "In theta 1 a name and its index must stand together, without a space."
+    message = "Write the name and its index without a space: theta1."
     with pytest.raises(ExpressionError, match=message):
         read("l1 + theta 1", arm)
 

@@ -45,8 +45,10 @@ class _Normaliser(CharacterWriter):
             chunk = _CHUNK.match(self.source, position, end)
             if chunk is None:
                 position = self._step(position, end, depth)
-            elif self.commas and self.commas[-1].start() < chunk.end():
-                comma = self.commas.pop()
+            elif self.commas and (comma := self.commas[-1]).start() < chunk.end():
+                self.commas.pop()
+                if comma.start() < position:
+                    continue
                 self._copy(position, comma.start())
                 position = self._emit(".", *comma.span())
             else:

@@ -23,7 +23,7 @@ _LEFT: Final = re.compile(
         (?: {_SCRIPT}\s*+ ){{0,2}}
         (?P<name> {_STYLE}\{{\s*{_LETTERS}\s*\}} | {_STYLE}[A-Za-z] | {_LETTERS} )?
         (?: \s*+{_SCRIPT} | [₀-₉]+ | ['’′*] | \.[A-Za-z]{{1,8}} ){{0,3}}
-        (?P<brackets> (?: \s*+[(\[]\s*+[\w\s,:\\]{{1,32}}[)\]] ){{0,2}} )
+        (?P<brackets> (?: \s*+[(\[{{]\s*+[\w\s,:\\]{{1,32}}[)\]}}] ){{0,2}} )
         \s*+ &? \s*+ (?: :?==? | ≔ | \\coloneqq(?![A-Za-z]) )
     )
     """,
@@ -32,7 +32,7 @@ _LEFT: Final = re.compile(
 _EQUALS: Final = re.compile(r"=|≔|\\coloneqq(?![A-Za-z])|≈|≡|\\(?:approx|equiv)(?![A-Za-z])|[<>≤≥]")
 _WORD: Final = re.compile(r"[A-Za-z]+[0-9]*")
 # Names in brackets, which may be the factors of a product. The time is none.
-_OF_NAMES: Final = re.compile(r"[(\[]\s*+(?!t\s*+\))[^0-9\s]")
+_OF_NAMES: Final = re.compile(r"[(\[{]\s*+(?!t\s*+\))[^0-9\s]")
 
 
 def right_side(source: str, vocabulary: Vocabulary) -> tuple[str, Note | None]:

@@ -4,6 +4,7 @@ import re
 from typing import Final, Literal, NamedTuple
 
 from service.expressions.characters import greek
+from service.expressions.parsing.letter_case import split_in_other_case
 from service.expressions.parsing.words import Piece, split
 from service.expressions.vocabulary.symbols import Vocabulary
 
@@ -41,7 +42,8 @@ def indexed(
     number = int(match[1] or match[2] or match[3])
     if style == "[":
         number += _first(run, vocabulary)
-    pieces = split(f"{run}{number}", vocabulary)
+    name = f"{run}{number}"
+    pieces = split(name, vocabulary) or split_in_other_case(name, vocabulary)
     if pieces is not None and pieces[-1].kind not in {"symbol", "invalid_shorthand", "shorthand"}:
         pieces = None
     return Indexed(pieces, style, str(number), match.end())

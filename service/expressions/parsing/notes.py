@@ -18,6 +18,9 @@ _MARKER: Final = "The * behind the joint variable was read as its marker, not as
 _PRODUCT: Final = (
     "The * behind the joint variable was read as a product; if it marks the variable, leave it out."
 )
+_SHORT: Final = {
+    "c": ("cosine", "cos"), "s": ("sine", "sin"), "C": ("cosine", "cos"), "S": ("sine", "sin"),
+}  # fmt: skip
 
 
 class WordNotes:
@@ -51,6 +54,16 @@ class WordNotes:
         if piece.ambiguous or self.source[a] in "CS":
             names = "+".join(symbol.name for symbol in piece.symbols)
             self._add("shorthand", f"This was read as {piece.word}({names}).", (a, b))
+
+    def product(self, letter: str, angle: Symbol, a: int, b: int) -> None:
+        """Note a product that looks like the cosine or sine of an angle."""
+        function = _SHORT.get(letter)
+        if function is not None:
+            message = (
+                f"This was read as {letter}*{angle.name}. For the {function[0]}, write "
+                f"{function[1]}({angle.name})."
+            )
+            self._add("shorthand", message, (a, b))
 
     def other_capitals(self, name: str, a: int, b: int) -> None:
         """Note l1 where only L1 is declared."""

@@ -1,6 +1,8 @@
 """Words -> tokens: names, functions with their powers, units, indices in brackets."""
 
 import re
+from dataclasses import replace
+from itertools import pairwise
 from typing import Final
 
 from service.expressions.errors import UnreadableError
@@ -39,6 +41,8 @@ class WordLexer(TokenWriter):
             if self._is_float_suffix(run, start):
                 return end
             pieces, end = self._unsplit(run, start, end)
+        if len(pieces) > 1:
+            self._note_products(run, pieces, start)
         for piece in pieces:
             if piece.kind == "symbol":
                 a, b = self._span(start + piece.start, start + piece.end)
@@ -48,6 +52,14 @@ class WordLexer(TokenWriter):
             else:
                 end = self._piece(piece, start, end, last=piece is pieces[-1])
         return end
+
+    def _note_products(self, run: str, pieces: tuple[Piece, ...], start: int) -> None:
+        """Note cβ where c is a symbol: the product, and not the cosine."""
+        for letter, angle in pairwise(pieces):
+            name = run[letter.start : letter.end]
+            if letter.kind == angle.kind == "symbol" and angle.symbols[0].kind == "angle":
+                a, b = self._span(start + letter.start, start + angle.end)
+                self.notes.product(name, angle.symbols[0], a, b)
 
     def _piece(self, piece: Piece, start: int, end: int, *, last: bool) -> int:
         """Emit a piece that is no symbol, of a run that begins at ``start``.
@@ -124,7 +136,7 @@ class WordLexer(TokenWriter):
         place = self._span(start + last.start, found.end)
         self.indices.append((found, stem, place))
         self.notes.index(found.style, symbol, place)
-        stretched = Piece(last.kind, last.start, found.end - start, symbols=last.symbols)
+        stretched = replace(last, end=found.end - start)
         return (*found.pieces[:-1], stretched), found.end
 
     def _check_indices(self) -> None:

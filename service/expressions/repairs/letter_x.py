@@ -11,5 +11,5 @@ def repair(failure: Failure) -> Repair:
     behind = failure.source[end - len(run) + 1 :].strip()
     if run[0] not in "xX" or not behind or failure.details["before"] not in OPERAND_ENDS:
         return None
-    message, span = "The letter x is a name; for a product write * instead.", (start, start + 1)
+    message, span = "The letter x is a name. Write * for a product.", (start, start + 1)
     return error(failure, "letter_x", message, failure.replaced("*", span), span)

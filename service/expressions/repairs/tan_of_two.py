@@ -19,5 +19,5 @@ def repair(failure: Failure) -> Repair:
         return None
     if failure.cause == "grammar" and failure.terminal() != "COMMA":
         return None
-    message, span = "The angle of a point (x, y) is atan2(y, x).", match.span()
+    message, span = "Write the angle of a point (x, y) as atan2(y, x).", match.span()
     return error(failure, "tan_of_two", message, failure.replaced("atan2", span), span)

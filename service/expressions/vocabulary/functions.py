@@ -47,6 +47,7 @@ MODULES: Final = frozenset({
 # the number of their values; 0 for any number.
 BUILT: Final = {
     "sec": 1, "csc": 1, "cot": 1, "pow": 2, "hypot": 2, "quotient": 2, "sum": 0, "product": 0,
+    "value": 1,
 }  # fmt: skip
 # Constants of C: a root, or π over a number.
 CONSTANTS: Final = {
@@ -62,9 +63,10 @@ ALONE: Final[dict[str, tuple[PieceKind, str]]] = {
             "sin": ("sen", "sinf", "SEN"), "cos": ("cosf",), "tan": ("tanf",),
             "asin": ("arcsen", "asen", "asinf"), "acos": ("acosf",), "atan": ("atanf",),
             "atan2": ("atan2f",), "sqrt": ("sqrtf",), "abs": ("fabs", "fabsf"),
-            "pow": ("pow", "powf", "Power", "Pow", "POWER"), "hypot": ("hypot",),
+            "pow": ("pow", "powf", "Power", "Pow", "POWER", "power"), "hypot": ("hypot",),
             "quotient": ("Rational", "Divide"), "sum": ("Plus", "Add"),
             "product": ("Times", "Mul"),
+            "value": ("sym", "vpa", "simplify", "Simplify", "expand", "Expand", "float", "double"),
         }.items()
         for spelling in spellings
     },

@@ -206,8 +206,8 @@ def quarter_turn(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         "quarter_turn",
-        f"{case.symbol} is not right: compare the two axes that it is measured between, in the "
-        f"home configuration.",
+        f"{case.symbol} is not right: compare the directions of the two axes that it is measured "
+        f"between{', in the home configuration' if case.joint else ''}.",
         otherwise="It is off by a quarter turn (90°).",
     )
     for turn in (np.pi / 2, -np.pi / 2):
@@ -219,7 +219,8 @@ def half_turn(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         "half_turn",
-        f"{case.symbol} is not right: check which way the axes point that it is measured between.",
+        f"{case.symbol} is not right: check the directions of the two axes that it is measured "
+        f"between.",
         otherwise="It is off by half a turn (180°).",
     )
     yield Written(case.constants[1] + np.pi, finding, tolerance=ROUNDED_TURN)

@@ -9,9 +9,9 @@ from service.grading.reading import column_headers
 from service.grading.reading.column_headers import METRES, QUANTITIES, Header, is_wordy, read_header
 from service.grading.reading.entry import Entry, Reader, from_note, unreadable
 from service.grading.reading.length_units import in_unit
-from service.grading.reading.pasted import place_of, placed, quoted
+from service.grading.reading.pasted import pasted_grid, place_of, placed, quoted
 from service.grading.reading.row_labels import in_order, is_label
-from service.grids import Grid, GridCell, GridError, read_grid
+from service.grids import Grid, GridCell, GridError
 from service.kinematics.chain import COLUMNS
 
 # Names for these columns, as they are written in a message.
@@ -51,14 +51,18 @@ def read_pasted_table(text: str, reader: Reader, order: Sequence[str] = COLUMNS)
     the rows' numbers in front, in ``order``. Rows go by their labels, where they have
     any. Raises GridError where the text is no table, or which column is which cannot be told.
     """
-    grid = read_grid(text)
+    grid = pasted_grid(text, reader)
+    findings: tuple[Finding, ...] = ()
+    if _has_parameters_in_rows(grid):
+        grid, findings = _turned(grid)
     found = _found_headers(grid.rows[0], reader)
     if found is None:
-        columns, labels, findings = _columns_in_order(grid, order)
+        columns, labels, more = _columns_in_order(grid, order)
         body = grid.rows
     else:
-        columns, labels, findings = _columns_by_headers(grid.rows[0], found)
+        columns, labels, more = _columns_by_headers(grid.rows[0], found)
         body = grid.rows[1:]
+    findings = (*findings, *more)
     if not body:
         raise GridError(
             "no_rows", "There are headers here, but no rows below them.", place_of(grid.rows[0])
@@ -72,6 +76,22 @@ def read_pasted_table(text: str, reader: Reader, order: Sequence[str] = COLUMNS)
     notes = tuple(map(from_note, grid.notes))
     heads = tuple(header for _, header in columns)
     return PastedTable(rows, heads, (*notes, *findings), found is not None)
+
+
+def _has_parameters_in_rows(grid: Grid) -> bool:
+    """Whether a, α, d and θ are the names of rows; a row of the joints' numbers may stand above."""
+    rows = grid.rows[len(grid.rows) - len(COLUMNS) :]
+    if len(grid.rows) > len(COLUMNS) + 1 or len({len(row) for row in grid.rows}) > 1:
+        return False
+    headers = [read_header(row[0].text) for row in rows]
+    return sorted(header.column for header in headers if header) == sorted(COLUMNS)
+
+
+def _turned(grid: Grid) -> tuple[Grid, tuple[Finding, ...]]:
+    """The table with its rows as columns, and the note on it."""
+    message = "The parameters stand in rows, so each column was read as the row of a joint."
+    note = _note("parameters_in_rows", message, grid.rows[-len(COLUMNS)][0])
+    return replace(grid, rows=tuple(zip(*grid.rows, strict=True))), (note,)
 
 
 def entries_of(table: PastedTable, reader: Reader) -> list[tuple[Entry, ...]]:

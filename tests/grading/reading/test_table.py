@@ -1,4 +1,4 @@
-"""Empty cells and dashes in a table."""
+"""Empty cells and dashes in a table, and parameters that stand in its rows."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -89,3 +89,40 @@ def test_a_row_in_which_nothing_is_written_is_not_zeros(catalogue: Mapping[str, 
     assert set(not_correct(report).values()) == {Verdict.MISSING}
     empty = part(handed_in(as_zero(catalogue["scara"]), {"table": table([("",) * 4] * 4)}), "table")
     assert empty.points == 0
+
+
+PARAMETERS = {
+    label: [row[j] for row in SCARA] for j, label in enumerate(("a", "alpha", "d", "theta"))
+}
+
+
+def test_parameters_in_rows(catalogue: Mapping[str, Exercise]) -> None:
+    lines = [[label, *cells] for label, cells in PARAMETERS.items()]
+    numbered = [["joint", "1", "2", "3", "4"], *reversed(lines)]
+    for rows in (lines, numbered):
+        for pasted in ("\n".join(",".join(row) for row in rows), "\n".join(map("\t".join, rows))):
+            report = graded(catalogue["scara"], pasted)
+            assert full_marks(report)
+            assert [message.code for message in report.feedback] == ["parameters_in_rows"]
+        assert full_marks(graded(catalogue["scara"], rows))
+        assert full_marks(graded(catalogue["scara"], {"rows": rows}))
+
+
+def test_a_list_for_each_parameter(catalogue: Mapping[str, Exercise]) -> None:
+    assert full_marks(graded(catalogue["scara"], PARAMETERS))
+    greek = dict(zip(("θ_i", "d_i", "α_i", "a_i"), reversed(PARAMETERS.values()), strict=True))
+    assert full_marks(graded(catalogue["scara"], greek))
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        {**PARAMETERS, "d": ["0"]},
+        {"a": [], "alpha": [], "d": [], "theta": []},
+        {name: cells for name, cells in PARAMETERS.items() if name != "d"},
+        [["a", "a1"], ["alpha", "0", "0"], ["d", "0"], ["theta", "theta1"]],
+    ],
+)
+def test_lists_that_make_no_table(catalogue: Mapping[str, Exercise], answer: object) -> None:
+    report = graded(catalogue["scara"], answer)
+    assert report.points == 0
