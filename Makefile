@@ -66,6 +66,9 @@ policies: $(dev) ## grade tables of ROBOTS= unseen robots under each policy, 20 
 clients: $(dev) ## lint the OpenAPI document and use clients that are generated from it (npx, network)
 	$(python) -m tests.clients
 
+slips: $(dev) ## spoil the poses of all robots by each single slip of the table: is it named?
+	$(python) -m tests.pose_slips --show
+
 # Only pins that pyproject.toml no longer allows are changed; `make lock UPGRADE=--upgrade` takes the newest.
 # One resolution serves every Python and platform; later files repeat the pins of earlier ones.
 compile = "$$tmp/bin/python" -m uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \

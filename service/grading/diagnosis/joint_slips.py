@@ -1,16 +1,17 @@
 """Slips in the joint variables and the lengths of a robot, however the robot is described."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import cache
 from itertools import combinations
 from typing import Final
 
 import numpy as np
 
 from service.catalogue import Exercise, Joint
-from service.catalogue.screw_robot import Reference
 from service.grading.diagnosis.slip import CellChange, Slip, SymbolChange
 from service.grading.samples import Samples
 from service.grading.tolerances import SAME_MOTION
+from service.kinematics.transforms import Numbers
 
 Axis = Callable[[Joint], str]
 # The longest robots have a handful of lengths; the pairs of more are not tried.
@@ -168,13 +169,17 @@ def _other_length(right: str, written: str) -> Slip:
 
 
 def axis_direction(exercise: Exercise, samples: Samples) -> Axis:
-    """How the axis of a joint points at home, as advice; worked out when it is asked for."""
+    """How the axis of a joint points at home, as advice; worked out when it is first asked for."""
+
+    @cache
+    def screws() -> Numbers:
+        assert exercise.reference is not None
+        return exercise.reference.screws(samples.values, samples.count)[:, 0]
 
     def direction(joint: Joint) -> str:
-        robot = exercise.reference
-        assert robot is not None
-        first = robot.joints[0].index - 1
-        cosine = _cosine_with_base(robot, joint, samples)
+        first = exercise.joints[0].index - 1
+        screw = screws()[exercise.joints.index(joint)]
+        cosine = screw[5] if joint.prismatic else screw[2]
         verb = "slide along" if joint.prismatic else "turn about"
         if cosine < -1 + SAME_MOTION:
             return f"its axis points opposite to z{first}."
@@ -183,9 +188,3 @@ def axis_direction(exercise: Exercise, samples: Samples) -> Axis:
         return f"look which way the axis points that it must {verb}."
 
     return direction
-
-
-def _cosine_with_base(robot: Reference, joint: Joint, samples: Samples) -> float:
-    screw = robot.screws(samples.values, samples.count)[robot.joints.index(joint), 0]
-    axis = screw[3:] if joint.prismatic else screw[:3]
-    return float(axis[2])
