@@ -51,7 +51,9 @@ class Template:
 
     @cached_property
     def _pattern(self) -> re.Pattern[str]:
-        return re.compile(".*?".join(map(re.escape, self.pieces)).strip(), re.DOTALL)
+        # Before the escape: a blank at the end would leave its backslash behind.
+        pieces = GAP.join(self.pieces).strip().split(GAP)
+        return re.compile(".*?".join(map(re.escape, pieces)), re.DOTALL)
 
 
 def templates_in(files: Mapping[str, str]) -> list[Template]:
