@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterator
 from typing import Final
 
+from service.grids.grid import too_many_matrices
 from service.grids.latex import (
     ARGUMENTS,
     BEGIN,
@@ -16,6 +17,7 @@ from service.grids.latex import (
     other_end,
     without_comments,
 )
+from service.grids.limits import GRID_LIMITS
 from service.grids.program_text import text_around
 from service.grids.source_text import SourceText
 
@@ -46,7 +48,10 @@ def several(source: SourceText) -> list[tuple[SourceText, SourceText]]:
     source = without_comments(source)
     found: list[tuple[SourceText, SourceText]] = []
     behind = 0
-    for start, end in _innermost(source):
+    innermost = _innermost(source)
+    if len(innermost) > GRID_LIMITS.rows:
+        raise too_many_matrices(source.whole)
+    for start, end in innermost:
         front = source.cut(behind, start)
         if found:
             _check_behind(front)

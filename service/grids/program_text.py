@@ -117,7 +117,7 @@ def without_remarks(source: SourceText) -> SourceText:
     start = i = 0
     quote = ""
     last = max(map(text.rfind, _COMMENTS.values()))
-    while i < len(text):
+    while i < len(text) and len(pieces) < 2 * GRID_LIMITS.separators:
         letter = text[i]
         if quote:
             if letter == "\\":

@@ -6,10 +6,11 @@ r"""Several matrices in one pasted text, each with the name in front of it.
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import Final
 
 from service.grids import latex, latex_list
-from service.grids.grid import Grid, GridError
+from service.grids.grid import Grid, GridError, too_many_matrices
 from service.grids.limits import GRID_LIMITS
 from service.grids.lists import lines_of
 from service.grids.pairs import CLOSES, split, strict_pairs
@@ -35,6 +36,8 @@ _PRODUCT: Final = re.compile(
 _PROSE: Final = re.compile(r"[^\W\d]{0,20}(?:[ \n,.:;]{1,3}[^\W\d]{1,20}){0,40}")
 # A list of matrices stands in the brackets of a list, and these in those of a function.
 _NESTING: Final = 3
+# Each row of each matrix may have brackets of its own.
+_MOST_GROUPS: Final = GRID_LIMITS.rows**2
 _GROUP: Final = re.compile(
     rf"(?:(?<![\w.])(?P<maker>[A-Za-z_][\w.]{{0,60}})[ \t]*)?[\[({{]{_HIDDEN}*[\])}}]"
 )
@@ -60,11 +63,7 @@ def read_grids(text: str) -> tuple[NamedGrid, ...]:
     source = pasted_source(text, named=True)
     pieces = latex_list.several(source) if latex.FORMAT.matches(source.text) else _several(source)
     if len(pieces) > GRID_LIMITS.rows:
-        raise GridError(
-            "too_many_matrices",
-            f"This has {len(pieces)} matrices; at most {GRID_LIMITS.rows} are read.",
-            source.whole,
-        )
+        raise too_many_matrices(source.whole)
     found = [NamedGrid(name, _read(piece)) for name, piece in pieces]
     return tuple(each for i, each in enumerate(found) if not _is_made_later(each, found[i + 1 :]))
 
@@ -163,9 +162,10 @@ def _listed(content: SourceText) -> list[SourceText]:
 def _groups(content: SourceText) -> list[SourceText]:
     """The brackets in a row, with the functions they are handed to; none beside other text."""
     masked = _masked(content)
-    if _GROUP.sub("", masked).strip(TAIL):
+    groups = list(islice(_GROUP.finditer(masked), _MOST_GROUPS + 1))
+    if len(groups) > _MOST_GROUPS or _GROUP.sub("", masked).strip(TAIL):
         return []
-    return [content.cut(*group.span()) for group in _GROUP.finditer(masked)]
+    return [content.cut(*group.span()) for group in groups]
 
 
 def _content(group: SourceText) -> SourceText:

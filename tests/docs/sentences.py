@@ -32,7 +32,8 @@ _READING: Final = ("expressions/", "grids/", "grading/")
 _NO_SENTENCES: Final = frozenset(
     {
         "CSV with semicolons", "rows with semicolons", "Judged | None", "end effector",
-        "joint variable", "not applicable", "see above", "turns in steps",
+        "joint variable", "not applicable", "GivenMotion | None", "Reread | None",
+        "drawn matrix", "see above", "turns in steps",
         "exercise … has no part …; it has …", "exercise … has no part …", "exercise … has no robot",
         "part … has no formulas",
     }

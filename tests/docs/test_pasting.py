@@ -8,6 +8,7 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading.reading.column_headers import read_header
+from service.grading.reading.work_budget import MAX_PASTED
 from service.grids import GRID_LIMITS, GridError, read_grid
 from tests.grading.support.submitting import full_marks, handed_in, part
 
@@ -58,5 +59,5 @@ def test_the_headers_of_the_page() -> None:
 
 
 def test_the_limits_of_the_page() -> None:
-    assert f"{GRID_LIMITS.characters:,} characters" in PAGE
+    assert f"{GRID_LIMITS.characters:,} characters ({MAX_PASTED:,} in all texts" in PAGE
     assert f"{GRID_LIMITS.rows - 1} rows and a header, {GRID_LIMITS.columns} columns" in PAGE

@@ -86,10 +86,11 @@ def axes_named(convention: Convention) -> tuple[str, str]:
 def violated(transform: Matrices, convention: Convention, length_scale: float) -> list[Finding]:
     """The findings on the conditions that a transform does not meet; none where it has a row."""
     x, z = axes_named(convention)
-    entry = "row 3, column 1" if convention is Convention.STANDARD else "row 1, column 3"
+    row_of_entry, column = (3, 1) if convention is Convention.STANDARD else (1, 3)
     perpendicular = Finding(
         "dh_not_perpendicular",
-        f"Check the first DH condition: is {x} perpendicular to {z}? Look at the entry in {entry}.",
+        f"Check the first DH condition: is {x} perpendicular to {z}? Look at the entry in row "
+        f"{row_of_entry}, column {column}.",
         f"It is not 0, so that {x} is not perpendicular to {z} and there is no row.",
     )
     intersecting = Finding(

@@ -15,9 +15,9 @@ from service.grading.reading.entry import (
     from_note,
     unreadable,
 )
-from service.grading.reading.pasted import from_grid_error, place_of, placed
+from service.grading.reading.pasted import from_grid_error, pasted_grid, place_of, placed
 from service.grading.samples import Samples
-from service.grids import Grid, GridCell, GridError, read_grid
+from service.grids import Grid, GridCell, GridError
 from service.kinematics.transforms import Numbers
 
 Quantities = Sequence[Sequence[Kind]]
@@ -115,7 +115,7 @@ def _unreadable_row(finding: Finding | None, cells: Sequence[object]) -> list[En
 
 def _pasted(text: str, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
     try:
-        grid = read_grid(text)
+        grid = pasted_grid(text, reader)
     except GridError as error:
         raise UnreadableAnswerError(from_grid_error(error)) from error
     return _of_grid(grid, quantities, reader)

@@ -14,8 +14,8 @@ from service.grading.reading.matrix import (
     unreadable_matrix,
 )
 from service.grading.reading.matrix_names import indices_of, places_of
-from service.grading.reading.pasted import from_grid_error, quoted
-from service.grids import Grid, GridError, NamedGrid, read_grids
+from service.grading.reading.pasted import from_grid_error, pasted_grids, quoted
+from service.grids import Grid, GridError, NamedGrid
 
 
 def read_matrices(
@@ -29,20 +29,20 @@ def read_matrices(
     """
     if not text.strip():
         return [matrix_of_entries([], quantities, reader) for _ in labels]
-    grids, notes = grids_in_order(text, labels)
+    grids, notes = grids_in_order(text, labels, reader)
     matrices = [_matrix(grid, quantities, reader) for grid in grids]
     return [_with_notes(matrices[0], notes), *matrices[1:]]
 
 
 def grids_in_order(
-    text: str, labels: Sequence[str]
+    text: str, labels: Sequence[str], reader: Reader
 ) -> tuple[list[Grid | GridError | None], list[Finding]]:
     """The grid for each label, or why it cannot be read, or None; and notes on the order.
 
     Raises UnreadableAnswerError as ``read_matrices`` does.
     """
     try:
-        grids = read_grids(text)
+        grids = pasted_grids(text, reader)
     except GridError as error:
         raise UnreadableAnswerError(from_grid_error(error)) from error
     errors = [each.grid for each in grids if isinstance(each.grid, GridError)]

@@ -9,9 +9,9 @@ from service.grading.reading import column_headers
 from service.grading.reading.column_headers import METRES, QUANTITIES, Header, is_wordy, read_header
 from service.grading.reading.entry import Entry, Reader, from_note, unreadable
 from service.grading.reading.length_units import in_unit
-from service.grading.reading.pasted import place_of, placed, quoted
+from service.grading.reading.pasted import pasted_grid, place_of, placed, quoted
 from service.grading.reading.row_labels import in_order, is_label
-from service.grids import Grid, GridCell, GridError, read_grid
+from service.grids import Grid, GridCell, GridError
 from service.kinematics.chain import COLUMNS
 
 # Names for these columns, as they are written in a message.
@@ -51,7 +51,7 @@ def read_pasted_table(text: str, reader: Reader, order: Sequence[str] = COLUMNS)
     the rows' numbers in front, in ``order``. Rows go by their labels, where they have
     any. Raises GridError where the text is no table, or which column is which cannot be told.
     """
-    grid = read_grid(text)
+    grid = pasted_grid(text, reader)
     findings: tuple[Finding, ...] = ()
     if _has_parameters_in_rows(grid):
         grid, findings = _turned(grid)

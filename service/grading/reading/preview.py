@@ -10,10 +10,10 @@ from service.expressions.errors import Span
 from service.grading.feedback import Finding, UnreadableAnswerError
 from service.grading.reading.entry import Entry, Reader
 from service.grading.reading.matrix_list import grids_in_order
-from service.grading.reading.pasted import placed
+from service.grading.reading.pasted import pasted_grid, placed
 from service.grading.reading.pasted_table import read_pasted_table, table_entry
 from service.grading.samples import draw
-from service.grids import Grid, GridCell, GridError, read_grid
+from service.grids import Grid, GridCell, GridError
 from service.kinematics.chain import COLUMNS
 
 
@@ -83,7 +83,7 @@ def preview_pasted(
             return _table(text, reader)
         if isinstance(spec, LinkTransformsSpec):
             return _matrices(text, exercise.robot.tables[spec.convention].labels, reader)
-        grid = read_grid(text)
+        grid = pasted_grid(text, reader)
         quantity: Kind = "angle" if spec.pasted_as == "angles" else "number"
         return PastedPreview(_rows(grid, quantity, reader), grid.notes)
     except GridError as error:
@@ -113,7 +113,7 @@ def _table(text: str, reader: Reader) -> PastedPreview:
 
 def _matrices(text: str, labels: Sequence[str], reader: Reader) -> PastedPreview:
     """The rows of all matrices, with labels such as A2.3."""
-    grids, findings = grids_in_order(text, labels)
+    grids, findings = grids_in_order(text, labels, reader)
     rows: list[tuple[CellPreview, ...]] = []
     notes = list(_notes(findings))
     for label, grid in zip(labels, grids, strict=True):

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import TypeAlias
 
 import numpy as np
@@ -16,6 +15,7 @@ from service.grading.reading.entry import Entry, Reader, entry_values, unreadabl
 from service.grading.reading.pasted import from_grid_error
 from service.grading.reading.pasted_table import PastedTable, entries_of, read_pasted_table
 from service.grading.reading.table_json import canonical_table, has_unnamed_columns
+from service.grading.reading.work_budget import WorkBudget
 from service.grading.report import Severity, Verdict
 from service.grading.samples import Samples
 from service.grids import GridError
@@ -115,7 +115,13 @@ def read_table(
     """
     if isinstance(answer, str):
         answer = {"rows": answer}
-    reread = partial(read_table, answer, reader, empty_is_zero=empty_is_zero)
+    written = answer
+
+    def reread(other: Sequence[str]) -> StudentTable:
+        # The cells are known by now; what they cost must not be missing for the parts that follow.
+        afresh = replace(reader, budget=WorkBudget())
+        return read_table(written, afresh, other, empty_is_zero=empty_is_zero)
+
     is_unnamed = has_unnamed_columns(answer)
     answer = canonical_table(answer, order)
     if isinstance(answer, Mapping) and isinstance(answer.get("rows"), str):

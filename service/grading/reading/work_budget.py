@@ -14,17 +14,23 @@ MAX_REPAIRS = 12
 # A text of so many characters takes one repair more for each further so many.
 CHARACTERS_PER_REPAIR = 250
 
+# Pasted texts are cut into cells, whose characters are counted once more when they are read. The
+# longest text leaves half as much for the other parts.
+MAX_PASTED = 36_000
+
 
 @dataclass(slots=True)
 class WorkBudget:
     """The work left for a submission: one object for all its parts, pasted texts and units.
 
     ``characters`` counts those that may still be read, ``repairs`` the unreadable texts for which
-    a repaired one may still be looked for.
+    a repaired one may still be looked for. ``pasted`` counts the characters of texts that may
+    still be cut into cells.
     """
 
     characters: int = MAX_CHARACTERS
     repairs: int = MAX_REPAIRS
+    pasted: int = MAX_PASTED
 
     def charge_unreadable(self, characters: int) -> None:
         """Count a text that could not be read, whose characters were counted once before."""
