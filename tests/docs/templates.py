@@ -51,7 +51,10 @@ class Template:
 
     @cached_property
     def _pattern(self) -> re.Pattern[str]:
-        return re.compile(".*?".join(map(re.escape, self.pieces)).strip(), re.DOTALL)
+        first, *rest = self.pieces
+        pieces = [first.lstrip(), *rest]
+        pieces[-1] = pieces[-1].rstrip()
+        return re.compile(".*?".join(map(re.escape, pieces)), re.DOTALL)
 
 
 def templates_in(files: Mapping[str, str]) -> list[Template]:

@@ -14,7 +14,7 @@ from service.catalogue import Exercise, shipped_folder
 from service.expressions import LIMITS, read
 from service.solutions.algebra import Algebra
 from tests.grading.support.submitting import full_marks, handed_in
-from tests.solutions.prints import PENDING, prints, refused
+from tests.solutions.prints import prints, refused
 from tests.solutions.solved import solved
 
 IDS = sorted(file.stem for file in shipped_folder().glob("*.toml"))
@@ -82,7 +82,7 @@ def test_the_model_solution_as_sympy_prints_it(
 
 
 # So many prints of each exercise, others for each, in a fixed choice.
-SAMPLE = 25
+SAMPLE = 12
 
 
 @pytest.mark.parametrize("exercise_id", IDS)
@@ -90,9 +90,7 @@ def test_matrices_and_link_transforms_as_programs_print_them(
     exercise_id: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     exercise = catalogue[exercise_id]
-    found = [each for each in prints(exercise) if not any(name in each.name for name in PENDING)]
+    found = list(prints(exercise))
     chosen = Random(exercise_id).sample(found, min(SAMPLE, len(found)))
     reasons = {each.name: refused(each, exercise) for each in chosen}
-    # The limits of the reader of expressions are its own matter.
-    wrong = {name: why for name, why in reasons.items() if why and "too_long" not in why}
-    assert wrong == {}
+    assert {name: why for name, why in reasons.items() if why} == {}
