@@ -31,8 +31,14 @@ _READING: Final = ("expressions/", "grids/", "grading/")
 # Strings of two words that are no part of a message.
 _NO_SENTENCES: Final = frozenset(
     {
+<<<<<<< HEAD
         "CSV with semicolons", "rows with semicolons", "drawn matrix", "Judged | None",
         "end effector", "joint variable", "not applicable", "see above", "turns in steps",
+=======
+        "CSV with semicolons", "rows with semicolons", "Judged | None", "end effector",
+        "joint variable", "not applicable", "GivenMotion | None", "Reread | None",
+        "drawn matrix", "see above", "turns in steps",
+>>>>>>> main
         "exercise … has no part …; it has …", "exercise … has no part …", "exercise … has no robot",
         "part … has no formulas",
     }

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import combinations
+from typing import Final
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from service.grading.tolerances import SAME_MOTION
 Axis = Callable[[Joint], str]
 # The longest robots have a handful of lengths; the pairs of more are not tried.
 MAX_LENGTHS = 12
+HOME_POSITION: Final = "home_position"
 
 
 def joint_slips(moved: Sequence[Joint], joints: Sequence[Joint], axis: Axis) -> Iterator[Slip]:
@@ -104,7 +106,7 @@ def home_slip(joints: Sequence[Joint]) -> Iterator[Slip]:
     """The answer was worked out for the home configuration."""
     if len(joints) > 1:
         yield Slip(
-            "home_position",
+            HOME_POSITION,
             "all joints stand in their home position",
             "the answer must change with the joints.",
             symbols=tuple(SymbolChange(each.variable, each.variable, 0.0) for each in joints),
@@ -128,7 +130,7 @@ def length_slips(lengths: Sequence[str], alone: Iterable[str] = ()) -> Iterator[
 def _length_sign(length: str) -> Slip:
     return Slip(
         "sign",
-        f"{{{length}:a length}} has the wrong sign",
+        f"the length {{{length}:of one link}} has the wrong sign",
         "look along which axis it is measured, and which way.",
         f"Change the sign of {{{length}}} throughout.",
         symbols=(SymbolChange(length, length, -1.0),),
@@ -138,7 +140,7 @@ def _length_sign(length: str) -> Slip:
 def _length_left_out(length: str) -> Slip:
     return Slip(
         "distance_left_out",
-        f"{{{length}:a length}} is left out",
+        f"the length {{{length}:of one link}} is left out",
         "look in the drawing which frames it lies between.",
         symbols=(SymbolChange(length, length, 0.0),),
     )
@@ -147,7 +149,8 @@ def _length_left_out(length: str) -> Slip:
 def _exchanged(one: str, other: str) -> Slip:
     return Slip(
         "lengths_exchanged",
-        f"{{{one}:one length}} and {{{other}:another}} stand in each other's places",
+        f"the lengths {{{one}:of one link}} and {{{other}:of another}} stand in each other's "
+        "places",
         "look in the drawing which link each of them belongs to.",
         f"Write {{{one}}} for {{{other}}}, and {{{other}}} for {{{one}}}.",
         symbols=(SymbolChange(one, other), SymbolChange(other, one)),
@@ -157,7 +160,7 @@ def _exchanged(one: str, other: str) -> Slip:
 def _other_length(right: str, written: str) -> Slip:
     return Slip(
         "other_length",
-        f"{{{written}:a length}} stands where another length belongs",
+        f"the length {{{written}:of one link}} stands where another length belongs",
         "look in the drawing which link it belongs to.",
         f"It is {{{right}}}.",
         symbols=(SymbolChange(right, written),),
