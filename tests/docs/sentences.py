@@ -113,7 +113,7 @@ def _of_the_page(line: messages_page.Line) -> Example | None:
             matrix += [["0", "0", "1", "0"], ["0", "0", "0", "1"]]
             matrix[0][matrix[0].index(right)] = written
             return Example("planar-rr", {"pose": matrix})
-        case "Positions", (answer,):
+        case "Slips behind a pose" | "Positions", (answer,):
             return Example("planar-rr", {"position": answer})
         case "Angles", (answer,):
             return Example("spherical-wrist", {"zyz": answer})
