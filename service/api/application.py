@@ -9,24 +9,17 @@ from fastapi import FastAPI
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp
 
-from service.api import exercises, grading, health, preview, problems
+from service.api import exercises, grading, health, preview, problems, reference
 from service.api import solutions as model_solutions
 from service.api.boundary import BoundaryMiddleware
 from service.api.lookup import Catalogue
-from service.api.openapi import any_other_failure, with_problem_schema
+from service.api.openapi import HEADING, completed, other_failures
 from service.catalogue import FeedbackLevel
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.version import VERSION
 
 # What stands around an application.
 Layer = Callable[[ASGIApp], ASGIApp]
-
-DESCRIPTION = """
-Grades Denavit-Hartenberg tables, transforms and forward kinematics, row by row, and says why.
-
-A student's mistake is never an error of the request: whatever an answer holds, a report comes back.
-Every other failure is `application/problem+json` (RFC 9457).
-"""
 
 
 @asynccontextmanager
@@ -48,9 +41,9 @@ class _Api(FastAPI):
         self._cors_origins = cors_origins
         self._turns = turns
         super().__init__(
-            title="DH Grader",
+            **HEADING,
             version=VERSION,
-            description=DESCRIPTION,
+            docs_url=None,
             redoc_url=None,
             redirect_slashes=False,
             max_body_size=MAX_BODY_SIZE,
@@ -76,8 +69,10 @@ class _Api(FastAPI):
         return app
 
     def openapi(self) -> dict[str, Any]:
-        """The description of the interface, with the schema of every problem."""
-        return with_problem_schema(super().openapi())
+        """The description of the interface, made at the first call."""
+        if self.openapi_schema is None:
+            self.openapi_schema = completed(super().openapi())
+        return self.openapi_schema
 
 
 def application(
@@ -102,5 +97,6 @@ def application(
         health.routes(catalogue),
         model_solutions.routes(catalogue, shown=solutions),
     ):
-        app.include_router(router, responses=any_other_failure())
+        app.include_router(router, responses=other_failures())
+    app.include_router(reference.routes())
     return app

@@ -7,6 +7,7 @@ from typing import TypeVar
 from fastapi import Request
 from pydantic import BaseModel, ValidationError
 
+from service.api.lookup import Location
 from service.api.problems import ProblemError, invalid
 from service.submissions.strict_json import MalformedError, read_json
 
@@ -24,11 +25,20 @@ async def body_as(model: type[M], request: Request) -> M:
         value = read_json(await request.body())
     except MalformedError as error:
         raise _malformed(error, request.headers.get("content-type", "")) from error
+    return checked(model, value)
+
+
+def checked(model: type[M], value: object, at: Location = ()) -> M:
+    """A value of a body as this model; ``at`` is its place in the body.
+
+    Raises ProblemError: 422 for another shape.
+    """
     try:
         return model.model_validate(value)
     except ValidationError as error:
         details = error.errors(include_url=False, include_input=False, include_context=False)
-        raise invalid(details, list(model.model_fields)) from error
+        placed = [{**detail, "loc": (*at, *detail["loc"])} for detail in details]
+        raise invalid(placed, list(model.model_fields)) from error
 
 
 def _malformed(error: MalformedError, content_type: str) -> ProblemError:

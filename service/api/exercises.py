@@ -6,7 +6,7 @@ from typing import Any
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from service.api.lookup import Catalogue, exercise_or_404
+from service.api.lookup import Catalogue, ExerciseId, exercise_or_404
 from service.api.openapi import refusals
 from service.catalogue import FeedbackLevel, least
 from service.catalogue.fields import Marking
@@ -18,7 +18,7 @@ class PartSummary(BaseModel):
     """A part in the list of exercises."""
 
     id: str
-    kind: str
+    kind: str = Field(description="The kind of answer that it asks for.")
     points: float
 
 
@@ -56,9 +56,9 @@ class PartView(BaseModel):
     id: str
     title: str
     prompt: str
-    kind: str
+    kind: str = Field(description="The kind of answer that it asks for.")
     points: float
-    marking: Marking
+    marking: Marking = Field(description="How the cells of an answer share its points.")
     follows: str | None = Field(
         None,
         description="The earlier part that this one follows from; left out where there is none.",
@@ -87,19 +87,28 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel) -> APIRouter:
     router = APIRouter(prefix="/v1/exercises", tags=["exercises"])
 
     # The models pick from the exercises, by attribute, the fields that are public.
-    @router.get("", response_model=ExerciseList)
+    @router.get(
+        "",
+        operation_id="listExercises",
+        summary="List the exercises",
+        response_model=ExerciseList,
+        response_description="The catalogue.",
+    )
     async def list_exercises() -> dict[str, Any]:
-        """All exercises, in the order of their files' names."""
+        """List all exercises, in the order of their files' names."""
         return {"exercises": list(catalogue.values())}
 
     @router.get(
         "/{exercise_id}",
+        operation_id="getExercise",
+        summary="Show an exercise",
         response_model=ExerciseView,
+        response_description="The exercise.",
         responses=refusals(HTTPStatus.NOT_FOUND),
         response_model_exclude_none=True,
     )
-    async def show_exercise(exercise_id: str) -> dict[str, Any]:
-        """One exercise: its statement, its symbols, and what each part asks for."""
+    async def show_exercise(exercise_id: ExerciseId) -> dict[str, Any]:
+        """Show an exercise: its statement, its symbols, and what each part asks for."""
         exercise = exercise_or_404(catalogue, exercise_id)
         fields = {name: getattr(exercise, name, None) for name in ExerciseView.model_fields}
         parts = [{**dict(part), "shape": part.shape(exercise.reference)} for part in exercise.parts]

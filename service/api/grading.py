@@ -1,30 +1,56 @@
-"""The route that grades."""
+"""The routes that grade."""
 
+import asyncio
+import logging
 from http import HTTPStatus
 
 from fastapi import APIRouter, Request, Response
+from pydantic import BaseModel, Field
 
-from service.api.bodies import body_as
-from service.api.lookup import Catalogue, exercise_or_404, require_parts
+from service.api.bodies import body_as, checked
+from service.api.lookup import Catalogue, ExerciseId, Location, exercise_or_404, require_parts
 from service.api.openapi import posting
-from service.catalogue import FeedbackLevel, least
+from service.api.problems import ProblemDocument, ProblemError, failed
+from service.catalogue import Exercise, FeedbackLevel, least
 from service.formats.json import rendered
 from service.grading import Report, grade
-from service.submissions.body import GradeRequest
+from service.submissions.body import ExerciseSubmission, GradeManyRequest, GradeRequest
+
+_log = logging.getLogger(__name__)
+
+
+class GradeResult(BaseModel):
+    """The report on one submission, or the problem because of which there is none."""
+
+    report: Report | None = None
+    problem: ProblemDocument | None = Field(
+        None,
+        description="What the submission alone would have been refused with; `instance` is its "
+        "place in the request.",
+    )
+
+
+class GradeManyResponse(BaseModel):
+    """One result for each submission, in their order."""
+
+    results: list[GradeResult]
 
 
 def routes(catalogue: Catalogue, feedback: FeedbackLevel) -> APIRouter:
-    """The route that grades; no report tells more than ``feedback``."""
-    router = APIRouter(prefix="/v1/exercises", tags=["grading"])
+    """The routes that grade; no report tells more than ``feedback``."""
+    router = APIRouter(prefix="/v1", tags=["grading"])
 
     # On the event loop and not in a thread: a grading is a millisecond of pure Python, which
     # threads cannot share, and a hop there and back costs a tenth of that. A body that was
     # made to be costly still takes up to a second here.
     @router.post(
-        "/{exercise_id}/grade",
+        "/exercises/{exercise_id}/grade",
+        operation_id="grade",
+        summary="Grade a submission",
+        response_description="The report.",
         **posting(GradeRequest, Report, "grade", HTTPStatus.NOT_FOUND),
     )
-    async def grade_answers(exercise_id: str, request: Request) -> Response:
+    async def grade_one(exercise_id: ExerciseId, request: Request) -> Response:
         """Grade answers, row by row and cell by cell. Nothing is recorded.
 
         Whatever a student wrote, the answer is a report: what cannot be read is `unreadable` there,
@@ -33,9 +59,48 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel) -> APIRouter:
         """
         exercise = exercise_or_404(catalogue, exercise_id)
         body = await body_as(GradeRequest, request)
-        require_parts(exercise, {part: ("answers", part) for part in body.answers})
-        ceiling = least(exercise.feedback, feedback)
-        report = rendered(grade(exercise, body.submission(ceiling)))
+        report = _report(exercise, body, feedback, ())
         return Response(report, media_type="application/json")
 
+    @router.post(
+        "/grade",
+        operation_id="gradeMany",
+        summary="Grade many submissions",
+        response_description="A result for each submission, in their order.",
+        **posting(GradeManyRequest, GradeManyResponse, "grade-many"),
+    )
+    async def grade_many(request: Request) -> Response:
+        """Grade submissions to any exercises, each as if it came alone. Nothing is recorded.
+
+        The results stand in the order of the submissions. One that cannot be graded, because its
+        exercise or one of its parts does not exist, has a problem in its place and costs no other.
+        """
+        body = await body_as(GradeManyRequest, request)
+        results = []
+        for i, submission in enumerate(body.submissions):
+            results.append(_result(submission, i, request.url.path))
+            # Other requests wait for one grading at most, and not for all of them.
+            await asyncio.sleep(0)
+        content = b'{"results":[%b]}' % b",".join(results)
+        return Response(content, media_type="application/json")
+
+    def _result(value: object, i: int, path: str) -> bytes:
+        at = ("submissions", i)
+        try:
+            submission = checked(ExerciseSubmission, value, at)
+            exercise = exercise_or_404(catalogue, submission.exercise)
+            return b'{"report":%b}' % _report(exercise, submission, feedback, at)
+        except ProblemError as error:
+            problem = error
+        except Exception:  # noqa: BLE001 -- the other submissions are graded all the same
+            _log.exception("submission %d of a request could not be graded", i)
+            problem = failed()
+        return b'{"problem":%b}' % problem.content(f"{path}#/submissions/{i}")
+
     return router
+
+
+def _report(exercise: Exercise, body: GradeRequest, ceiling: FeedbackLevel, at: Location) -> bytes:
+    """The report as JSON. Raises ProblemError for an unknown part of the submission at ``at``."""
+    require_parts(exercise, {part: (*at, "answers", part) for part in body.answers})
+    return rendered(grade(exercise, body.submission(least(exercise.feedback, ceiling))))

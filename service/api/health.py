@@ -25,14 +25,24 @@ def routes(catalogue: Catalogue) -> APIRouter:
     """The routes that a supervisor asks."""
     router = APIRouter(tags=["health"])
 
-    @router.get("/healthz")
+    @router.get(
+        "/healthz",
+        operation_id="getLiveness",
+        summary="Is the service alive?",
+        response_description="It answers.",
+    )
     async def alive() -> Alive:
-        """Whether the process answers at all."""
+        """Tell whether the process answers at all."""
         return Alive()
 
-    @router.get("/readyz")
+    @router.get(
+        "/readyz",
+        operation_id="getReadiness",
+        summary="Is the service ready?",
+        response_description="It is ready.",
+    )
     async def ready() -> Ready:
-        """Whether submissions can be graded, and how many exercises there are."""
+        """Tell whether submissions can be graded, and how many exercises there are."""
         return Ready(exercises=len(catalogue))
 
     return router

@@ -3,12 +3,18 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from http import HTTPStatus
+from typing import Annotated
+
+from fastapi import Path
 
 from service.api.problems import ProblemError, invalid
 from service.catalogue import Exercise
 from service.submissions.lookup import UnknownExerciseError, find_exercise
 
 Catalogue = Mapping[str, Exercise]
+ExerciseId = Annotated[str, Path(description="The id of an exercise.", examples=["stanford-arm"])]
+# The steps from the whole body to a place in it.
+Location = tuple[str | int, ...]
 
 
 def exercise_or_404(catalogue: Catalogue, exercise_id: str) -> Exercise:
@@ -30,7 +36,7 @@ def require_exercise(catalogue: Catalogue, exercise_id: str) -> Exercise:
         raise invalid([detail]) from error
 
 
-def require_parts(exercise: Exercise, locations: Mapping[str, tuple[str, ...]]) -> None:
+def require_parts(exercise: Exercise, locations: Mapping[str, Location]) -> None:
     """Check that the exercise has these parts, each named at its location in the body.
 
     Raises ProblemError naming those that there are.

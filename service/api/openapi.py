@@ -1,15 +1,17 @@
-"""Bodies and failures on the OpenAPI page, with examples that the service really gives.
+"""The OpenAPI document: bodies, failures and examples that the service really gives.
 
 The examples are files, not computed at the start; a test holds them against the service's answers.
 """
 
 import json
+from collections.abc import Mapping
 from http import HTTPStatus
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from pydantic import BaseModel
 
+from service.api.openapi_schemas import tidy_schemas
 from service.api.problems import MEDIA_TYPE, ProblemDocument
 
 EXAMPLES = Path(__file__).parent / "examples"
@@ -23,6 +25,40 @@ _REFUSALS = {
     HTTPStatus.UNPROCESSABLE_ENTITY: "The body has not the right shape, or names an unknown part.",
 }
 _REFUSED_BODIES = _REFUSALS.keys() - {HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND}
+
+# How the document is headed, as options of FastAPI.
+HEADING: Final[Mapping[str, Any]] = {
+    "title": "DH Grader",
+    "summary": "Grades Denavit-Hartenberg tables, transforms and forward kinematics.",
+    "description": """
+Answers in, a report out: row by row and cell by cell, what is right, what is wrong, and why.
+
+A student's mistake is never an error of the request: whatever an answer holds, a report comes back.
+Every other failure is a `Problem`, sent as `application/problem+json` (RFC 9457).
+
+Messages, kinds of answers and problems have stable codes. New ones come with new versions: show the
+message of a code that your program does not know. A field that says nothing is left out.
+""",
+    "license_info": {"name": "MIT", "identifier": "MIT"},
+    "contact": {"name": "DH Grader authors"},
+    # Relative to the document's own address, whatever stands in front of it.
+    "servers": [{"url": ".", "description": "The service that this document comes from."}],
+    "openapi_tags": [
+        {"name": "grading", "description": "Answers in, a report out. Nothing is recorded."},
+        {
+            "name": "exercises",
+            "description": "The catalogue, and all that a student sees of an exercise before "
+            "answering. Never an answer.",
+        },
+        {"name": "preview", "description": "How a text is read, while the student still types."},
+        {
+            "name": "solutions",
+            "description": "The model solutions, for tutors: off unless the service is started "
+            "with them on.",
+        },
+        {"name": "health", "description": "What a supervisor asks."},
+    ],
+}
 
 
 def example(name: str) -> Any:
@@ -49,22 +85,28 @@ def answers(model: type, name: str, *statuses: HTTPStatus) -> dict[int | str, di
 
 def refusals(*statuses: HTTPStatus) -> dict[int | str, dict[str, Any]]:
     """The OpenAPI responses for the ways in which a request may be refused."""
-    return {int(status): _refusal(_REFUSALS[status]) for status in statuses}
+    return {int(status): _problem(_REFUSALS[status]) for status in statuses}
 
 
-def any_other_failure() -> dict[int | str, dict[str, Any]]:
-    """The OpenAPI response for every status that a route does not name."""
-    return {"default": _refusal("Any other failure.")}
+def other_failures() -> dict[int | str, dict[str, Any]]:
+    """The OpenAPI responses for every status that a route does not name."""
+    return {
+        "4XX": _problem("Any other refusal of the request."),
+        "5XX": _problem("The service has failed, or has no room for the request now."),
+    }
 
 
-def _refusal(description: str) -> dict[str, Any]:
-    schema = {"$ref": f"#/components/schemas/{ProblemDocument.__name__}"}
+def _problem(description: str) -> dict[str, Any]:
+    schema = ProblemDocument.model_json_schema(ref_template="#/components/schemas/{model}")
     return {"description": description, "content": {MEDIA_TYPE: {"schema": schema}}}
 
 
-def with_problem_schema(document: dict[str, Any]) -> dict[str, Any]:
-    """The OpenAPI document with the schemas that ``refusals`` refers to."""
-    schema = ProblemDocument.model_json_schema(ref_template="#/components/schemas/{model}")
-    schemas = document.setdefault("components", {}).setdefault("schemas", {})
-    schemas |= {**schema.pop("$defs", {}), ProblemDocument.__name__: schema}
+def completed(document: dict[str, Any]) -> dict[str, Any]:
+    """FastAPI's document with what generators of clients and linters ask for besides."""
+    tidy_schemas(document)
+    # Whoever can reach the service may use it; a proxy in front may ask for more.
+    document["security"] = []
+    for path in document["paths"].values():
+        for operation in path.values():
+            operation["responses"] = dict(sorted(operation["responses"].items()))
     return document

@@ -141,7 +141,13 @@ def routes(catalogue: Catalogue) -> APIRouter:
     """The route that previews."""
     router = APIRouter(prefix="/v1", tags=["preview"])
 
-    @router.post("/preview", **posting(PreviewRequest, PreviewAnswer, "preview"))
+    @router.post(
+        "/preview",
+        operation_id="preview",
+        summary="Show how a text is read",
+        response_description="The reading of the text, or the reason why it cannot be read.",
+        **posting(PreviewRequest, PreviewAnswer, "preview"),
+    )
     async def preview_text(request: Request) -> Response:
         """Show how a text is read: normal text, LaTeX, MathML; or why not, and the text repaired.
 

@@ -55,6 +55,10 @@ class ProblemError(Exception):
 
     def response(self, instance: str) -> Response:
         """The problem as an answer to a request for the path ``instance``."""
+        return Response(self.content(instance), self.status, self.headers, MEDIA_TYPE)
+
+    def content(self, instance: str) -> bytes:
+        """The problem as JSON; ``instance`` is what was asked for."""
         document: dict[str, Any] = {
             "type": f"urn:dh-grader:problem:{self.name}" if self.name else "about:blank",
             "title": self.title or self.status.phrase,
@@ -65,8 +69,7 @@ class ProblemError(Exception):
         if self.errors:
             document["errors"] = list(self.errors)
         # Escaped to ASCII: whatever the request held can be written out.
-        content = json.dumps(document).encode("ascii")
-        return Response(content, self.status, self.headers, MEDIA_TYPE)
+        return json.dumps(document).encode("ascii")
 
 
 def too_large() -> ProblemError:
@@ -77,6 +80,15 @@ def too_large() -> ProblemError:
         "body-too-large",
         "The request is too large",
         headers={"Connection": "close"},
+    )
+
+
+def failed() -> ProblemError:
+    """A failure of the program itself."""
+    return ProblemError(
+        HTTPStatus.INTERNAL_SERVER_ERROR,
+        "The service failed at this request. Nothing is wrong with the answer itself; the failure "
+        "has been logged.",
     )
 
 
@@ -107,7 +119,7 @@ def _message(detail: Mapping[str, Any], fields: Sequence[str]) -> str:
     if detail["type"] == "missing":
         return "This field is missing."
     if detail["type"] in ("model_type", "model_attributes_type"):
-        return "The body must be a JSON object."
+        return f"{'This' if detail['loc'] else 'The body'} must be a JSON object."
     message: str = detail["msg"]
     return message if message.endswith((".", "?")) else f"{message}."
 
@@ -152,11 +164,7 @@ def _problem(request: Request, error: Exception) -> ProblemError:
             status = HTTPStatus(error.status_code)
             return ProblemError(status, str(error.detail), headers=error.headers)
         case _:  # without details; the server logs the traceback
-            return ProblemError(
-                HTTPStatus.INTERNAL_SERVER_ERROR,
-                "The service failed at this request. Nothing is wrong with the answer itself; "
-                "the failure has been logged.",
-            )
+            return failed()
 
 
 def _other_method(request: Request, error: HTTPException) -> ProblemError:

@@ -8,7 +8,7 @@ from typing import Final
 from fastapi import APIRouter, Response
 from pydantic import TypeAdapter
 
-from service.api.lookup import Catalogue, exercise_or_404
+from service.api.lookup import Catalogue, ExerciseId, exercise_or_404
 from service.api.openapi import answers
 from service.api.problems import ProblemError
 from service.catalogue import Exercise
@@ -50,11 +50,14 @@ def routes(catalogue: Catalogue, *, shown: bool) -> APIRouter:
 
     @router.get(
         "/{exercise_id}/solution",
+        operation_id="getSolution",
+        summary="Show the model solution",
+        response_description="The model solution.",
         responses=answers(
             ModelSolution, "solution-response", HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND
         ),
     )
-    async def show_solution(exercise_id: str) -> Response:
+    async def show_solution(exercise_id: ExerciseId) -> Response:
         """Show the right answer to each part, each link transform and the pose, for tutors."""
         if not shown:
             raise ProblemError(

@@ -114,20 +114,27 @@ def _differences(expected: ExpectSpec, report: PartReport) -> Iterator[str]:
 
 
 def duplicate_parts(exercise: Exercise) -> Iterator[Remark]:
-    """Parts whose right answers are the same for all values of the symbols."""
-    candidates = [
-        (one, other) for one, other in combinations(exercise.parts, 2) if _task(one) == _task(other)
-    ]
-    if not candidates:
+    """Parts whose right answers are the same for all values of the symbols, told together."""
+    pairs = list(combinations(exercise.parts, 2))
+    if not any(_task(one) == _task(other) for one, other in pairs):
         return
     answers = solve(exercise).answers
-    for one, other in candidates:
-        if _equal(one, other, answers, exercise):
-            place = exercise.parts.index(other)
+    waiting = list(exercise.parts)
+    while waiting:
+        one, *others = waiting
+        same = [
+            other
+            for other in others
+            if _task(one) == _task(other) and _equal(one, other, answers, exercise)
+        ]
+        waiting = [other for other in others if other not in same]
+        if same:
+            names = ", ".join(part.id for part in same)
+            have = "has" if len(same) == 1 else "have"
             yield warning(
-                f"parts[{place}]",
-                f"{other.id} has the same answer as {one.id}: whoever has one copies the other; "
-                f"ask for something else, or take one of them out",
+                f"parts[{exercise.parts.index(same[0])}]",
+                f"{names} {have} the same answer as {one.id}: whoever has one copies it; ask for "
+                f"something else, or leave one part",
             )
 
 

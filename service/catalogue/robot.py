@@ -128,10 +128,12 @@ class Robot:
         The last joint's frame answers to its number, too, where no row leads on from it, and the
         base frame to the number before the first joint's.
         """
-        first = self.joints[0].index
+        return list(self._poses(values, samples))[self.frame_number(name)]
+
+    def frame_number(self, name: int | str) -> int:
+        """How many rows of its table lead to a frame that ``frame`` takes."""
         known = {"base": 0, "tool": len(self.tables[self.convention].rows)}
-        steps = known[name] if isinstance(name, str) else name - first + 1
-        return list(self._poses(values, samples))[steps]
+        return known[name] if isinstance(name, str) else name - self.joints[0].index + 1
 
     def has_frame(self, name: int | str) -> bool:
         """Whether ``frame`` takes this name."""

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import BaseModel, Field
 
@@ -10,9 +10,14 @@ from service.expressions import Kind
 
 
 class AnswerShape(BaseModel, ABC):
-    """The shape of an answer. ``posted`` says how such an answer is posted."""
+    """The shape of an answer; ``form`` tells a client which of the shapes it is.
+
+    ``posted`` says how such an answer is posted.
+    """
 
     posted: ClassVar[str]
+    if TYPE_CHECKING:
+        form: str
 
     def in_words(self) -> str:
         """The shape in one sentence: "a matrix of 4 rows and 4 columns"."""
@@ -27,6 +32,7 @@ class MatrixShape(AnswerShape):
 
     posted: ClassVar[str] = "a list of rows, each a list of entries"
 
+    form: Literal["matrix"] = "matrix"
     columns: list[str]
     rows: list[str]
 
@@ -46,6 +52,7 @@ class ListShape(AnswerShape):
 
     posted: ClassVar[str] = "a list of entries"
 
+    form: Literal["list"] = "list"
     rows: list[str]
     components: list[ComponentView]
     sequence: str | None = Field(None, description='Such as "ZYZ"; "RPY" is Rz(α) Ry(β) Rx(γ).')

@@ -12,9 +12,12 @@ Spans are [from, to) in the text that the student typed.
 """
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 Span = tuple[int, int]
+
+# A message is short.
+_LONGEST_QUOTATION: Final = 40
 
 Cause = Literal[
     "ambiguous_number", "ambiguous_shorthand", "ambiguous_star", "ambiguous_unit", "argument",
@@ -74,3 +77,16 @@ class UnreadableError(Exception):
         self.cause = cause
         self.span = span
         self.details = details
+
+
+def shortened(text: str) -> str:
+    """``text``, or the beginning of a long one."""
+    return text if len(text) <= _LONGEST_QUOTATION else f"{text[:_LONGEST_QUOTATION]}…"
+
+
+def quoted(text: str) -> str:
+    """``text`` as a message quotes it: shortened, and with the numbers of unprintable letters."""
+    text = shortened(text)
+    if all(letter.isprintable() for letter in text):
+        return f"`{text}`"
+    return " ".join(f"U+{ord(letter):04X}" for letter in text)

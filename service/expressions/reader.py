@@ -13,6 +13,7 @@ from service.expressions.errors import ExpressionError, Note, UnreadableError
 from service.expressions.evaluation.samples import SampleArray, SymbolValues, compile_tree
 from service.expressions.limits import LIMITS
 from service.expressions.parsing.degrees import in_degrees, without_degree_functions
+from service.expressions.parsing.equation import right_side
 from service.expressions.parsing.lexer import Lexer
 from service.expressions.parsing.parser import parse
 from service.expressions.parsing.tree_builder import Builder
@@ -27,6 +28,9 @@ from service.expressions.vocabulary.symbols import Kind, Vocabulary
 AngleUnit = Literal["radians", "degrees"]
 
 _REMEMBERED: Final = 8192
+# Texts longer than this are remembered apart, for their programs take much more memory.
+_LONG: Final = 500
+_REMEMBERED_LONG: Final = 64
 # The grading asks for a tree soon after reading, if at all.
 _TREES: Final = 128
 _SETS_OF_SYMBOLS: Final = 1024
@@ -170,7 +174,8 @@ def read(
         error = UnreadableError("beyond", span, limit="characters", length=len(text))
         raise _explained(text, error, vocabulary)
     options = (vocabulary, quantity == "angle", angle_unit == "degrees")
-    result = _remembered(text, *options, _ATTEMPTS if repairs else 0)
+    remembered = _remembered if len(text) <= _LONG else _remembered_long
+    result = remembered(text, *options, _ATTEMPTS if repairs else 0)
     if isinstance(result, ExpressionError):
         raise result.again()
     return result
@@ -199,6 +204,9 @@ def _remembered(
     return _Reading(ReadingOptions(vocabulary, is_angle, degrees), attempts).read(text)
 
 
+_remembered_long = lru_cache(maxsize=_REMEMBERED_LONG)(_remembered.__wrapped__)
+
+
 class _Reading:
     """The reading of a text, with a number of attempts to read repaired ones."""
 
@@ -215,7 +223,7 @@ class _Reading:
 
     def repaired(self, text: str) -> str | None:
         """``text`` where it can be read, else its own repaired text, if it has one."""
-        if not self.attempts or len(text) > LIMITS.characters:
+        if not self.attempts or len(text) > LIMITS.repaired:
             return None
         self.attempts -= 1
         result = self.read(text)
@@ -233,10 +241,16 @@ class _Parsed(NamedTuple):
 @lru_cache(maxsize=_TREES)
 def _parsed(text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool) -> _Parsed:
     """The syntax tree of ``text`` and its notes. Raises UnreadableError."""
+    notes: list[Note] = []
+    if "=" in text or "≔" in text:
+        text, note = right_side(text, vocabulary)
+        notes += (note,) if note else ()
     characters = normalise(text)
     if not characters.text or characters.text.isspace():
         raise UnreadableError("empty", (0, len(text)))
-    notes: list[Note] = []
+    # One character, as ½, may stand for several.
+    if len(characters.text) > LIMITS.characters:
+        raise UnreadableError("beyond", (0, len(text)), limit="terms")
     tokens = Lexer(text, characters, vocabulary, degrees=degrees, notes=notes).run()
     builder = Builder(text, notes, degrees=degrees)
     tree = parse(tokens, builder)
@@ -245,7 +259,7 @@ def _parsed(text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool) ->
         tree = in_degrees(tree, is_angle=is_angle, notes=notes)
     elif builder.degree_functions:
         tree = without_degree_functions(tree, notes=notes)
-    return _Parsed(tree, tuple(notes), symbols)
+    return _Parsed(tree, tuple(notes[: LIMITS.notes]), symbols)
 
 
 @lru_cache(maxsize=_SETS_OF_SYMBOLS)
@@ -277,7 +291,17 @@ def _used_symbols(tree: Node) -> frozenset[str]:
         if count > LIMITS.nodes or depth > LIMITS.depth:
             raise UnreadableError("beyond", (tree.start, tree.end), limit=_broken_limit(tree))
         nodes = below
+    if count > LIMITS.tree_depth and _is_beyond_depth(tree):
+        raise UnreadableError("beyond", (tree.start, tree.end), limit="terms")
     return frozenset(symbols)
+
+
+def _is_beyond_depth(tree: Node) -> bool:
+    """Whether the tree itself is too deep, which a long sum may be."""
+    level: list[Any] = [tree]
+    for _ in range(LIMITS.tree_depth):
+        level = [child for node in level for child in children(node)]
+    return bool(level)
 
 
 def _broken_limit(tree: Node) -> str:

@@ -93,6 +93,13 @@ class _Page:
             self._print(Text("Nothing in this submission could be read."))
         if any(part.rows for part in report.parts):
             signs = [Verdict.CORRECT, Verdict.INCORRECT, Verdict.UNREADABLE, Verdict.MISSING]
+            messages = (message for part in report.parts for message in _messages(part))
+            # The mark of an error in a part or row that is right elsewhere.
+            if any(
+                each.severity is Severity.ERROR and verdict is Verdict.PARTIAL
+                for _, each, verdict in messages
+            ):
+                signs.insert(1, Verdict.PARTIAL)
             legend = "   ".join(f"{self._mark(verdict)} {verdict}" for verdict in signs)
             self._print(Text(legend, "dim"))
 

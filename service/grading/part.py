@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, Protocol
 
 from service.catalogue import Exercise, FeedbackLevel
@@ -11,6 +12,9 @@ from service.grading.reading.entry import Entry, Reader
 from service.grading.report import Feedback, Place, RowReport, Verdict
 from service.grading.samples import Samples
 from service.kinematics.transforms import Matrices, inverse
+
+# So many entries show how a student names symbols.
+NAMING_ENTRIES = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,10 +71,27 @@ class Grading:
         degrees = self.reader.angle_unit == "degrees"
         return spelling_of(typed, self.exercise.vocabulary, degrees=degrees)
 
+    def symbol_names(self, entries: Iterable[Entry]) -> Callable[[str], str]:
+        """The names of symbols as the entries of a part have them, found when one is asked for.
+
+        The shortest entries show them as well as the longest, for less work.
+        """
+
+        @cache
+        def spelling() -> Spelling:
+            read = [each for each in entries if each.expression and each.expression.symbols]
+            return self.spelling(sorted(read, key=_length)[:NAMING_ENTRIES])
+
+        return lambda symbol: spelling().names.get(symbol, symbol)
+
     @property
     def corrects(self) -> bool:
         """Whether corrections are told, so that they need to be worked out."""
         return self.level is FeedbackLevel.FULL
+
+
+def _length(entry: Entry) -> int:
+    return len(entry.expression.source) if entry.expression else 0
 
 
 def _no_chain() -> StudentChain | None:
@@ -108,7 +129,8 @@ class Judged:
 
     The rows have no points yet: ``content`` says what their cells are worth. ``slips`` counts those
     that no cell shows, such as a row too many. ``whole_cost`` is the share of the points that a
-    slip of the whole answer costs, where one explains all its wrong cells. ``stands_still`` says
+    slip of the whole answer costs, where one explains all its wrong cells; or all but those that
+    are wrong in ``beside``, the same answer without that slip. ``stands_still`` says
     that no joint moves an answer that must move. ``at_most`` is the same answer judged
     without what must not help: it earns no more than that. ``chain`` gives the answer as a chain,
     if it is one; it is asked only where another part follows this one.
@@ -119,6 +141,7 @@ class Judged:
     feedback: tuple[Feedback, ...] = ()
     slips: int = 0
     whole_cost: float | None = None
+    beside: "Judged | None" = None
     stands_still: bool = False
     at_most: "Judged | None" = None
     chain: Callable[[], StudentChain | None] = _no_chain

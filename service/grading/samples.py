@@ -7,7 +7,7 @@ regrade repeats it to the last bit, on every machine and with every version of n
 import hashlib
 import json
 import math
-from collections.abc import Callable, Hashable, Iterator, Mapping, Set
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass
 from datetime import date, time
 from functools import cached_property
@@ -68,6 +68,20 @@ class Samples:
                 {name: self.subset_of(values, count) for name, values in self.values.items()}
             ),
         )
+
+    def with_names(self, names: Iterable[str]) -> "Samples":
+        """The same samples with values of more symbols, in no relation to any other value.
+
+        They are drawn from the samples themselves, and so are the same for the same samples.
+        """
+        drawn = next(iter(self.values.values())).tobytes().hex()
+        more = {name: 0.5 + _uniform(name + drawn, self.count) for name in sorted(names)}
+        return Samples({**self.values, **more}, self.in_degrees)
+
+    def renamed(self, meanings: Mapping[str, str]) -> "Samples":
+        """The same samples with each symbol of ``meanings`` standing for another one."""
+        values = {name: self.values[meaning] for name, meaning in meanings.items()}
+        return Samples({**self.values, **values}, self.in_degrees)
 
     @staticmethod
     def subset_of(values: Numbers, count: int) -> Numbers:

@@ -6,5 +6,16 @@ Knows nothing of robots, and of expressions only spans, errors and the names of 
 from service.grids.grid import Grid, GridCell, GridError
 from service.grids.limits import GRID_LIMITS, GridLimits
 from service.grids.registry import FORMATS, read_grid
+from service.grids.several import NamedGrid, read_grids
 
-__all__ = ["FORMATS", "GRID_LIMITS", "Grid", "GridCell", "GridError", "GridLimits", "read_grid"]
+__all__ = [
+    "FORMATS",
+    "GRID_LIMITS",
+    "Grid",
+    "GridCell",
+    "GridError",
+    "GridLimits",
+    "NamedGrid",
+    "read_grid",
+    "read_grids",
+]

@@ -43,6 +43,12 @@ class GridFormat:
     parse: Callable[[SourceText], Grid]
 
 
+def too_many_matrices(whole: Span) -> GridError:
+    """The error for more matrices than an arm has links."""
+    message = f"At most {GRID_LIMITS.rows} matrices are read from one text; here are more."
+    return GridError("too_many_matrices", message, whole)
+
+
 def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid:
     """A grid of tidied cells, without empty rows and empty outer columns.
 

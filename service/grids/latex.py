@@ -8,12 +8,14 @@ from service.grids.program_text import text_around
 from service.grids.source_text import SourceText, joined
 
 # The number of arguments in braces behind \begin{…}.
-_ARGUMENTS: Final = {
+ARGUMENTS: Final = {
     "tabular": 1, "longtable": 1, "array": 1, "tabular*": 2, "tabularx": 2,
     "matrix": 0, "bmatrix": 0, "pmatrix": 0, "Bmatrix": 0, "smallmatrix": 0, "bsmallmatrix": 0,
     "psmallmatrix": 0, "matrix*": 0, "bmatrix*": 0, "pmatrix*": 0,
 }  # fmt: skip
-_BEGIN: Final = re.compile(r"\\(begin|end)[ \t]*\{([A-Za-z]{1,20}\*?)\}")
+# Plain TeX, as Maxima prints it: \pmatrix{a & b \cr c & d \cr}.
+PLAIN: Final = re.compile(r"\\[pbB]?matrix\s{0,4}(?=\{)")
+BEGIN: Final = re.compile(r"\\(begin|end)[ \t]*\{([A-Za-z]{1,20}\*?)\}")
 _TOKEN: Final = re.compile(r"\\(?:[A-Za-z]+|.)|[{}&]", re.DOTALL)
 _ROW_ENDS: Final = frozenset({"\\\\", "\\tabularnewline", "\\cr"})
 _GAP: Final = re.compile(
@@ -28,34 +30,39 @@ _RULES: Final = re.compile(
 _SIZES: Final = re.compile(r"\\(?:left|right|[bB]igg?[lr]?)\s{0,4}(?=[()\[\]])")
 _SPANNING: Final = frozenset({"\\multicolumn", "\\multirow"})
 _WRAPPERS: Final = (
-    re.compile(r"\s|[$,.]|&|\\[\\\[\](),;:!> ]|\\q?quad(?![A-Za-z])"),
+    re.compile(r"\s|[$,.;]|&|\\[\\\[\](),;:!> ]|\\q?quad(?![A-Za-z])"),
     re.compile(
-        r"\\(?:begin|end)\s?\{(?:equation|displaymath|math|align|aligned|gather|table|center"
-        r"|figure|document)\*?\}(?:\[[a-zA-Z!]{0,6}\])?"
+        r"\\(?:begin|end)\s?\{(?:equation|displaymath|math|align|aligned|gather|gathered|table|center"
+        r"|figure|document|split|multline|eqnarray|flalign|cases|itemize|enumerate)\*?\}"
+        r"(?:\[[a-zA-Z!]{0,6}\])?|\\begin\{array\}\{[clr|]{0,12}\}|\\end\{array\}"
     ),
     re.compile(r"\\(?:left|right|[bB]igg?[lr]?)?\s?\\?[\[\](){}.]|[\[\](){}]"),
     re.compile(
         r"\\(?:centering|displaystyle|small|footnotesize|scriptsize|normalsize|large|noindent"
-        r"|boxed|nonumber|notag)(?![A-Za-z])"
+        r"|boxed|nonumber|notag|item)(?![A-Za-z])"
     ),
-    re.compile(r"\\(?:caption|label|tag|vspace|hspace|setlength)\*?(?:\{[^{}]{0,200}\}){1,2}"),
+    re.compile(
+        r"\\(?:caption|label|tag|vspace|hspace|setlength|l?eqno|text|mbox)\*?"
+        r"(?:\{(?:[^{}=]|\{[^{}]{0,80}\}){0,200}\}){1,2}"
+    ),
 )
 
 
 def _matches(text: str) -> bool:
-    if any(found[2] in _ARGUMENTS or "matrix" in found[2] for found in _BEGIN.finditer(text)):
+    if any(found[2] in ARGUMENTS or "matrix" in found[2] for found in BEGIN.finditer(text)):
         return True
-    return "\\\\" in text and "&" in text
+    return ("\\\\" in text and "&" in text) or PLAIN.search(text) is not None
 
 
 def _parse(source: SourceText) -> Grid:
-    rows = _rows(_body(_without_comments(source)))
+    rows = _rows(_body(without_comments(source)))
     if not any(cell.text.strip() for cell in rows[-1]):
         rows.pop()
     return grid("LaTeX", rows, source.whole)
 
 
-def _without_comments(source: SourceText) -> SourceText:
+def without_comments(source: SourceText) -> SourceText:
+    r"""The text without its comments; \% is a sign."""
     text = source.text
     pieces: list[SourceText] = []
     start = i = 0
@@ -74,46 +81,67 @@ def _without_comments(source: SourceText) -> SourceText:
 def _body(source: SourceText) -> SourceText:
     """The content of the environment; the whole text where only its rows were pasted."""
     text = source.text
-    marks = [mark for mark in _BEGIN.finditer(text) if mark[2] in _ARGUMENTS]
+    marks = [mark for mark in BEGIN.finditer(text) if mark[2] in ARGUMENTS]
+    if not marks and (plain := PLAIN.search(text)):
+        end = behind_brace(source, plain.end())
+        _check_in_front(source.cut(0, plain.start()))
+        check_wrapper(source.cut(end, len(text)))
+        return source.cut(plain.end() + 1, end - 1)
     if not marks:
-        if other := next((mark for mark in _BEGIN.finditer(text) if "matrix" in mark[2]), None):
+        if other := next((mark for mark in BEGIN.finditer(text) if "matrix" in mark[2]), None):
             message = "This is a determinant or another form that is no plain matrix; use bmatrix."
             raise GridError("not_a_matrix", message, source.span(*other.span()))
         return source
     first = marks[0]
     if first[1] == "end":
-        message = f"This ends a {first[2]} that was never begun."
-        raise GridError("unbalanced_environment", message, source.span(*first.span()))
+        raise never_begun(source, first)
     if len(marks) == 1:
-        message = f"This {first[2]} is never ended; \\end{{{first[2]}}} is missing."
-        raise GridError("unbalanced_environment", message, source.span(*first.span()))
+        raise never_ended(source, first)
     last = marks[1]
     if last[1] == "begin":
         message = "One matrix or table inside another cannot be read."
         raise GridError("nested_table", message, source.span(*last.span()))
     if last[2] != first[2]:
-        message = f"This does not fit \\begin{{{first[2]}}}."
-        raise GridError("unbalanced_environment", message, source.span(*last.span()))
+        raise other_end(source, first, last)
     _check_in_front(source.cut(0, first.start()))
-    _check_wrapper(source.cut(last.end(), len(text)))
+    check_wrapper(source.cut(last.end(), len(text)))
     return source.cut(_behind_arguments(source, first), last.start())
+
+
+def never_begun(source: SourceText, mark: re.Match[str]) -> GridError:
+    """The error for an end of an environment without its beginning."""
+    message = f"This ends a {mark[2]} that was never begun."
+    return GridError("unbalanced_environment", message, source.span(*mark.span()))
+
+
+def never_ended(source: SourceText, mark: re.Match[str]) -> GridError:
+    """The error for a beginning of an environment without its end."""
+    message = f"This {mark[2]} is never ended; \\end{{{mark[2]}}} is missing."
+    return GridError("unbalanced_environment", message, source.span(*mark.span()))
+
+
+def other_end(source: SourceText, begin: re.Match[str], end: re.Match[str]) -> GridError:
+    """The error for an end that has another name than the beginning."""
+    message = f"This does not fit \\begin{{{begin[2]}}}."
+    return GridError("unbalanced_environment", message, source.span(*end.span()))
 
 
 def _check_in_front(front: SourceText) -> None:
     """Raise GridError for a factor before the matrix; the left side of an equation is its name."""
-    if _behind_wrappers(front.text) == len(front.text):
+    if behind_wrappers(front.text) == len(front.text):
         return
-    _check_wrapper(front.cut(front.text.rfind("=") + 1, len(front.text)))
+    check_wrapper(front.cut(front.text.rfind("=") + 1, len(front.text)))
 
 
-def _check_wrapper(around: SourceText) -> None:
+def check_wrapper(around: SourceText) -> None:
     """Raise GridError where more than layout stands around the matrix."""
-    end = _behind_wrappers(around.text)
+    end = behind_wrappers(around.text)
     if end < len(around.text):
         raise text_around(around.cut(end, len(around.text)))
 
 
-def _behind_wrappers(text: str) -> int:
+def behind_wrappers(text: str) -> int:
+    """The place behind the layout that a text begins with."""
     at = 0
     while at < len(text):
         found = next((match for token in _WRAPPERS if (match := token.match(text, at))), None)
@@ -125,7 +153,7 @@ def _behind_wrappers(text: str) -> int:
 
 def _behind_arguments(source: SourceText, begin: re.Match[str]) -> int:
     text, at = source.text, begin.end()
-    wanted = _ARGUMENTS[begin[2]]
+    wanted = ARGUMENTS[begin[2]]
     optional = wanted > 0 or begin[2].endswith("*")
     while True:
         following = at + len(text[at : at + 40]) - len(text[at : at + 40].lstrip())
@@ -134,12 +162,13 @@ def _behind_arguments(source: SourceText, begin: re.Match[str]) -> int:
             at = text.find("]", following) + 1 or following + 1
         elif wanted and text[following : following + 1] == "{":
             wanted -= 1
-            at = _behind_brace(source, following)
+            at = behind_brace(source, following)
         else:
             return at
 
 
-def _behind_brace(source: SourceText, start: int) -> int:
+def behind_brace(source: SourceText, start: int) -> int:
+    """The place behind the brace that closes the one at ``start``. Raises GridError without it."""
     depth = 0
     for i in range(start, len(source.text)):
         depth += {"{": 1, "}": -1}.get(source.text[i], 0)

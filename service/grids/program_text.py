@@ -12,20 +12,45 @@ from service.grids.source_text import SourceText, joined
 # Functions that make a matrix of their argument and change nothing in it.
 MAKERS: Final = frozenset(
     {"array", "asarray", "mat", "matrix", "Matrix", "ImmutableMatrix", "MutableDenseMatrix"}
-    | {"ImmutableDenseMatrix", "sym", "list", "tuple", "simplify", "trigsimp", "expand"}
+    | {"ImmutableDenseMatrix", "Array", "list", "tuple", "sym", "simplify", "trigsimp", "expand"}
+    | {"trigreduce", "ratsimp"}
 )
-_HARMLESS: Final = re.compile(
-    r"[ \t]*(?:(?:import|from|syms|clc|clear|close|format)\b.*)?(?:\n|\Z)"
+# Imports, and symbols that are declared.
+_STATEMENT: Final = (
+    r"[ \t]*(?:(?:import|from|syms|clc|clear|close|format|pkg|load|with)\b.*"
+    r"|[\w, \t]{1,80}=[ \t]*(?:\w{1,20}\.)?(?:symbols|Symbol|var|sym)\([^()\[\]{}]{0,200}\)[ \t;]*)"
 )
-_PROMPT: Final = re.compile(r"\s*(?:>>>|>>|In ?\[\d*\]:|Out\[\d*\]:)\s*")
-_NAME: Final = re.compile(r"\s*[^\W\d][\w.{}^\\']{0,40}(?:\([\w, ]{0,40}\))?[ \t]*:?=(?!=)\s*")
+_HARMLESS: Final = re.compile(rf"(?:{_STATEMENT}|[ \t]*)(?:\n|\Z)")
+_HARMLESS_LINE: Final = re.compile(rf"^{_STATEMENT}$", re.MULTILINE)
+# The left sides of an equation or assignment: T = A1*A2 = …, A1(q1) := …, A1 : …
+_NAMES: Final = re.compile(
+    r"\s*(?:(?!\d+[.*\s])[\w\\](?:[\w.{}^\\'*@→ \t]|\([\w,:→ ]{0,40}\)|\[\d{1,2}\]){0,80}"
+    r"(?::=?|=)(?!=)\s*){0,4}"
+    r"(?:\(sym \d+ ?[x×] ?\d+ matrix\)\s*)?"
+)
+# A name on a line of its own, above what it names: MATLAB's ans =.
+_TITLE: Final = re.compile(
+    r"\s*(?:[^\W\d][\w{}^]{0,20}(?:\([\w,: ]{0,40}\))?[ \t]*:?=[ \t]*\r?\n\s*){1,3}"
+)
 _CALL: Final = re.compile(
     r"\s*([A-Za-z_][\w.]{0,60})[ \t]*\(\s*(?=[\[({\d]|[A-Za-z_][\w.]{0,60}\()"
 )
+_MOST_FORMS: Final = 3
 _NESTED: Final = re.compile(r"[({]\s*[\[({]|\[|\{\s*['\"]")
-_KEYWORD: Final = re.compile(r"\s*(?:dtype|order|copy|ndmin)\s*=")
-_REMARK: Final = re.compile(r"\.\.\.[^\n]*(?:\n|$)|[%#][^\n]*")
-_TAIL: Final = " \t\r\n;,."
+_KEYWORD: Final = re.compile(r"\s*(?:dtype|order|copy|ndmin|storage|shape|datatype)\s*=")
+# Behind % stands a comment, or the name of a constant in Maxima.
+_REMARK: Final = re.compile(
+    r"\.\.\.[^\n]*(?:\n|$)|%(?!(?:pi|theta|alpha)(?![A-Za-z]))[^\n]*|#[^\n]*"
+)
+_COMMENTS: Final = {"(*": "*)", "/*": "*/"}
+# Mathematica: functions that change nothing in a matrix, in front of it or behind.
+_FORM: Final = re.compile(
+    r"(?:MatrixForm|TraditionalForm|InputForm|Simplify|FullSimplify|TrigReduce|Expand)\["
+)
+_BEHIND: Final = re.compile(
+    r"//\s{0,3}(?:MatrixForm|TraditionalForm|InputForm|Simplify|FullSimplify|TrigReduce|Expand)\Z"
+)
+TAIL: Final = " \t\r\n;,.$"
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +69,14 @@ class WrittenMatrix:
 
 def begins_as_matrix(text: str) -> bool:
     """Whether the text begins with a matrix in brackets, after harmless lines and a name."""
-    plain = _without_remarks(SourceText.of(text)).text
+    plain = without_remarks(SourceText.of(text)).text
     return _head(plain) is not None
+
+
+def without_title(source: SourceText) -> SourceText:
+    """The text without a name on a line of its own at the top, as MATLAB prints it."""
+    title = _TITLE.match(source.text)
+    return source.cut(title.end(), len(source.text)) if title else source
 
 
 def unwrap(source: SourceText, calls: int = 3) -> WrittenMatrix:
@@ -53,24 +84,40 @@ def unwrap(source: SourceText, calls: int = 3) -> WrittenMatrix:
 
     Raises GridError where the brackets are unbalanced, or are not all of the text.
     """
-    source = _without_remarks(source)
+    source = without_remarks(source)
     head = _head(source.text)
     if head is None:
         raise GridError("no_grid", "No matrix begins here.", source.whole)
     start, call = head
-    source = source.cut(start, len(source.text)).strip(_TAIL)
+    source = _without_forms(source.cut(start, len(source.text)).strip(TAIL))
     if call:
         return _unwrap_call(source, call, calls)
     return WrittenMatrix(tuple(_groups(source)))
 
 
-def _without_remarks(source: SourceText) -> SourceText:
+def _without_forms(source: SourceText) -> SourceText:
+    """The matrix without the functions of Mathematica that only change its form."""
+    for _ in range(_MOST_FORMS):
+        behind = _BEHIND.search(source.text, len(source.text) - 24)
+        if behind is None:
+            break
+        source = source.cut(0, behind.start()).strip(TAIL)
+    for _ in range(_MOST_FORMS):
+        form = _FORM.match(source.text)
+        if form is None or strict_pairs(source)[form.end() - 1] != len(source.text):
+            break
+        source = source.cut(form.end(), len(source.text) - 1).strip(TAIL)
+    return source
+
+
+def without_remarks(source: SourceText) -> SourceText:
     """The text without comments and line continuations, except those in strings."""
     text = source.text
     pieces: list[SourceText] = []
     start = i = 0
     quote = ""
-    while i < len(text):
+    last = max(map(text.rfind, _COMMENTS.values()))
+    while i < len(text) and len(pieces) < 2 * GRID_LIMITS.separators:
         letter = text[i]
         if quote:
             if letter == "\\":
@@ -79,34 +126,59 @@ def _without_remarks(source: SourceText) -> SourceText:
                 quote = ""
         elif letter in "'\"" and (i == 0 or not (text[i - 1].isalnum() or text[i - 1] in ")]}.'")):
             quote = letter
-        elif letter in ".%#" and (remark := _REMARK.match(text, i)):
+        elif letter in ".%#(/" and (end := _remark_end(text, i, last)):
             blank = SourceText(" ", [source.starts[i]], [source.ends[i]])
             pieces += [source.cut(start, i), blank]
-            start = i = remark.end()
+            start = i = end
             continue
         i += 1
     return joined([*pieces, source.cut(start, len(text))], source.whole[0])
 
 
+def _remark_end(text: str, start: int, last: int) -> int:
+    """The place behind the remark that begins at ``start``, 0 where none does.
+
+    Behind ``last`` no comment in brackets ends.
+    """
+    closer = _COMMENTS.get(text[start : start + 2]) if start < last else None
+    end = text.find(closer, start + 2) if closer else -1
+    if end >= 0:
+        return end + 2
+    remark = _REMARK.match(text, start)
+    return remark.end() if remark else 0
+
+
 def _head(text: str) -> tuple[int, re.Match[str] | None] | None:
     """The place where a matrix begins, with its first bracket or with the call that makes it."""
-    at = 0
-    while at < len(text) and (line := _HARMLESS.match(text, at)):
-        at = line.end()
-    for optional in (_PROMPT, _NAME):
-        if found := optional.match(text, at):
-            at = found.end()
+    at = behind_names(text)
+    at += len(text[at:]) - len(text[at:].lstrip())
+    if form := _FORM.match(text, at):
+        return (at, None) if _NESTED.match(text, form.end()) else None
     if call := _CALL.match(text, at):
         name = call[1].rpartition(".")[2]
         if name in MAKERS or text[call.end()] == "[":
             return call.start(1), call
-    at += len(text[at:]) - len(text[at:].lstrip())
     if _NESTED.match(text, at) is None:
         return None
     # Round brackets begin many an expression; they are a list only if they hold all there is.
     if text[at] == "(" and not _ends_the_text(text, at):
         return None
     return at, None
+
+
+def without_harmless_lines(source: SourceText) -> SourceText:
+    """The text without the lines that make no matrix, such as imports."""
+    return joined(source.split(_HARMLESS_LINE), source.whole[0])
+
+
+def behind_names(text: str) -> int:
+    """The place behind harmless lines and the left side of an equation, where a matrix begins."""
+    at = 0
+    while at < len(text) and (line := _HARMLESS.match(text, at)):
+        at = line.end()
+    names = _NAMES.match(text, at)
+    assert names is not None
+    return names.end()
 
 
 def _ends_the_text(text: str, start: int) -> bool:
@@ -117,7 +189,7 @@ def _ends_the_text(text: str, start: int) -> bool:
         elif text[i] in ")]}":
             depth -= 1
             if depth == 0:
-                return not text[i + 1 :].strip(_TAIL)
+                return not text[i + 1 :].strip(TAIL)
     return False
 
 
@@ -133,7 +205,7 @@ def _groups(source: SourceText) -> list[SourceText]:
                 raise GridError("too_many_rows", message, source.whole)
             groups.append(source.cut(i + 1, ends[i] - 1))
             i = ends[i]
-        elif source.text[i] in _TAIL:
+        elif source.text[i] in TAIL:
             i += 1
         else:
             raise text_around(source.cut(i, len(source.text)))
@@ -145,8 +217,7 @@ def _unwrap_call(source: SourceText, call: re.Match[str], calls: int) -> Written
     if name not in MAKERS or not calls:
         raise GridError(
             "unknown_call",
-            f"What {call[1]}(…) makes of this matrix is not worked out here; "
-            "paste the finished matrix itself.",
+            f"`{call[1]}(…)` of a matrix is not worked out here. Paste the result.",
             source.span(0, len(call[1])),
         )
     opened = source.text.index("(")
@@ -174,10 +245,9 @@ def text_around(piece: SourceText) -> GridError:
     """The error for text around the matrix that may change its meaning."""
     piece = piece.strip()
     first = piece.text.split("\n", 1)[0][:30]
-    text = first if first.isprintable() else "what stands here"
+    text = f"`{first}`" if first.isprintable() else "An invisible character"
     return GridError(
         "text_around",
-        f"Only one matrix or table is read; {text!r} next to it was not understood. "
-        "Paste the matrix alone, worked out.",
+        f"{text} stands next to the matrix and may change it. Paste the matrix alone, worked out.",
         piece.span(0, len(piece.text)),
     )

@@ -7,6 +7,8 @@ from service.grids import (  # isort: skip
 )  # fmt: skip
 from service.grids.grid import Grid, GridError, GridFormat
 from service.grids.limits import GRID_LIMITS
+from service.grids.program_text import without_title
+from service.grids.session import printed
 from service.grids.source_text import SourceText
 
 # The surest sign comes first: a tag, a command, a bracket; then separators, blanks last of all.
@@ -17,11 +19,24 @@ FORMATS: Final[tuple[GridFormat, ...]] = (
 
 _SEPARATORS: Final = (*",;&|│┃║\t\n\r\x85\u2028\u2029", "<t", "<T", "\\\\")
 
+# LaTeX's thin space, by which factors are parted.
+_THIN_SPACE: Final = "\\,"
+
 
 def read_grid(text: str) -> Grid:
     """The grid in a pasted text. Raises GridError, and nothing else, whatever the text.
 
     Time is linear in the text, which is bounded by ``GRID_LIMITS``.
+    """
+    return grid_of(without_title(pasted_source(text)))
+
+
+def pasted_source(text: str, *, named: bool = False) -> SourceText:
+    """A pasted text within the limits, without the prompts of an interpreter.
+
+    With ``named``, names that were asked for at a prompt stand as headings above their outputs.
+
+    Raises GridError beyond the limits, and where nothing is written.
     """
     if len(text) > GRID_LIMITS.characters:
         most = GRID_LIMITS.characters
@@ -30,13 +45,18 @@ def read_grid(text: str) -> Grid:
     source = SourceText.of(text).strip("\ufeff")
     if not source.text.strip():
         raise GridError("empty", "Nothing is written here.", (0, len(text)))
-    if sum(map(text.count, _SEPARATORS)) > GRID_LIMITS.separators:
+    if sum(map(text.count, _SEPARATORS)) - text.count(_THIN_SPACE) > GRID_LIMITS.separators:
         raise GridError(
             "too_many_cells",
             f"This has more than {GRID_LIMITS.separators} commas, tabs, bars and line ends; "
             "paste only the table or matrix.",
             (0, len(text)),
         )
+    return printed(source, named=named)
+
+
+def grid_of(source: SourceText) -> Grid:
+    """The grid in a piece of a pasted text. Raises GridError where there is none."""
     for candidate in FORMATS:
         if candidate.matches(source.text):
             return candidate.parse(source)
@@ -45,5 +65,5 @@ def read_grid(text: str) -> Grid:
         "This was not recognised as a table or matrix. Put each row on a line of its own with "
         "commas between the values, or paste a table from a spreadsheet, Markdown, LaTeX, MATLAB "
         "or Python.",
-        (0, len(text)),
+        source.whole,
     )

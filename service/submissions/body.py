@@ -1,12 +1,16 @@
 """The shape of a submission, as the body of a request or the content of a file."""
 
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, SkipValidation
 
 from service.catalogue import FeedbackLevel, least
 from service.catalogue.parts import posted_forms
 from service.grading import Submission
+
+# The other limits of a body leave each of so many submissions 4 KiB and 78 lists and objects: all
+# answers to an exercise with seven joints take 2 KiB and 52.
+MAX_SUBMISSIONS: Final = 64
 
 
 class GradeRequest(BaseModel):
@@ -37,3 +41,22 @@ class GradeRequest(BaseModel):
         """The same as the grading takes it, with a report that tells no more than ``ceiling``."""
         asked = ceiling if self.feedback is None else FeedbackLevel(self.feedback)
         return Submission(self.answers, self.angle_unit, least(asked, ceiling), self.echo)
+
+
+class ExerciseSubmission(GradeRequest):
+    """Answers to the parts of the exercise that it names."""
+
+    exercise: str = Field(description="The id of the exercise.")
+
+
+class GradeManyRequest(BaseModel):
+    """Submissions of any learners to any exercises.
+
+    Each is checked by itself when its turn comes, so that one with a fault costs no other.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    submissions: list[SkipValidation[ExerciseSubmission]] = Field(
+        max_length=MAX_SUBMISSIONS, description="The results have the same order."
+    )

@@ -1,4 +1,7 @@
 import asyncio
+import os
+import subprocess
+import sys
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -8,6 +11,8 @@ from fastapi import FastAPI
 
 from service.api.application import application
 from service.catalogue import Exercise, load_catalogue, shipped_folder
+from tests.api.serving import ROOT, announced_port
+from tests.guards import ANSWER
 
 
 class InProcess(httpx.BaseTransport):
@@ -46,3 +51,22 @@ def client(app: FastAPI) -> Iterator[httpx.Client]:
 def client_of() -> Any:
     """Makes a client of any app."""
     return lambda app: httpx.Client(transport=InProcess(app), base_url="http://service")
+
+
+@pytest.fixture(scope="module")
+def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
+    """The port of a real process: `python -m service serve`."""
+    log = tmp_path_factory.mktemp("server") / "log"
+    command = [sys.executable, "-m", "service", "serve", "--port", "0"]
+    with (
+        log.open("wb") as output,
+        subprocess.Popen(
+            command, cwd=ROOT, stdout=output, stderr=output, env=os.environ | {"NO_COLOR": "1"}
+        ) as process,
+    ):
+        try:
+            yield announced_port(process, log)
+        finally:
+            process.terminate()
+            process.wait(timeout=ANSWER)
+    assert "Traceback" not in log.read_text(encoding="utf-8")

@@ -78,7 +78,8 @@ def test_an_exercise_shows_exactly_what_a_student_may_see(secretive: httpx.Clien
     assert isinstance(version, str)
     assert version
     given = {"frames": "given", "base": "given", "tool": "given", "directions": "given"}
-    table = {"columns": ["a", "alpha", "d", "theta"], "rows": ["1", "2"]}
+    given |= {"empty_cells": "unread"}
+    table = {"form": "dh_table", "columns": ["a", "alpha", "d", "theta"], "rows": ["1", "2"]}
     four = ["1", "2", "3", "4"]
     assert shown == {
         "id": "two-joints",
@@ -118,7 +119,7 @@ def test_an_exercise_shows_exactly_what_a_student_may_see(secretive: httpx.Clien
                 }
             },
             part("pose", "transform", "Pose", "", 1)
-            | {"marking": "whole", "shape": {"columns": four, "rows": four}},
+            | {"marking": "whole", "shape": {"form": "matrix", "columns": four, "rows": four}},
         ],
     }
 

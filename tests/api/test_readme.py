@@ -7,6 +7,8 @@ from typing import Any
 
 import httpx
 
+from service.submissions.body import MAX_SUBMISSIONS
+
 ROOT = Path(__file__).parents[2]
 CURL = re.compile(r"^\$ curl -s http://127\.0\.0\.1:8000(\S+) -d @(\S+)$", re.MULTILINE)
 
@@ -17,7 +19,7 @@ def json_blocks(page: str) -> list[dict[str, Any]]:
 
 
 def test_the_readme_s_curl_gets_the_answer_that_it_prints(client: httpx.Client) -> None:
-    ((url, file),) = CURL.findall((ROOT / "README.md").read_text(encoding="utf-8"))
+    (url, file), _ = CURL.findall((ROOT / "README.md").read_text(encoding="utf-8"))
     (printed,) = json_blocks("README.md")
     # As curl sends it: a form's content type, whatever the body is.
     answered = client.post(
@@ -27,6 +29,14 @@ def test_the_readme_s_curl_gets_the_answer_that_it_prints(client: httpx.Client) 
     )
     assert answered.status_code == 200
     assert answered.json() == {**printed, "version": answered.json()["version"]}
+
+
+def test_the_readme_s_curl_for_many_gets_a_report_and_a_problem(client: httpx.Client) -> None:
+    _, (url, file) = CURL.findall((ROOT / "README.md").read_text(encoding="utf-8"))
+    results = client.post(url, content=(ROOT / file).read_bytes()).json()["results"]
+    assert [set(result) for result in results] == [{"report"}, {"problem"}]
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert f"up to {MAX_SUBMISSIONS} submissions" in readme
 
 
 def test_the_worked_example_of_frame_choice_gets_full_marks(client: httpx.Client) -> None:

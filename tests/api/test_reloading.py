@@ -11,7 +11,7 @@ import httpx
 import pytest
 
 from service.authoring import template
-from tests.api.test_server import ROOT, announced_port
+from tests.api.serving import ROOT, announced_port
 from tests.guards import ANSWER
 
 

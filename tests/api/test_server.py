@@ -2,51 +2,18 @@
 
 import json
 import os
-import re
 import socket
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
 import pytest
 
+from tests.api.serving import ROOT
 from tests.guards import ANSWER
 
-ROOT = Path(__file__).parents[2]
 GRADE = "/v1/exercises/planar-rrr/grade"
-
-
-@pytest.fixture(scope="module")
-def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
-    log = tmp_path_factory.mktemp("server") / "log"
-    command = [sys.executable, "-m", "service", "serve", "--port", "0"]
-    with (
-        log.open("wb") as output,
-        subprocess.Popen(
-            command, cwd=ROOT, stdout=output, stderr=output, env=os.environ | {"NO_COLOR": "1"}
-        ) as process,
-    ):
-        try:
-            yield announced_port(process, log)
-        finally:
-            process.terminate()
-            process.wait(timeout=ANSWER)
-    assert "Traceback" not in log.read_text(encoding="utf-8")
-
-
-def announced_port(process: subprocess.Popen[bytes], log: Path) -> int:
-    """Waits until the server says where it listens; the test's own timeout bounds that."""
-    while True:
-        text = log.read_text(encoding="utf-8")
-        if found := re.search(r"running on http://127\.0\.0\.1:(\d+)", text):
-            return int(found[1])
-        try:
-            process.wait(timeout=0.02)
-        except subprocess.TimeoutExpired:
-            continue
-        raise AssertionError(f"the server has ended:\n{text}")
 
 
 def test_it_grades_and_does_not_name_its_server(port: int) -> None:
@@ -57,6 +24,16 @@ def test_it_grades_and_does_not_name_its_server(port: int) -> None:
     assert response.json()["exercise"] == "planar-rrr"
     assert "server" not in response.headers
     assert response.headers["x-content-type-options"] == "nosniff"
+
+
+def test_it_grades_many_in_one_request(port: int) -> None:
+    content = (ROOT / "docs" / "examples" / "many.json").read_bytes()
+    url = f"http://127.0.0.1:{port}/v1/grade"
+    response = httpx.post(url, content=content, trust_env=False, timeout=ANSWER)
+    assert response.status_code == 200
+    right, refused = response.json()["results"]
+    assert (right["report"]["exercise"], right["report"]["points"]) == ("planar-rr", 2)
+    assert refused["problem"]["status"] == 404
 
 
 def test_head_has_no_body_on_the_wire(port: int) -> None:

@@ -20,35 +20,41 @@ def components(*pairs: tuple[str, str]) -> list[dict[str, str]]:
 
 
 SHAPES: dict[tuple[str, str], dict[str, Any]] = {
-    ("planar-rpr-poe", "home"): {"columns": FOUR, "rows": FOUR},
-    ("fundamental-rotations", "about-x"): {"columns": THREE, "rows": THREE},
+    ("planar-rpr-poe", "home"): {"form": "matrix", "columns": FOUR, "rows": FOUR},
+    ("fundamental-rotations", "about-x"): {"form": "matrix", "columns": THREE, "rows": THREE},
     ("planar-rr", "position"): {
+        "form": "list",
         "rows": ["1", "2"],
         "components": components(("x", "length"), ("y", "length")),
     },
     ("planar-rr", "task-space"): {
+        "form": "list",
         "rows": THREE,
         "components": components(("p_x", "length"), ("p_y", "length"), ("φ", "angle")),
     },
     ("spherical-wrist", "zyz"): {
+        "form": "list",
         "rows": THREE,
         "components": components(("about z", "angle"), ("about y", "angle"), ("about z", "angle")),
         "sequence": "ZYZ",
         "axes": "moving",
     },
     ("planar-rpr-poe", "body-screws"): {
+        "form": "screw_axes",
         "columns": SIX,
         "rows": THREE,
         "frame": "body",
         "directions": "given",
     },
     ("simple-twist", "pitch"): {
+        "form": "screw_axes",
         "columns": SIX,
         "rows": ["1"],
         "frame": "space",
         "directions": "given",
     },
     ("dh-conditions", "first"): {
+        "form": "dh_row",
         "columns": ["a", "alpha", "d", "theta"],
         "convention": "standard",
     },

@@ -99,7 +99,7 @@ def test_a_model_answer_that_cannot_be_handed_in(make_exercise: Make) -> None:
     remarks = told(make_exercise, HEAD + robot("R" * 10, f"[{rows}]") + POSE)
     [remark] = [each for each in remarks if each.level is Level.FAILED]
     assert remark.field == "parts[0]"
-    assert "the right answer to pose has an entry of more than the 500 characters" in remark.text
+    assert "the right answer to pose has an entry of more than the 8000 characters" in remark.text
 
 
 @pytest.mark.parametrize(
@@ -196,6 +196,12 @@ def test_two_parts_with_one_answer(more: str, make_exercise: Make) -> None:
     remark = only(told(make_exercise, text), Level.WARNING)
     assert remark.field == "parts[2]"
     assert "again has the same answer as tip" in remark.text
+
+
+def test_four_parts_with_one_answer_are_told_once(make_exercise: Make) -> None:
+    parts = "".join(position(name) for name in ("tip", "again", "third", "fourth"))
+    remark = only(told(make_exercise, HEAD + ROBOT + POSE + parts + CHECKS), Level.WARNING)
+    assert "again, third, fourth have the same answer as tip" in remark.text
 
 
 @pytest.mark.parametrize(

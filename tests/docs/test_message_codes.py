@@ -45,6 +45,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
             "grading/reading/row_labels.py",
             "grading/reading/length_units.py",
             "grading/reading/pasted.py",
+            "grading/reading/matrix_list.py",
             "grading/reading/pasted_table.py",
         ),
     ),
@@ -78,6 +79,9 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
             "grading/judging/convention.py",
             "grading/judging/row_places.py",
             "grading/judging/own_frames/written_table.py",
+            f"{DIAGNOSIS}column_order.py",
+            f"{DIAGNOSIS}intended_table.py",
+            f"{DIAGNOSIS}joint_numbering.py",
             f"{DIAGNOSIS}table_freedom.py",
             f"{DIAGNOSIS}whole_table.py",
         ),
@@ -89,13 +93,28 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
             f"{DIAGNOSIS}exponentials.py",
             f"{DIAGNOSIS}whole_matrix.py",
             f"{DIAGNOSIS}link_products.py",
+            f"{DIAGNOSIS}link_slips.py",
             f"{DIAGNOSIS}rotation_steps.py",
+            f"{DIAGNOSIS}inverse_slips.py",
+            f"{DIAGNOSIS}motion_slips.py",
         ),
     ),
-    ((SINGLE,), (f"{DIAGNOSIS}matrix_entry.py", VALUES)),
+    ((SINGLE,), (f"{DIAGNOSIS}matrix_entry.py", f"{DIAGNOSIS}missing_symbol.py", VALUES)),
+    (
+        ("Slips behind a pose",),
+        (f"{DIAGNOSIS}joint_slips.py", f"{DIAGNOSIS}table_slips.py", f"{DIAGNOSIS}slip_search.py"),
+    ),
     (("Positions",), (f"{DIAGNOSIS}position.py",)),
-    (("Angles",), (f"{DIAGNOSIS}angle.py", f"{DIAGNOSIS}euler_triple.py", VALUES)),
-    (("Screws",), (f"{DIAGNOSIS}screw_axis.py",)),
+    (
+        ("Angles",),
+        (
+            f"{DIAGNOSIS}angle.py",
+            f"{DIAGNOSIS}angle_sum.py",
+            f"{DIAGNOSIS}euler_triple.py",
+            VALUES,
+        ),
+    ),
+    (("Screws",), (f"{DIAGNOSIS}screw_axis.py", f"{DIAGNOSIS}home_position.py")),
     (("Parts as a whole",), ("grading/follow_through.py",)),
 )
 
@@ -202,7 +221,7 @@ def test_a_formula_is_read_with_a_note(line: Line) -> None:
 def test_a_pasted_text_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
     exercise, text = catalogue["planar-rr"], line.example[0].replace(" ↵ ", "\n")
     found: set[str] = set()
-    for part_id in ("table", "pose"):
+    for part_id in ("table", "links", "pose"):
         pasted = preview_pasted(text, exercise, part_id)
         found |= {note.code for note in pasted.notes}
         found |= {pasted.problem.code} if pasted.problem else codes_of(exercise, part_id, text)[1]
@@ -238,7 +257,7 @@ def test_an_entry_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) 
     assert (full - {"rotation_not_orthonormal"}, score) == ({line.code}, set())
 
 
-@examples("Positions")
+@examples("Slips behind a pose", "Positions")
 def test_a_position_draws_its_code(line: Line, catalogue: Mapping[str, Exercise]) -> None:
     exercise, [answer] = catalogue["planar-rr"], line.example
     assert codes_of(exercise, "position", answer) == ({line.code}, set())
@@ -283,8 +302,8 @@ def test_the_message_on_the_page_is_in_the_report(catalogue: Mapping[str, Exerci
 
 def test_the_limits_of_the_page() -> None:
     for limit in (
-        f"more than {LIMITS.characters} characters",
-        f"more than {LIMITS.nodes} operations and operands",
+        f"more than {LIMITS.characters:,} characters",
+        f"more than {LIMITS.nodes:,} operations and values",
         f"more than {LIMITS.depth} levels deep",
         f"more than {GRID_LIMITS.characters:,} characters",
         f"more than {GRID_LIMITS.rows - 1} rows and a header",

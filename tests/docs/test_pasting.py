@@ -8,27 +8,34 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading.reading.column_headers import read_header
+from service.grading.reading.work_budget import MAX_PASTED
 from service.grids import GRID_LIMITS, GridError, read_grid
 from tests.grading.support.submitting import full_marks, handed_in, part
 
 PAGE = (Path(__file__).parents[2] / "docs" / "pasting.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(
-    r"^```\w+ (table|matrix|refused) ?(\w*)\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE
+    r"^```\w+ (table|matrix|links|refused) ?(\w*)\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE
 )
 READ = [(kind, text) for kind, _, text in BLOCKS if kind != "refused"]
 REFUSED = [(code, text) for kind, code, text in BLOCKS if kind == "refused"]
 
+PARTS = {
+    "table": ("rrrp", "table"),
+    "matrix": ("planar-rrr", "pose"),
+    "links": ("planar-rrr-standard", "links"),
+}
+
 
 def test_every_block_is_an_example() -> None:
     assert len(BLOCKS) == PAGE.count("\n```") / 2
-    assert (len(READ), len(REFUSED)) == (13, 4)
+    assert (len(READ), len(REFUSED)) == (19, 4)
 
 
 @pytest.mark.parametrize(("kind", "text"), READ)
 def test_an_example_gets_full_marks(
     kind: str, text: str, catalogue: Mapping[str, Exercise]
 ) -> None:
-    exercise, part_id = ("rrrp", "table") if kind == "table" else ("planar-rrr", "pose")
+    exercise, part_id = PARTS[kind]
     report = part(handed_in(catalogue[exercise], {part_id: text}), part_id)
     assert full_marks(report), report
 
@@ -52,5 +59,5 @@ def test_the_headers_of_the_page() -> None:
 
 
 def test_the_limits_of_the_page() -> None:
-    assert f"{GRID_LIMITS.characters:,} characters" in PAGE
+    assert f"{GRID_LIMITS.characters:,} characters ({MAX_PASTED:,} in all texts" in PAGE
     assert f"{GRID_LIMITS.rows - 1} rows and a header, {GRID_LIMITS.columns} columns" in PAGE

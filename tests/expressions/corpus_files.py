@@ -41,6 +41,28 @@ def cases(name: str) -> list[Case]:
     return found
 
 
+class SpellingCase(NamedTuple):
+    """A useful spelling and its meaning in plain arithmetic; ``refused`` where it is not read."""
+
+    text: str
+    meaning: str
+    refused: bool
+    place: str
+
+
+def spelling_cases() -> list[SpellingCase]:
+    """The cases of corpus/spellings/: ``text | meaning``, or ``text | ! meaning`` if refused."""
+    found = []
+    for file in sorted((FOLDER / "spellings").glob("*.txt")):
+        for number, line in enumerate(file.read_text("utf-8").split("\n"), 1):
+            if line and not line.startswith("# "):
+                text, meaning = line.rsplit(" | ", 1)
+                refused = meaning.startswith("! ")
+                place = f"{file.name}:{number}"
+                found.append(SpellingCase(text, meaning.removeprefix("! "), refused, place))
+    return found
+
+
 class RepairCase(NamedTuple):
     """A text that a rule refuses, or, without a ``code``, a near one that is read as ``answer``.
 

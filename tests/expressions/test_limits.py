@@ -11,14 +11,15 @@ from tests.guards import STALL
 @pytest.mark.parametrize(
     ("text", "code", "span"),
     [
-        ("1" * 501, "too_long", (500, 501)),
-        ("k+" * 110 + "k", "too_many_nodes", (0, 221)),
+        ("1" * 8001, "too_long", (8000, 8001)),
+        ("k+" * 200 + "k", "too_many_nodes", (0, 401)),
+        ("(k+k+k+k)+" * 286 + "k", "too_many_nodes", (0, 2861)),
         ("-" * 41 + "1", "too_deep", (0, 42)),
         ("(" * 41 + "1" + ")" * 41, "too_deep", (40, 41)),
         ("sin(" * 40 + "1" + ")" * 40, "too_deep", (0, 201)),
         # Both limits are broken: the first on the way from right to left is named.
-        ("k+" * 110 + "-" * 41 + "k", "too_deep", (0, 262)),
-        ("-" * 41 + "k" + "+k" * 110, "too_many_nodes", (0, 262)),
+        ("k+" * 1100 + "-" * 41 + "k", "too_deep", (0, 2242)),
+        ("-" * 41 + "k" + "+k" * 1100, "too_many_nodes", (0, 2242)),
         ("-" * 300 + "k", "too_deep", (0, 301)),
     ],
 )
@@ -31,8 +32,9 @@ def test_beyond(text: str, code: str, span: tuple[int, int], arm: Vocabulary) ->
 @pytest.mark.parametrize(
     "text",
     [
-        " " * 499 + "1",
-        "k+" * 99 + "k",
+        " " * 7999 + "1",
+        "k+" * 199 + "k",
+        "(k*k*k*k)+" * 150 + "k*k*k*k",
         "-" * 39 + "1",
         "(" * 40 + "1" + ")" * 40,
         "sin(" * 39 + "1" + ")" * 39,
@@ -47,7 +49,7 @@ def test_within(text: str, arm: Vocabulary) -> None:
 
 
 def test_the_limits_are_those_of_the_design() -> None:
-    assert (LIMITS.characters, LIMITS.nodes, LIMITS.depth) == (500, 200, 40)
+    assert (LIMITS.characters, LIMITS.nodes, LIMITS.depth) == (8000, 2000, 40)
 
 
 @pytest.mark.parametrize(

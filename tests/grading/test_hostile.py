@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from service.catalogue import Exercise
+from service.expressions import LIMITS
 from service.grading import FeedbackLevel, Report, Submission, UnknownPartError, Verdict, grade
 from tests.grading.support.robots import EXACT, STANFORD
 from tests.grading.support.submitting import (
@@ -245,7 +246,7 @@ def test_the_costliest_submission(
     letters = ("q1", "q2", "q4", "q5", "q6", "d2", "d3", "d6")
 
     def text(i: int) -> str:
-        calls = [f"sin({letters[(i + k) % 8]}+{i}.{k})" for k in range(34)]
+        calls = [f"sin({letters[(i + k) % 8]}+{i}.{k})" for k in range(50)]
         return "*".join(calls)
 
     handed_in(exercise, {"pose": [["0"]]})  # what is built on first use is no submission's cost
@@ -253,7 +254,7 @@ def test_the_costliest_submission(
         "table": table([[text(4 * i + j) for j in range(4)] for i in range(12)]),
         "pose": [[text(100 + 4 * i + j) for j in range(4)] for i in range(4)],
     }
-    assert 450 < len(text(115)) <= 500
+    assert 600 < len(text(115)) <= LIMITS.characters
     report, spent = timed(lambda: handed_in(exercise, answers))
     first = part(report, "table").rows[0].cells
     assert Verdict.UNREADABLE not in [cell.verdict for cell in first]

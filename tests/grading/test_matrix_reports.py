@@ -190,11 +190,11 @@ SLIPS: dict[str, Slip] = {
         "What was inverted is the product",
         WHOLE,
     ),
-    "position of another frame": (
+    "position without the tool": (
         STANFORD,
         with_position(STANFORD_POSE, product(STANFORD_LINKS[:5])[:3, 3]),
-        ["wrong_frame"],
-        "The position comes from the pose of frame {5}",
+        ["distance_left_out"],
+        "The offset d6 along the axis of joint 6 is left out",
         POSITION,
     ),
     "rotation of another frame": (
@@ -207,8 +207,8 @@ SLIPS: dict[str, Slip] = {
     "rotation and position, each its own way": (
         STANFORD,
         with_rotation(with_position(STANFORD_POSE, product(STANFORD_LINKS[:5])[:3, 3]), R.T),
-        ["transposed_rotation", "wrong_frame"],
-        "The position comes from",
+        ["transposed_rotation", "distance_left_out"],
+        "d6",
         WHOLE,
     ),
     "columns in another order": (
@@ -336,23 +336,29 @@ SINGLE: dict[str, tuple[Robot, dict[tuple[int, int], str], list[str], list[str]]
         [],
         ["sign", "sign"],
     ),
-    "one entry of the rotation": (SCARA, {(0, 0): "c1"}, ["rotation_not_orthonormal"], ["value"]),
+    "one entry of the rotation": (
+        SCARA,
+        {(0, 0): "2*cos(q1 + q2 - q4)"},
+        ["rotation_not_orthonormal"],
+        ["value"],
+    ),
+    "a joint left out of an entry": (SCARA, {(0, 0): "c1"}, [], ["independent_of"]),
     "one entry that is explained": (SCARA, {(0, 0): "sin(q1 + q2 - q4)"}, [], ["sine_for_cosine"]),
-    "one entry of the position": (SCARA, {(0, 3): "a1"}, [], ["value"]),
+    "one entry of the position": (SCARA, {(0, 3): "a1"}, [], ["independent_of"]),
     "a position of zeros": (
         SCARA,
         {(0, 3): "0", (1, 3): "0", (2, 3): "0"},
         [],
-        ["value", "value", "value"],
+        ["independent_of", "independent_of", "independent_of"],
     ),
     "a left-handed frame": (SCARA, {(2, 2): "1"}, ["left_handed_rotation"], ["sign"]),
     "no rotation at all": (
         SCARA,
         {(0, 0): "a1 + 3", (2, 2): "2"},
         ["rotation_not_orthonormal"],
-        ["value", "value"],
+        ["quantity", "value"],
     ),
-    "a part that is unreadable": (SCARA, {(0, 0): "?", (1, 1): "c1"}, [], ["value"]),
+    "a part that is unreadable": (SCARA, {(0, 0): "?", (1, 1): "c1"}, [], ["independent_of"]),
     "a part without a value": (SCARA, {(0, 0): "1/0"}, [], ["undefined"]),
 }
 
@@ -372,11 +378,12 @@ def test_what_is_wrong_in_places_is_said_there(
 
 
 def test_a_rotation_says_which_column_to_check(catalogue: Mapping[str, Exercise]) -> None:
-    pose = changed(SCARA_POSE, {(0, 0): "c1"})
+    pose = changed(SCARA_POSE, {(0, 0): "2*cos(q1 + q2 - q4)"})
     message = graded_pose(catalogue[SCARA.exercise], pose).feedback[0]
     assert message.severity is Severity.HINT
     assert "column 1 is no unit vector" in message.message
-    skewed = changed(SCARA_POSE, {(0, 1): "c1", (1, 1): "s1"})
+    angle = "q1 + 2*q2 + 3*q4"
+    skewed = changed(SCARA_POSE, {(0, 1): f"cos({angle})", (1, 1): f"sin({angle})"})
     message = graded_pose(catalogue[SCARA.exercise], skewed).feedback[0]
     assert "columns 1 and 2 are not at right angles" in message.message
 

@@ -200,7 +200,7 @@ def refusal(text: str) -> GridError:
         ("[[[1, 2], [3, 4]], [[5, 6], [7, 8]]]", "nested_too_deep", "[1, 2], [3, 4]"),
         ('[{"a": 1, "d": 2}]', "named_values", '"a": 1'),
         (r"\begin{vmatrix} 1 & 2 \end{vmatrix}", "not_a_matrix", r"\begin{vmatrix}"),
-        ("⎡1  2⎤\n⎣3  4⎦", "drawn_matrix", "⎡"),
+        ("⎡1  2⎤\n⎣3  4⎦", "drawn_matrix", "3  4"),
         # brackets, quotes, tags that do not end
         ("[1 2; 3 4", "unbalanced_bracket", "["),
         ("[1 2; 3 4]]", "unbalanced_bracket", "]"),

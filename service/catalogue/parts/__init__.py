@@ -58,7 +58,7 @@ if TYPE_CHECKING:
 else:
     # By the names of the kinds, so that a fault is reported for the intended form only.
     AnyPartSpec = Annotated[reduce(or_, SPECS.values()), Field(discriminator="kind")]
-    AnyShape = reduce(or_, dict.fromkeys(_SHAPES.values()))
+    AnyShape = Annotated[reduce(or_, dict.fromkeys(_SHAPES.values())), Field(discriminator="form")]
 
 
 def posted_forms() -> str:

@@ -30,6 +30,7 @@ class DhRowShape(AnswerShape):
         '`{"a", "alpha", "d", "theta"}`, or `{"none": true}` where the transform has none'
     )
 
+    form: Literal["dh_row"] = "dh_row"
     columns: list[str]
     convention: Convention
 

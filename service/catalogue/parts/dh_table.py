@@ -1,7 +1,7 @@
 """Answer kind ``dh_table``: a Denavit-Hartenberg table of the robot."""
 
 from collections.abc import Iterator
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, TypeAlias
 
 from pydantic import Field, model_validator
 
@@ -13,6 +13,9 @@ from service.catalogue.shapes import AnswerShape, choices
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention
 
+# Whether an empty cell counts for nothing, or for 0.
+EmptyCells: TypeAlias = Literal["unread", "zero"]
+
 _CHOICES = {"frames", "base", "tool", "directions"}
 
 
@@ -21,6 +24,7 @@ class DhTableShape(AnswerShape):
 
     posted: ClassVar[str] = '`{"rows": [{"a", "alpha", "d", "theta"}, …]}`'
 
+    form: Literal["dh_table"] = "dh_table"
     columns: list[str]
     rows: list[str] = Field(
         description="Row labels in order: joint numbers, `e` for the end effector. Where either "
@@ -31,12 +35,15 @@ class DhTableShape(AnswerShape):
     base: GivenOrFree
     tool: GivenOrFree
     directions: GivenOrFree
+    empty_cells: EmptyCells
 
     def _clauses(self) -> Iterator[str]:
         rows, columns = ", ".join(self.rows), ", ".join(self.columns)
         yield f"a table with the rows {rows} and the columns {columns}"
         yield f"{self.convention} convention"
         yield from choices(**self.model_dump(include=_CHOICES))
+        if self.empty_cells == "zero":
+            yield "empty cells are 0"
 
 
 class DhTableSpec(TablePartSpec):
@@ -61,6 +68,8 @@ class DhTableSpec(TablePartSpec):
     """Whose choice the tool frame is."""
     directions: GivenOrFree = "given"
     """Whose choice the positive direction of each joint is."""
+    empty_cells: EmptyCells = "unread"
+    """Whether a cell that is empty or holds a dash is "unread" and earns nothing, or "zero"."""
 
     def shape(self, reference: Reference | None) -> DhTableShape:
         """The columns and the row labels of the table."""
@@ -71,7 +80,11 @@ class DhTableSpec(TablePartSpec):
             labels = max((table.labels for table in reference.tables.values()), key=len)
         chosen = self.model_dump(include=_CHOICES)
         return DhTableShape(
-            columns=list(COLUMNS), rows=list(labels), convention=self.convention, **chosen
+            columns=list(COLUMNS),
+            rows=list(labels),
+            convention=self.convention,
+            empty_cells=self.empty_cells,
+            **chosen,
         )
 
     @model_validator(mode="after")

@@ -16,11 +16,12 @@ class LinkTransformsShape(AnswerShape):
 
     posted: ClassVar[str] = "a list of matrices"
 
+    form: Literal["link_transforms"] = "link_transforms"
     matrices: list[str]
     rows: list[str]
     columns: list[str]
-    convention: str
-    frames: str
+    convention: Convention
+    frames: GivenOrFree
 
     def _clauses(self) -> Iterator[str]:
         size = f"{len(self.rows)} rows and {len(self.columns)} columns"

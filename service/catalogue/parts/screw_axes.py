@@ -17,6 +17,7 @@ class ScrewAxesShape(AnswerShape):
 
     posted: ClassVar[str] = "a list of six-vectors (ω; v)"
 
+    form: Literal["screw_axes"] = "screw_axes"
     columns: list[str]
     rows: list[str]
     frame: Literal["space", "body"]

@@ -9,11 +9,18 @@ from service.expressions.characters.unicode import MARKER
 FUNCTIONS: Final = {
     **{name: name for name in ("sin", "cos", "tan", "exp", "atan", "asin", "acos", "tg", "abs")},
     **{name: name for name in ("arcsin", "arccos", "arctan", "arctg", "sind", "cosd", "tand")},
+    **{name: name for name in ("sec", "csc", "cosec", "cot", "cotg", "ctg", "sen", "arcsen")},
+    # These are refused by their names, which is clearer than an unknown command.
+    **{name: name for name in ("log", "ln", "lg", "sinh", "cosh", "tanh", "coth", "max", "min")},
+    **{name: name for name in ("det", "gcd", "sgn", "arsinh", "arcosh")},
 }
 PLAIN: Final = {
     **greek.LETTERS,
+    **{f"up{name}": letter for name, letter in greek.LETTERS.items() if name.islower()},
+    **{f"var{name}": letter for name, letter in greek.LETTERS.items() if name[0].isupper()},
     "vartheta": "θ", "varphi": "φ", "varepsilon": "ε", "varrho": "ρ", "varsigma": "σ",
     "cdot": "*", "times": "*", "ast": "*", "bullet": "*", "div": "/", "ell": "l",
+    "ldotp": "*", "cdotp": "*", "slash": "/",
     "degree": "°", "degrees": "°", "textdegree": "°", "circ": "°", "deg": " deg ", "rad": " rad ",
     "lbrace": "{", "rbrace": "}", "lbrack": "[", "rbrack": "]",
     "vert": "|", "lvert": "|", "rvert": "|", "mid": "|", "star": MARKER,
@@ -28,11 +35,27 @@ STYLES: Final = frozenset({
 SPACES: Final = frozenset({
     "quad", "qquad", "thinspace", "medspace", "thickspace", "enspace", "enskip", "displaystyle",
     "textstyle", "scriptstyle", "limits", "nolimits", "left", "right", "big", "Big", "bigg", "Bigg",
-    "bigl", "Bigl", "biggl", "Biggl", "bigr", "Bigr", "biggr", "Biggr", "bigm", "middle", "rm",
+    "bigl", "Bigl", "biggl", "Biggl", "bigr", "Bigr", "biggr", "Biggr", "bigm", "middle",
+    "mleft", "mright", "relax", "nonumber", "notag", "strut", "allowbreak",
 })  # fmt: skip
+# Commands that style the rest of the group that they stand in: {\it q}.
+SWITCHES: Final = frozenset({
+    "rm", "it", "bf", "sf", "tt", "sl", "em", "cal", "mit", "normalfont", "upshape", "bfseries",
+})  # fmt: skip
+# Commands that mean nothing, and whose argument means nothing.
+IGNORED: Final = frozenset({"hspace", "vspace", "phantom", "hphantom", "vphantom", "label"})
 BLANK_SYMBOLS: Final = frozenset(",;:!> /()[]")
 
 COMMAND: Final = re.compile(r"\\(?:([A-Za-z]+)\*?|(.))", re.DOTALL)
+# Environments around one formula.
+ENVIRONMENT: Final = re.compile(
+    r"\s*\{\s*(?:equation|displaymath|math|align|aligned|gather|gathered|split|multline)\*?\s*\}"
+)
+# The sign for a product of SymPy's latex(..., mul_symbol="ldot").
+DOT_BETWEEN_SPACES: Final = re.compile(r"\\,\s*\.\s*\\,")
+# A letter as Mathematica writes it in plain text: \[Theta].
+NAMED_LETTER: Final = re.compile(r"\\\[(Capital|Curly)?([A-Z][a-z]+)\]")
+_BRACE: Final = re.compile(r"\\.|[{}]", re.DOTALL)
 RAISED_CIRCLE: Final = re.compile(
     r"\^\s*(?:\\(?:circ|degree)(?![A-Za-z])|\{\s*\\(?:circ|degree)\s*\}|[°∘◦]|\{\s*[°∘◦]\s*\})"
 )
@@ -46,3 +69,15 @@ def known_prefix(name: str) -> str | None:
         if name[:end] in FUNCTIONS or name[:end] in PLAIN:
             return name[:end]
     return None
+
+
+def brace_partners(source: str) -> dict[int, int]:
+    """The place of the closing brace for that of each opening one that has a partner."""
+    partners: dict[int, int] = {}
+    opened: list[int] = []
+    for match in _BRACE.finditer(source):
+        if match.group() == "{":
+            opened.append(match.start())
+        elif match.group() == "}" and opened:
+            partners[opened.pop()] = match.start()
+    return partners

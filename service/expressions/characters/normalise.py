@@ -6,51 +6,36 @@ A character that looks like another one, or cannot be seen, is named in an error
 """
 
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Final
 
 from service.expressions.characters import greek, latex_commands, unicode
+from service.expressions.characters.writer import Characters, CharacterWriter
 from service.expressions.errors import Cause, Span, UnreadableError
 from service.expressions.limits import LIMITS
 
 _PLAIN: Final = re.compile(r"[ -#%-\[\]^_a-z|]*")
 _CHUNK: Final = re.compile(rf"[A-Za-z0-9{greek.CLASS} +\-*/().,|\[\]{{}}]+")
 _INDEX: Final = re.compile(rf"[A-Za-z0-9{greek.CLASS} _*]*")
+# An index as Word writes it in one line: θ_(1).
+_BRACKETED_INDEX: Final = re.compile(r"\(\s*([A-Za-z0-9]+)\s*\)")
 _PLAIN_INDEX: Final = re.compile(r"_[A-Za-z0-9]+")
-_POWER: Final = re.compile(r"[+-]?[0-9]+|[A-Za-z]")
-# These separate cells or lines, and not the factors of a product.
-BREAKS: Final = frozenset("\t\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029")
-
-
-@dataclass(frozen=True, slots=True)
-class Characters:
-    """Plain text, and for each of its characters the [start, end) in the text as typed.
-
-    ``starts`` and ``ends`` are None where nothing was changed.
-    """
-
-    text: str
-    starts: list[int] | None = None
-    ends: list[int] | None = None
+# An index that is not joined to its name by the underscore alone.
+_SPACED_INDEX: Final = re.compile(r" _|_\(")
 
 
 def normalise(source: str) -> Characters:
     """``source`` in plain characters. Raises UnreadableError for a character that is not read."""
-    if _PLAIN.fullmatch(source) and "^*" not in source:
+    if (
+        _PLAIN.fullmatch(source)
+        and "^*" not in source
+        and ("_" not in source or not _SPACED_INDEX.search(source))
+    ):
         return Characters(source)
     return _Normaliser(source).run()
 
 
-class _Normaliser:
+class _Normaliser(CharacterWriter):
     """One pass over the source, a run of plain characters or a LaTeX command at a time."""
-
-    def __init__(self, source: str) -> None:
-        self.source = source
-        self.letters: list[str] = []
-        self.starts: list[int] = []
-        self.ends: list[int] = []
-        self.dollars = source.count("$") % 2 == 0
 
     def run(self) -> Characters:
         self._range(0, len(self.source), 0)
@@ -64,21 +49,15 @@ class _Normaliser:
             chunk = _CHUNK.match(self.source, position, end)
             if chunk is None:
                 position = self._step(position, end, depth)
+            elif self.commas and (comma := self.commas[-1]).start() < chunk.end():
+                self.commas.pop()
+                if comma.start() < position:
+                    continue
+                self._copy(position, comma.start())
+                position = self._emit(".", *comma.span())
             else:
                 self._copy(position, chunk.end())
                 position = chunk.end()
-
-    def _copy(self, start: int, end: int) -> None:
-        self.letters.extend(self.source[start:end])
-        self.starts.extend(range(start, end))
-        self.ends.extend(range(start + 1, end + 1))
-
-    def _emit(self, text: str, start: int, end: int) -> int:
-        for letter in text:
-            self.letters.append(letter)
-            self.starts.append(start)
-            self.ends.append(end)
-        return end
 
     def _step(self, at: int, end: int, depth: int) -> int:
         letter = self.source[at]
@@ -121,10 +100,13 @@ class _Normaliser:
 
     def _underscore(self, at: int, end: int, depth: int) -> int:
         r"""Read _1, _{12}, _\alpha and _{\theta_1}: an index of letters and digits."""
+        self._close_up()
         start = self._skip_blanks(at + 1, end)
         if start < end and self.source[start] == "{":
             stop = self._partner(start, end)
             inside, after = (start + 1, stop), stop + 1
+        elif bracketed := _BRACKETED_INDEX.match(self.source, start, end):
+            inside, after = bracketed.span(1), bracketed.end()
         elif command := latex_commands.COMMAND.match(self.source, start, end):
             after = command.end()
             if command[1] in latex_commands.STYLES:
@@ -132,58 +114,28 @@ class _Normaliser:
             inside = start, after
         else:
             return self._emit("_", at, at + 1)
-        content = _Normaliser(self.source)
+        content = _Normaliser(self.source, self.partners)
         content._range(*inside, depth + 1)
         text = "".join(content.letters)
         if not text.strip() or not _INDEX.fullmatch(text):
             raise UnreadableError("subscript", (at, after), index=self.source[slice(*inside)])
         self._emit("_", at, inside[0])
         stars: list[Span] = []
+        # An underscore before each letter says that the index is one: l_{1h} is no product of l_1.
+        mark = "_" if not text.isdigit() else ""
+        written = ""
         for letter, place in zip(text, zip(content.starts, content.ends, strict=True), strict=True):
             if letter == "*":
                 stars.append(place)
             elif letter not in " _":
-                self._emit(letter, *place)
+                self._emit(f"{written}{letter}", *place)
+                written = mark
         self.ends[-1] = after
         # The blank keeps q_{1}2 from becoming q12.
         self._emit(" " if self.source[after : after + 1].isdigit() else "", at, at)
         for star in stars:
             self._emit(unicode.MARKER, *star)
         return after
-
-    def _subscript_run(self, at: int) -> int:
-        """Read ₁₂: one index."""
-        end = self._end_of_run(at, unicode.SUBSCRIPTS)
-        if self.source[end : end + 1] in {"₊", "₋"}:
-            raise UnreadableError("subscript", (at, end + 1), index=self.source[at:end])
-        self._emit("_", at, at)
-        self._spell(unicode.SUBSCRIPTS, at, end)
-        if self.source[end : end + 1].isdigit():
-            self._emit(" ", end, end)
-        return end
-
-    def _superscript_run(self, at: int) -> int:
-        """Read ⁻¹: one power."""
-        end = self._end_of_run(at, unicode.SUPERSCRIPTS)
-        if self.source[at:end] == "⁰" and self.source[at - 1 : at].isdigit():
-            raise UnreadableError("raised_zero", (at, end))
-        power = "".join(unicode.SUPERSCRIPTS[letter] for letter in self.source[at:end])
-        is_simple = _POWER.fullmatch(power) is not None
-        self._emit("^" if is_simple else "^(", at, at)
-        self._spell(unicode.SUPERSCRIPTS, at, end)
-        # The blank keeps x²3 from becoming x^23.
-        self._emit(" " if is_simple else ")", end, end)
-        return end
-
-    def _end_of_run(self, at: int, table: Mapping[str, str]) -> int:
-        end = at
-        while end < len(self.source) and self.source[end] in table:
-            end += 1
-        return end
-
-    def _spell(self, table: Mapping[str, str], at: int, end: int) -> None:
-        for place in range(at, end):
-            self._emit(table[self.source[place]], place, place + 1)
 
     # --- LaTeX
 
@@ -194,7 +146,7 @@ class _Normaliser:
         name, symbol = match.groups()
         after = match.end()
         if symbol is not None:
-            return self._symbol(symbol, at, after)
+            return self._symbol(symbol, at, after, end)
         if self.source[after - 1] == "*" and name not in latex_commands.STYLES:
             after -= 1
         if name in latex_commands.PLAIN:
@@ -203,16 +155,45 @@ class _Normaliser:
             return self._function(latex_commands.FUNCTIONS[name], at, after)
         if name in latex_commands.SPACES:
             return self._emit(" ", at, after)
+        return self._structure(name, at, after, end, depth)
+
+    def _structure(self, name: str, at: int, after: int, end: int, depth: int) -> int:
+        """Read a command that has to do with what stands around it."""
         if name in latex_commands.STYLES:
-            return self._style(name, at, after, end, depth)
+            is_word = name == "operatorname"
+            return self._styled(self._argument(at, after, end), at, depth, is_word=is_word)
+        if name in latex_commands.SWITCHES:
+            return self._switch(at, after, end, depth)
         if name in latex_commands.FRACTIONS:
             return self._fraction(at, after, end, depth)
         if name == "sqrt":
             return self._root(at, after, end, depth)
+        if name == "over":
+            return self._over(at, after, depth)
+        if name == "ang":
+            return self._emit("°", after, self._braced(at, after, end, depth))
+        if (stop := self._without_meaning(name, at, after, end)) is not None:
+            return self._emit(" ", at, stop)
         causes: dict[str, Cause] = {"pm": "plus_minus", "mp": "plus_minus", "infty": "not_finite"}
         raise UnreadableError(causes.get(name, "command"), (at, after), name=name)
 
-    def _symbol(self, symbol: str, at: int, after: int) -> int:
+    def _without_meaning(self, name: str, at: int, after: int, end: int) -> int | None:
+        """The end of a command that means nothing together with its argument, else None."""
+        if name in latex_commands.IGNORED:
+            return self._argument(at, after, end)[2]
+        environment = latex_commands.ENVIRONMENT.match(self.source, after, end)
+        return environment.end() if environment and name in {"begin", "end"} else None
+
+    def _symbol(self, symbol: str, at: int, after: int, end: int) -> int:
+        if symbol == "," and (dot := latex_commands.DOT_BETWEEN_SPACES.match(self.source, at, end)):
+            return self._emit("*", at, dot.end())
+        named = latex_commands.NAMED_LETTER.match(self.source, at, end) if symbol == "[" else None
+        if named is not None:
+            name = named[2] if named[1] == "Capital" else named[2].lower()
+            plain = latex_commands.PLAIN.get(name)
+            if plain is None:
+                raise UnreadableError("command", named.span(), name="")
+            return self._emit(plain, at, named.end())
         if symbol in "{}_":
             return self._emit(symbol, at, after)
         if symbol in latex_commands.BLANK_SYMBOLS:
@@ -229,16 +210,66 @@ class _Normaliser:
             self._emit(" ", after, after)
         return after
 
-    def _style(self, name: str, at: int, after: int, end: int, depth: int) -> int:
-        """Read the argument of a command that only styles it."""
-        start, stop, after = self._argument(at, after, end)
-        is_word = name == "operatorname" or sum(map(str.isalpha, self.source[start:stop])) > 1
+    def _styled(
+        self, argument: tuple[int, int, int], at: int, depth: int, *, is_word: bool = False
+    ) -> int:
+        """Read the argument of a command that only styles it; return where to go on."""
+        start, stop, after = argument
+        inside = self.source[start:stop]
+        is_word = is_word or sum(map(str.isalpha, inside)) > 1
         if is_word and self.letters and self.letters[-1].isalpha():
             self._emit(" ", at, at)
+        first = len(self.letters)
         self._range(start, stop, depth + 1)
+        if "$" in inside:
+            self._without_blanks(first)
         if is_word and self.source[after : after + 1].isalpha():
             self._emit(" ", after, after)
         return after
+
+    def _without_blanks(self, first: int) -> None:
+        r"""Join \text{$\theta $1}, as Mathematica prints a name with a Greek letter."""
+        kept = [i for i in range(first, len(self.letters)) if self.letters[i] != " "]
+        letters, starts, ends = self.letters, self.starts, self.ends
+        places = [(letters[i], starts[i], ends[i]) for i in kept]
+        self._drop(first)
+        for place in places:
+            self._emit(*place)
+
+    def _switch(self, at: int, after: int, end: int, depth: int) -> int:
+        r"""Read {\rm cos} as \mathrm{cos}; a switch that begins no group means nothing."""
+        if not self.letters or self.letters[-1] != "{" or self.source[self.starts[-1]] != "{":
+            return self._emit(" ", at, after)
+        opener = self.starts[-1]
+        stop = self._partner(opener, len(self.source))
+        if stop >= end:
+            return self._emit(" ", at, after)
+        self._drop(len(self.letters) - 1)
+        start = self._skip_blanks(after, stop)
+        inner = stop
+        if self.source[start] == "{" and self._partner(start, end) == stop - 1:
+            start, inner = start + 1, stop - 1
+        return self._styled((start, inner, stop + 1), opener, depth)
+
+    def _over(self, at: int, after: int, depth: int) -> int:
+        r"""Read {a \over b} as \frac{a}{b}."""
+        level = 0
+        for place in range(len(self.letters) - 1, -1, -1):
+            letter = self.letters[place]
+            level += (letter == "}") - (letter == "{")
+            if level < 0:
+                break
+        if level >= 0 or self.source[self.starts[place]] != "{":
+            raise UnreadableError("argument", (at, after), name=self.source[at:after])
+        opener = self.starts[place]
+        stop = self._partner(opener, len(self.source))
+        self.letters.insert(place, unicode.OPEN)
+        self.starts.insert(place, opener)
+        self.ends.insert(place, opener)
+        self._emit("}/{", at, after)
+        self._range(after, stop, depth + 1)
+        self._emit("}", stop, stop + 1)
+        return self._emit(unicode.CLOSE, stop, stop + 1)
 
     def _fraction(self, at: int, after: int, end: int, depth: int) -> int:
         self._emit(unicode.OPEN, at, after)
@@ -262,32 +293,3 @@ class _Normaliser:
         self._range(start, stop, depth + 1)
         self._emit("}", stop, after)
         return after
-
-    def _argument(self, at: int, after: int, end: int) -> tuple[int, int, int]:
-        """The [start, stop) of a command's argument, and the place behind it."""
-        start = self._skip_blanks(after, end)
-        if start >= end or self.source[start] in "}+-*/)]":
-            raise UnreadableError("argument", (at, after), name=self.source[at:after])
-        if self.source[start] == "{":
-            stop = self._partner(start, end)
-            return start + 1, stop, stop + 1
-        command = latex_commands.COMMAND.match(self.source, start, end)
-        stop = command.end() if command else start + 1
-        return start, stop, stop
-
-    def _skip_blanks(self, at: int, end: int) -> int:
-        while at < end and self.source[at].isspace():
-            at += 1
-        return at
-
-    def _partner(self, at: int, end: int) -> int:
-        """The place of the brace that closes the one at ``at``."""
-        depth = 0
-        for place in range(at, end):
-            letter = self.source[place]
-            if self.source[place - 1 : place] == "\\":
-                continue
-            depth += (letter == "{") - (letter == "}")
-            if depth == 0:
-                return place
-        raise UnreadableError("unclosed", (at, at + 1))

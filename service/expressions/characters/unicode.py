@@ -21,6 +21,13 @@ _OPERATORS: Final = {
     "√": "√",
     "ˆ": "^",
     "ℓ": "l",
+    "度": "°",
+    # Word's brackets that are not drawn, and the two signs that MathML and Word put between a
+    # function and its argument, and between factors. A blank: sin⁡2⁢q is the sine of 2q.
+    "〖": "{",
+    "〗": "}",
+    "\u2061": " ",
+    "\u2062": " ",
 }
 _SPELLINGS: Final = _OPERATORS | greek.VARIANTS
 SUPERSCRIPTS: Final = dict(

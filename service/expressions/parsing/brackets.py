@@ -1,5 +1,6 @@
 """The brackets that are open while a text is read."""
 
+import re
 from typing import Final
 
 from service.expressions.characters.unicode import CLOSE, OPEN
@@ -7,6 +8,7 @@ from service.expressions.errors import Span, UnreadableError
 from service.expressions.limits import LIMITS
 
 PARTNERS: Final = {"(": ")", "[": "]", "{": "}", "|": "|", OPEN: CLOSE}
+_ROUND: Final = re.compile("[()]")
 # In place of a token: brackets around brackets mean nothing and become no tokens.
 WRAPPING: Final = -1
 
@@ -40,3 +42,15 @@ class Brackets:
     def in_bars(self) -> bool:
         """Whether the innermost bracket is a bar, as in |x|."""
         return bool(self.opened) and self.opened[-1][0] == "|"
+
+
+def partners(text: str) -> dict[int, int]:
+    """The place of the closing round bracket for that of each opening one with a partner."""
+    found: dict[int, int] = {}
+    opened: list[int] = []
+    for match in _ROUND.finditer(text):
+        if match.group() == "(":
+            opened.append(match.start())
+        elif opened:
+            found[opened.pop()] = match.start()
+    return found

@@ -4,6 +4,7 @@ import re
 from typing import Final, Literal, NamedTuple
 
 from service.expressions.characters import greek
+from service.expressions.parsing.letter_case import split_in_other_case
 from service.expressions.parsing.words import Piece, split
 from service.expressions.vocabulary.symbols import Vocabulary
 
@@ -27,16 +28,22 @@ class Indexed(NamedTuple):
     end: int
 
 
-def indexed(run: str, text: str, end: int, vocabulary: Vocabulary) -> Indexed | None:
-    """``run``, which ends at ``text[end]``, with the index in brackets behind it, if any."""
+def indexed(
+    run: str, text: str, end: int, vocabulary: Vocabulary, *, from_one: bool = False
+) -> Indexed | None:
+    """``run``, which ends at ``text[end]``, with the index in brackets behind it, if any.
+
+    ``from_one`` says that square brackets count from 1, too.
+    """
     match = INDEX.match(text, end)
     if match is None or _STEM.search(run) is None:
         return None
-    style: Style = "[" if match[1] is not None else "("
+    style: Style = "[" if match[1] is not None and not from_one else "("
     number = int(match[1] or match[2] or match[3])
     if style == "[":
         number += _first(run, vocabulary)
-    pieces = split(f"{run}{number}", vocabulary)
+    name = f"{run}{number}"
+    pieces = split(name, vocabulary) or split_in_other_case(name, vocabulary)
     if pieces is not None and pieces[-1].kind not in {"symbol", "invalid_shorthand", "shorthand"}:
         pieces = None
     return Indexed(pieces, style, str(number), match.end())

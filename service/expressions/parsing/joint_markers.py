@@ -21,8 +21,8 @@ Star = Literal["marker", "noted_marker", "product", "noted_product", "ambiguous"
 # Behind a marked joint variable, an angle is subtracted as often as added: θ1*-π/2, θ1*-90°,
 # θ1*-\frac{\pi}{2}.
 _ANGLE_SUBTRACTED: Final = (
-    rf"\s*-[\s({{{OPEN}]*(?:pi\b|π|[0-9.]+\s*\*?\s*(?:pi\b|π)|[0-9.]+\s*(?:°|deg)|"
-    rf"[0-9{{}}/ ]+{CLOSE}\s*\*?\s*(?:pi\b|π))|\s*-\s*[0-9]{{2,}}\s*$"
+    rf"\s*-[\s({{{OPEN}]*(?:pi\b|π|[0-9.]+\s*+\*?+\s*+(?:pi\b|π)|[0-9.]+\s*(?:°|deg)|"
+    rf"[0-9{{}}/ ]+{CLOSE}\s*+\*?+\s*+(?:pi\b|π))|\s*-\s*[0-9]{{2,}}\s*$"
 )
 _NOTHING: Final = re.compile(r"\s*(?:[)\]},]|$)")
 _PLUS: Final = re.compile(r"\s*\+")

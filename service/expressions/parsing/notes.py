@@ -2,7 +2,8 @@
 
 from typing import Final
 
-from service.expressions.errors import Note, Span
+from service.expressions.errors import Note, Span, quoted
+from service.expressions.limits import LIMITS
 from service.expressions.parsing.joint_markers import Star
 from service.expressions.parsing.words import Piece
 from service.expressions.vocabulary.functions import CAPITALS, IN_DEGREES, OF_DEGREES, PI_CAPITALS
@@ -17,6 +18,9 @@ _MARKER: Final = "The * behind the joint variable was read as its marker, not as
 _PRODUCT: Final = (
     "The * behind the joint variable was read as a product; if it marks the variable, leave it out."
 )
+_SHORT: Final = {
+    "c": ("cosine", "cos"), "s": ("sine", "sin"), "C": ("cosine", "cos"), "S": ("sine", "sin"),
+}  # fmt: skip
 
 
 class WordNotes:
@@ -30,7 +34,8 @@ class WordNotes:
         self.notes = notes
 
     def _add(self, code: str, message: str, span: Span) -> None:
-        self.notes.append(Note(code, message, span))
+        if len(self.notes) < LIMITS.notes:
+            self.notes.append(Note(code, message, span))
 
     def star(self, star: Star, span: Span) -> None:
         """Note a star that marks a joint variable, or that stands where a marker may stand."""
@@ -50,15 +55,32 @@ class WordNotes:
             names = "+".join(symbol.name for symbol in piece.symbols)
             self._add("shorthand", f"This was read as {piece.word}({names}).", (a, b))
 
+    def product(self, letter: str, angle: Symbol, a: int, b: int) -> None:
+        """Note a product that looks like the cosine or sine of an angle."""
+        function = _SHORT.get(letter)
+        if function is not None:
+            message = (
+                f"This was read as {letter}*{angle.name}. For the {function[0]}, write "
+                f"{function[1]}({angle.name})."
+            )
+            self._add("shorthand", message, (a, b))
+
+    def other_capitals(self, name: str, a: int, b: int) -> None:
+        """Note l1 where only L1 is declared."""
+        self._add("letter_case", f"{quoted(self.source[a:b])} was read as {name}.", (a, b))
+
     def pi(self, a: int, b: int) -> None:
         """Note Pi and PI."""
-        if self.source[a:b] in PI_CAPITALS:
+        of_program = self.source[a - 1 : a] in {".", ":"} or self.source[b : b + 2] == "()"
+        if self.source[a:b] in PI_CAPITALS and not of_program:
             self._add("letter_case", "This was read as the number pi.", (a, b))
 
     def function(self, name: str, a: int, b: int) -> None:
         """Note a name in capitals, a function of degrees, and acos where a is a symbol."""
         written = self.source[a:b]
-        if written in CAPITALS:
+        # Mathematica writes Cos[q1], and C# Math.Cos(q1).
+        of_program = self.source[a - 1 : a] in {".", ":"} or self.source[b : b + 1] == "["
+        if written in CAPITALS and not of_program:
             self._add("letter_case", f"This was read as the function {name}.", (a, b))
         if name in OF_DEGREES:
             message = (

@@ -3,10 +3,13 @@
 The parser calls each method once the rule's operands are built.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import Final
 
-from service.expressions.errors import Note, UnreadableError
-from service.expressions.parsing.lexer import Token
+from service.expressions.errors import Note, UnreadableError, shortened
+from service.expressions.limits import LIMITS
+from service.expressions.parsing.built import built
+from service.expressions.parsing.tokens import Token
 from service.expressions.tree import (
     Binary,
     Call,
@@ -19,7 +22,9 @@ from service.expressions.tree import (
     UnitName,
     children,
 )
-from service.expressions.vocabulary.functions import ARITY, INVERSE, OF_DEGREES
+from service.expressions.vocabulary.functions import ARITY, BUILT, INVERSE, OF_DEGREES
+
+_LOOKED_AT: Final = 64
 
 
 class Builder:
@@ -122,7 +127,9 @@ class Builder:
         Raises UnreadableError for a wrong number of them.
         """
         _, (name, _), start, _ = function
-        if len(arguments) != ARITY.get(name, 1):
+        if name == "atan" and len(arguments) == 2 and self._is_mathematica(function):
+            return self._angle_of_point(function, arguments, end)
+        if len(arguments) != _arity(name, arguments):
             raise _wrong_number(function, arguments, end)
         if name == "deg" or name == "rad":
             node = self.unit(arguments[0], name, end)
@@ -138,7 +145,7 @@ class Builder:
         Raises UnreadableError for a function of two.
         """
         name = function[1][0]
-        if ARITY.get(name, 1) != 1 or name == "deg" or name == "rad":
+        if _arity(name) != 1 or name == "deg" or name == "rad":
             raise _wrong_number(function, [argument], argument.end)
         if type(argument) is Binary and (
             argument.operator == "^" or (name == "sqrt" and id(argument) not in self.grouped)
@@ -149,10 +156,24 @@ class Builder:
     def _called(self, function: Token, arguments: tuple[Node, ...], end: int) -> Node:
         _, (name, power), start, _ = function
         self.degree_functions = self.degree_functions or name in OF_DEGREES
-        call = Call(name, arguments, start, end)
+        call: Node = Call(name, arguments, start, end)
+        if name in BUILT:
+            call = built(name, arguments, start, end)
+            self.grouped.add(id(call))
         if power is None:
             return call
         return Binary("^", call, Number(float(power), str(power), start, start), start, end)
+
+    def _is_mathematica(self, function: Token) -> bool:
+        start, end = function[2:]
+        return self.source[start:end] == "ArcTan" and self.source[end : end + 1] == "["
+
+    def _angle_of_point(self, function: Token, arguments: list[Node], end: int) -> Node:
+        """Build ArcTan[x, y], whose order is the other than that of atan2(y, x)."""
+        (_, (_, power), start, stop), (x, y) = function, arguments
+        message = "Mathematica's ArcTan[x, y] was read as atan2(y, x)."
+        self._note("atan2_order", message, start, end)
+        return self._called(("FUNCTION", ("atan2", power), start, stop), (y, x), end)
 
     def _may_be_degrees(self, base: Node) -> bool:
         """Whether ``base`` is made of numbers alone, and is not the ten of 3*10^0."""
@@ -189,13 +210,14 @@ class Builder:
                 return
 
     def _text(self, node: Node) -> str:
-        return self.source[node.start : node.end]
+        return shortened(self.source[node.start : node.end])
 
     def _note(self, code: str, message: str, start: int, end: int) -> None:
-        self.notes.append(Note(code, message, (start, end)))
+        if len(self.notes) < LIMITS.notes:
+            self.notes.append(Note(code, message, (start, end)))
 
     def _note_argument(self, start: int, end: int) -> None:
-        text = self.source[start:end]
+        text = shortened(self.source[start:end])
         message = f"Without brackets, {text} was read as the function's argument."
         self._note("bare_argument", message, start, end)
 
@@ -224,9 +246,12 @@ def _outside_calls(node: Node) -> Iterator[Node]:
 
 def _names(node: Node) -> set[str]:
     """The functions called, and the stems of the symbols used, anywhere in ``node``."""
-    found = set()
+    found: set[str] = set()
     pending = [node]
-    while pending:
+    # The arguments of atan2 may be long, and stand in one another.
+    for _ in range(_LOOKED_AT):
+        if not pending:
+            break
         part = pending.pop()
         if type(part) is Call:
             found.add(part.function)
@@ -236,9 +261,15 @@ def _names(node: Node) -> set[str]:
     return found
 
 
+def _arity(name: str, arguments: Sequence[Node] = ()) -> int:
+    """How many values a function takes; as many as there are where it takes any number."""
+    number = BUILT.get(name)
+    return ARITY.get(name, 1) if number is None else number or len(arguments)
+
+
 def _wrong_number(function: Token, arguments: list[Node], end: int) -> UnreadableError:
     _, (name, _), start, stop = function
     return UnreadableError(
-        "arguments", (start, end), name=name, function=(start, stop), wanted=ARITY.get(name, 1),
+        "arguments", (start, end), name=name, function=(start, stop), wanted=_arity(name) or 2,
         places=[(argument.start, argument.end) for argument in arguments],
     )  # fmt: skip

@@ -8,13 +8,14 @@ so q12 is not q1·2.
 import re
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Final, Literal
+from itertools import pairwise
+from typing import Final
 
 from service.expressions.characters import greek
 from service.expressions.vocabulary import functions
+from service.expressions.vocabulary.functions import PieceKind
 from service.expressions.vocabulary.symbols import Symbol, Vocabulary
 
-PieceKind = Literal["symbol", "pi", "function", "number", "unit", "shorthand", "invalid_shorthand"]
 RUN: Final = rf"[A-Za-z{greek.CLASS}](?:_?[A-Za-z0-9{greek.CLASS}])*"
 
 _SHORTHAND: Final = re.compile(
@@ -29,6 +30,11 @@ _WORDS: Final[dict[str, tuple[PieceKind, str]]] = {
     **{spelling: ("unit", name) for spelling, name in functions.UNITS.items()},
     **dict.fromkeys(functions.PI, ("pi", "pi")),
 }
+_WHOLE: Final = functions.ALONE | _WORDS
+# An underscore behind one of these begins no new factor: a_b is no product.
+_NAMES: Final = frozenset({"symbol", "pi", "shorthand", "invalid_shorthand", "number", "unit"})
+# A longer run is no formula; the work for it grows faster than its length.
+LONGEST_RUN: Final = 200
 # sind30 may be read as sin(d30): these need a bracket or a space before their number.
 _NOT_BEFORE_NUMBERS: Final = frozenset({*functions.OF_DEGREES, *functions.IN_DEGREES})
 
@@ -57,8 +63,10 @@ def split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
     # The longest reading wins, and none is longer than the whole run.
     if (symbol := vocabulary.by_name.get(run)) is not None:
         return (Piece("symbol", 0, len(run), symbols=(symbol,)),)
-    if (word := _WORDS.get(run)) is not None:
+    if (word := _WHOLE.get(run)) is not None:
         return (Piece(word[0], 0, len(run), word[1]),)
+    if run in functions.REFUSED or len(run) > LONGEST_RUN:
+        return None
     if "_" not in run:
         short = _shorthand(run, 0, vocabulary) if run[0] in _SHORT else None
         if short is not None and short.kind == "shorthand" and short.end == len(run):
@@ -66,7 +74,12 @@ def split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
         return _split(run, vocabulary)
     kept = [index for index, letter in enumerate(run) if letter != "_"]
     pieces = _split(run.replace("_", ""), vocabulary)
-    return pieces and tuple(_with_underscores(piece, kept, run) for piece in pieces)
+    if pieces is None or any(
+        piece.kind in _NAMES and run[kept[following.start] - 1] == "_"
+        for piece, following in pairwise(pieces)
+    ):
+        return None
+    return tuple(_with_underscores(piece, kept, run) for piece in pieces)
 
 
 def _with_underscores(piece: Piece, kept: list[int], run: str) -> Piece:

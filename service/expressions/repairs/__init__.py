@@ -7,6 +7,7 @@ and what would be right, and offers the repaired text where one is near.
 from typing import Final
 
 from service.expressions.errors import ExpressionError
+from service.expressions.limits import LIMITS
 
 from service.expressions.repairs import (  # isort: skip
     ambiguous_number, ambiguous_shorthand, ambiguous_star, ambiguous_unit, beyond_limits,
@@ -37,9 +38,21 @@ RULES: Final[tuple[RepairRule, ...]] = (
 )  # fmt: skip
 
 
+# These look through the whole text, and know slips of short ones.
+_OF_SHORT_TEXTS: Final = frozenset({
+    dash, comment, quotes, equation, plus_minus, prose, interval, transpose, braced_stem,
+    function_of_time, raised_zero, letter_x, tan_of_two, decimal_comma, trailing_punctuation,
+})  # fmt: skip
+_OF_ANY_TEXT: Final = tuple(rule for rule in RULES if rule not in _OF_SHORT_TEXTS)
+
+
 def explain(failure: Failure) -> ExpressionError:
     """The error for ``failure``; its suggestion is None or can be read."""
-    error = next(found for rule in RULES if (found := rule.repair(failure)) is not None)
+    is_long = len(failure.source) > LIMITS.repaired
+    rules = _OF_ANY_TEXT if is_long else RULES
+    error = next(found for rule in rules if (found := rule.repair(failure)) is not None)
+    if is_long:
+        error.suggestion = None
     if error.suggestion is not None:
         same = error.suggestion.strip() == failure.source.strip()
         error.suggestion = None if same else failure.repaired(error.suggestion)

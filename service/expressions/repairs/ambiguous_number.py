@@ -9,6 +9,6 @@ def repair(failure: Failure) -> Repair:
     product = failure.details["product"]
     message = (
         f"{quoted(failure.written)} may be a power of ten or a product. "
-        f"If it is a product, write {product}."
+        f"For the product, write {product}."
     )
     return error(failure, "ambiguous_number", message, failure.replaced(product))

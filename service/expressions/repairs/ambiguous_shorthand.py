@@ -13,8 +13,8 @@ def repair(failure: Failure) -> Repair:
     function, names = failure.details["function"], failure.details["names"]
     digits = "".join(letter for letter in failure.written if letter.isdigit())
     message = (
-        f"{quoted(failure.written)} has two readings. Write {function}({names}) for joint angles "
-        f"or {function}({digits}) for the number."
+        f"{quoted(failure.written)} has two readings. Write {function}({names}) for the "
+        f"joint angles or {function}({digits}) for the number."
     )
     suggestion = _suggestion(failure, f"{function}({names})", f"{function}({digits}")
     return error(failure, "ambiguous_shorthand", message, suggestion)

@@ -9,7 +9,7 @@ def repair(failure: Failure) -> Repair:
     (start, end) = failure.details["star"]
     variable = failure.source[failure.span[0] : start].strip()
     message = (
-        f"The * behind {quoted(variable)} may mark the joint variable, or multiply what follows. "
-        f"Leave it out if it is a mark; write {variable}*(…) for the product."
+        f"The * behind {quoted(variable)} may be a mark or a product. Leave out a mark; write a "
+        f"product as {variable}*(…)."
     )
     return error(failure, "ambiguous_star", message, failure.replaced("", (start, end)))

@@ -10,14 +10,15 @@ def repair(failure: Failure) -> Repair:
     limit = failure.details["limit"]
     if limit == "characters":
         message = (
-            f"This has {failure.details['length']} characters; "
-            f"an expression may have {LIMITS.characters}."
+            f"This has {failure.details['length']:,} characters. "
+            f"A formula may have {LIMITS.characters:,}."
         )
         return error(failure, "too_long", message)
     if limit == "nodes":
-        message = (
-            f"This has more than {LIMITS.nodes} operations and operands; please write it shorter."
-        )
+        message = f"This has more than {LIMITS.nodes:,} operations and values. Write it shorter."
         return error(failure, "too_many_nodes", message)
-    message = f"This is nested more than {LIMITS.depth} levels deep; please flatten it."
+    if limit == "terms":
+        message = "A sum or a product here is too long. Collect its terms."
+        return error(failure, "too_many_nodes", message)
+    message = f"This has more than {LIMITS.depth} levels of brackets. Write it with fewer."
     return error(failure, "too_deep", message)

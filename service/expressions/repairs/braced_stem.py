@@ -29,7 +29,7 @@ def repair(failure: Failure) -> Repair:
         repaired = failure.repaired(joined)
         if repaired is None:
             return None
-        message = f"A name and its index stand together: write {quoted(name)}, without the braces."
+        message = f"Write the name and its index without the braces: {quoted(name)}."
         return error(failure, "braced_stem", message, repaired, match.span())
     return None
 

@@ -1,6 +1,6 @@
 """2^3^2, which has two readings."""
 
-from service.expressions.parsing.lexer import OPERAND_ENDS
+from service.expressions.parsing.tokens import OPERAND_ENDS
 from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 
@@ -9,5 +9,5 @@ def repair(failure: Failure) -> Repair:
     """Ask for brackets."""
     if failure.terminal() != "POWER" or failure.terminal(1) not in OPERAND_ENDS:
         return None
-    message = "A power of a power has two readings; add brackets, as in (a^b)^c or a^(b^c)."
+    message = "A power of a power has two readings. Add brackets: (a^b)^c or a^(b^c)."
     return error(failure, "chained_power", message)

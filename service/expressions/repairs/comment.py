@@ -18,9 +18,9 @@ def repair(failure: Failure) -> Repair:
     division = f"{before}/{behind}"
     if match.group() == "//" and failure.repaired(division) == division:
         message = (
-            "// begins a comment in some languages and drops the remainder in Python. "
-            "If this is a division, write one slash."
+            "// is a comment in some languages and a whole-number division in others. "
+            "For a fraction, write one slash."
         )
         return error(failure, "comment", message, division, match.span())
-    message = f"From {match.group()} on this looks like a comment; write only the expression."
+    message = f"The text behind {match.group()} looks like a comment. Write only the formula."
     return error(failure, "comment", message, before, (match.start(), len(failure.source)))

@@ -5,5 +5,5 @@ from service.expressions.repairs.failure import refusal
 repair = refusal(
     "cube_root",
     "cube_root",
-    "Only square roots have a sign here; write other roots as a power, as in (x)^(1/3).",
+    "Write this root as a power: (x)^(1/3).",
 )

@@ -11,5 +11,5 @@ def repair(failure: Failure) -> Repair:
     """Ask for 0: a dash may mean zero, and it may mean nothing."""
     if _DASH.fullmatch(failure.source.strip()) is None:
         return None
-    message = "A dash alone may mean zero or nothing at all. If the value is zero, write 0."
+    message = "A dash may mean zero or nothing. If the value is zero, write 0."
     return error(failure, "dash", message, "0", (0, len(failure.source)))

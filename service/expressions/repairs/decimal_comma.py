@@ -15,8 +15,8 @@ def repair(failure: Failure) -> Repair:
     if failure.terminal() != "COMMA" or not (left.isdigit() and right.isdigit()):
         return None
     if any(match.start() < start < match.end() for match in _THOUSANDS.finditer(failure.source)):
-        message = "A comma separates values here. Write a thousand as 1000, and one as 1."
+        message = "A comma separates values. Write a thousand as 1000 and one as 1."
         return error(failure, "decimal_comma", message)
-    message = "A comma separates values here. If this is one number, write it with a point."
+    message = "A comma separates values. Write one number with a point."
     point = re.sub(r"(?<=[0-9]),(?=[0-9])", ".", failure.source)
     return error(failure, "decimal_comma", message, point)

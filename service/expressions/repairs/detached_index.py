@@ -19,6 +19,6 @@ def repair(failure: Failure) -> Repair:
     pieces = split(joined, failure.vocabulary)
     if pieces is None or pieces[-1].kind not in {"symbol", "shorthand"}:
         return None
-    message = f"In {match[0]} a name and its index must stand together, without a space."
+    message = f"Write the name and its index without a space: {joined}."
     suggestion = failure.replaced(joined, match.span())
     return error(failure, "detached_index", message, suggestion, match.span())

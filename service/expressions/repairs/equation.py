@@ -1,20 +1,22 @@
-"""An equation where a value is asked for: theta1 = q1, =COS(q1)."""
+"""An equation that is not a name and its value: sin(q1) = 0.5, a = b = c."""
 
 import re
 
+from service.expressions.parsing.equation import right_side
 from service.expressions.repairs.failure import Failure, Repair, error
 
 _EQUALS = re.compile(r":=|&?=+|≈|≡|≔|\\(?:approx|equiv|coloneqq)(?![A-Za-z])")
+_NAME = re.compile(r"\s*\\?[^\W\d]\w{0,20}\s*")
 
 
 def repair(failure: Failure) -> Repair:
-    """Offer the right-hand side."""
+    """Offer the right side behind names: what stands behind a formula is not its value."""
     signs = list(_EQUALS.finditer(failure.source))
-    if not signs:
+    if not signs or right_side(failure.source, failure.vocabulary)[1] is not None:
         return None
-    right = failure.source[signs[-1].end() :].strip()
-    left = failure.source[: signs[0].start()].strip()
-    message = "This is an equation; write only the value, without the = sign."
-    if not left:
-        message = "Write the value without the = sign before it."
-    return error(failure, "equation", message, right or left or None, signs[0].span())
+    starts = [0, *(sign.end() for sign in signs)]
+    left = [failure.source[a : b.start()] for a, b in zip(starts, signs, strict=False)]
+    value = failure.source[signs[-1].end() :].strip()
+    suggestion = value if all(map(_NAME.fullmatch, left)) else None
+    message = "This is an equation. Write only the value."
+    return error(failure, "equation", message, suggestion or None, signs[0].span())

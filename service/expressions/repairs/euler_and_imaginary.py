@@ -1,19 +1,27 @@
 """e, i and j, which are no constants here."""
 
+import re
+
 from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
 
 _REASONS = {
-    "e": "Euler's number is written exp(1), and a power of it exp(x).",
-    "i": "Complex numbers are not used here.",
-    "j": "Complex numbers are not used here.",
+    "e": "Write a power of Euler's number as exp(x).",
+    "i": "There are no complex numbers here.",
+    "j": "There are no complex numbers here.",
 }
+_POWER = re.compile(r"\s?(?:\^|\*\*)\s?(?:\(([^()]*)\)|\{([^{}]*)\}|([A-Za-z0-9]+))")
 
 
 @answers("name")
 def repair(failure: Failure) -> Repair:
-    """Say how to write Euler's number, and that there are no complex numbers."""
+    """Offer exp(x) for a power of e; say that there are no complex numbers."""
     reason = _REASONS.get(failure.details["run"])
     if reason is None:
         return None
-    message = f"The name {quoted(failure.written)} is not known in this exercise. {reason}"
-    return error(failure, "unknown_symbol", message)
+    message = f"This exercise has no {quoted(failure.written)}. {reason}"
+    (start, end), suggestion = failure.span, None
+    power = _POWER.match(failure.source, end) if failure.details["run"] == "e" else None
+    if power is not None:
+        exponent = power[power.lastindex or 0]
+        suggestion = failure.replaced(f"exp({exponent})", (start, power.end()))
+    return error(failure, "unknown_symbol", message, suggestion)

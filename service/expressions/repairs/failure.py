@@ -4,7 +4,7 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Final, Protocol
 
-from service.expressions.errors import Cause, ExpressionError, Span, UnreadableError
+from service.expressions.errors import Cause, ExpressionError, Span, UnreadableError, quoted
 from service.expressions.vocabulary.symbols import Vocabulary
 
 # The error for a failure, or None for another slip; its suggestion may be unreadable.
@@ -97,13 +97,11 @@ def error(
     return ExpressionError(code, message, span or failure.span, suggestion)
 
 
-def quoted(text: str) -> str:
-    """``text`` as a message quotes it, with the numbers of letters that cannot be printed."""
-    if all(letter.isprintable() for letter in text):
-        return f"`{text}`"
-    return " ".join(f"U+{ord(letter):04X}" for letter in text)
-
-
 def position(span: Span) -> str:
     """The first character of ``span``, counted from 1."""
     return f"character {span[0] + 1}"
+
+
+__all__ = [
+    "Failure", "Repair", "RepairRule", "answers", "error", "position", "quoted", "refusal",
+]  # fmt: skip

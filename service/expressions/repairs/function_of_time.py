@@ -13,5 +13,5 @@ def repair(failure: Failure) -> Repair:
     without_time, count = _OF_TIME.subn("", failure.source)
     if failure.details["run"] != "t" or not count:
         return None
-    message = "The joint variables are written without their time here: q1, not q1(t)."
+    message = "Write joint variables without the time: q1, not q1(t)."
     return error(failure, "function_of_time", message, without_time)

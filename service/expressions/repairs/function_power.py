@@ -15,19 +15,18 @@ def repair(failure: Failure) -> Repair:
     name, exponent = failure.details["name"], failure.details["exponent"]
     place = failure.details["function"]
     if not exponent.strip():
-        message = (
-            f"The function {name} has nothing to work on; write its argument in brackets behind it."
-        )
+        message = f"The function {name} has no argument. Write {name}(x)."
         return error(failure, "function_without_argument", message, span=place)
     if _INVERSE.match(exponent) is None:
-        message = "Only a whole number may stand as a function's power; write (sin(x))^p instead."
+        message = "The power of a function is a whole number. Write another power as (sin(x))^p."
         return error(failure, "function_power", message, span=(place[1], failure.span[1]))
     end = _END.match(failure.source, place[1])
     whole = (place[0], end.end() if end else failure.span[1])
     inverse = f"a{name}" if name in {"sin", "cos", "tan"} else None
     message = (
-        "A negative power of a function has two readings. Write asin(x), acos(x) or atan(x) "
-        "for the inverse function, or 1/sin(x) for one over it."
+        f"This has two readings. Write a{name}(x) for the inverse function, or 1/{name}(x)."
+        if inverse
+        else f"A negative power of a function has two readings. Write 1/{name}(x)."
     )
     suggestion = inverse and failure.replaced(inverse, whole)
     return error(failure, "function_power", message, suggestion, whole)

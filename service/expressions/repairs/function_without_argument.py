@@ -17,7 +17,7 @@ def repair(failure: Failure) -> Repair:
         start, end = failure.span[0], failure.place(-1)[1]
         suggestion = failure.replaced(f"({failure.source[start:end]})", (span[1], end))
     message = (
-        f"The function {quoted(failure.source[slice(*span)])} has nothing to work on; "
-        "write its argument in brackets behind it."
+        f"{quoted(failure.source[slice(*span)])} has no argument. Write it in brackets, as in "
+        "sin(x)."
     )
     return error(failure, "function_without_argument", message, suggestion, span)

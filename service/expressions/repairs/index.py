@@ -12,17 +12,17 @@ def repair(failure: Failure) -> Repair:
         return _no_number(failure)
     details, written = failure.details, quoted(failure.written)
     if details["reason"] == "mixed":
-        message = "Two ways to count joints are mixed here. Write plain names: q1 for joint 1."
+        message = "Two ways to count joints are mixed here. Write q1 for joint 1."
         return error(failure, "mixed_index", message)
     if details["reason"] == "no_stem":
-        message = f"{written} may be an index or a factor; write * before a factor."
+        message = f"{written} may be an index or a factor. Write * before a factor."
         return error(failure, "index", message, failure.replaced(f"*{details['digits']}"))
     run, digits = details["run"], details["digits"]
     message = f"{_COUNTING[details['style']]} {written} would be {run}{digits}"
     if details["reason"] == "shorthand":
-        message += "; write the shorthand without brackets."
+        message += ". Write the shorthand without brackets."
         return error(failure, "index", message, failure.replaced(f"{run}{digits}"))
-    message += ", and there is no such symbol here. Write plain names: q1 for joint 1."
+    message += ", which is no name here. Write q1 for joint 1."
     plain = failure.replaced(f"{run}{int(digits) - 1}") if details["style"] == "[" else None
     return error(failure, "index", message, plain)
 
@@ -32,5 +32,5 @@ def _no_number(failure: Failure) -> Repair:
     start, end = failure.span
     if failure.source[end : end + 1] != "[":
         return None
-    message = "An index in brackets is a number, for example q[0]; or write plain names, as q1."
+    message = "An index in brackets is a number. Write q1 for joint 1."
     return error(failure, "index", message, span=(start, end + 1))

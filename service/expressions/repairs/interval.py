@@ -15,5 +15,5 @@ def repair(failure: Failure) -> Repair:
     match = _LIST.fullmatch(failure.source) or _BETWEEN.search(failure.source)
     if match is None:
         return None
-    message = "This looks like a list or a range of values; write the one value that is asked for."
+    message = "This is a list or a range. Write one value."
     return error(failure, "interval", message, span=match.span())

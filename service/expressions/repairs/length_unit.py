@@ -2,7 +2,7 @@
 
 import re
 
-from service.expressions.parsing.lexer import OPERAND_ENDS
+from service.expressions.parsing.tokens import OPERAND_ENDS
 from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 _UNIT = re.compile(
@@ -16,9 +16,9 @@ def repair(failure: Failure) -> Repair:
     """Ask for the bare number; offer it for metres only, for cm and mm change its size."""
     if failure.details["before"] not in _OPERANDS or not _UNIT.fullmatch(failure.written):
         return None
-    message = "Lengths are written without a unit, in the unit that the exercise gives."
+    message = "Write lengths without a unit, in the unit of the exercise."
     if failure.written not in {"m", "meter", "meters", "metre", "metres"}:
-        message += f" Convert from {failure.written} first."
+        message += f" Convert {failure.written} first."
         return error(failure, "length_unit", message)
     start, end = failure.span
     number = failure.source[:start].rstrip() + failure.source[end:]

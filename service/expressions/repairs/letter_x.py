@@ -1,6 +1,6 @@
 """The letter x for a product: 2 x q1."""
 
-from service.expressions.parsing.lexer import OPERAND_ENDS
+from service.expressions.parsing.tokens import OPERAND_ENDS
 from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 
@@ -11,5 +11,5 @@ def repair(failure: Failure) -> Repair:
     behind = failure.source[end - len(run) + 1 :].strip()
     if run[0] not in "xX" or not behind or failure.details["before"] not in OPERAND_ENDS:
         return None
-    message, span = "The letter x is a name; for a product write * instead.", (start, start + 1)
+    message, span = "The letter x is a name. Write * for a product.", (start, start + 1)
     return error(failure, "letter_x", message, failure.replaced("*", span), span)

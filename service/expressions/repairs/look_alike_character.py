@@ -12,8 +12,8 @@ def repair(failure: Failure) -> Repair:
     letter = failure.written
     plain = LOOK_ALIKES[letter]
     message = (
-        f"This only looks like the letter {plain}: it is the {unicodedata.name(letter).lower()}. "
-        f"Type {plain} instead."
+        f"This looks like the letter {plain}, but is the {unicodedata.name(letter).lower()}. "
+        f"Type {plain}."
     )
     repaired = "".join(LOOK_ALIKES.get(letter, letter) for letter in failure.source)
     return error(failure, "look_alike_character", message, repaired)

@@ -8,5 +8,5 @@ def repair(failure: Failure) -> Repair:
     """Say that it has more than one point."""
     if not failure.details["number"] or "." not in failure.written:
         return None
-    message = f"{quoted(failure.written)} is not a number: it has more than one point."
+    message = f"{quoted(failure.written)} has more than one decimal point."
     return error(failure, "malformed_number", message)

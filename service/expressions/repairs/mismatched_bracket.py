@@ -14,6 +14,6 @@ def repair(failure: Failure) -> Repair:
         return error(failure, "mismatched_bracket", message, span=opener)
     message = (
         f"{first} at {position(opener)} is closed by {quoted(failure.written)} at "
-        f"{position(failure.span)}; these two do not belong together."
+        f"{position(failure.span)}. Use two brackets of one kind."
     )
     return error(failure, "mismatched_bracket", message, failure.replaced(wanted))

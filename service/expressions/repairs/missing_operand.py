@@ -18,8 +18,5 @@ def repair(failure: Failure) -> Repair:
         suggestion = failure.replaced("", span) if failure.terminal(3) else None
     elif before and (before not in {"LEFT", "COMMA"} or terminal not in OPERATORS):
         span = failure.place(1)
-    message = (
-        f"Something is missing next to {quoted(failure.source[slice(*span)])}: "
-        "a number, a name or a bracket belongs there."
-    )
+    message = f"A value is missing next to {quoted(failure.source[slice(*span)])}."
     return error(failure, "missing_operand", message, suggestion, span)

@@ -2,6 +2,4 @@
 
 from service.expressions.repairs.failure import refusal
 
-repair = refusal(
-    "not_finite", "not_finite", "This is not a finite number; every answer here is one."
-)
+repair = refusal("not_finite", "not_finite", "This is no finite number. Write a finite one.")

@@ -13,9 +13,7 @@ def repair(failure: Failure) -> Repair:
         return None
     slides = joint in failure.vocabulary.sliding
     reason = f"joint {joint} slides, so it has no angle" if slides else f"there is no joint {joint}"
-    message = (
-        f"{quoted(failure.written)} stands for the cosine or sine of joint angles, but {reason}."
-    )
+    message = f"{quoted(failure.written)} is a cosine or sine of joint angles, but {reason}."
     turning = _of_those_that_turn(failure)
     if turning is None:
         return error(failure, "not_revolute", message)

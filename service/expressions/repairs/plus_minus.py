@@ -13,5 +13,5 @@ def repair(failure: Failure) -> Repair:
     typed = _TYPED.search(failure.source) if failure.cause == "grammar" else None
     if failure.cause == "grammar" and typed is None:
         return None
-    message = "This sign stands for two values; write the one that you mean, with + or with -."
+    message = "This sign stands for two values. Write one of them, with + or with -."
     return error(failure, "two_values", message, span=typed and typed.span())

@@ -22,9 +22,7 @@ def repair(failure: Failure) -> Repair:
     number = _NUMBERS.get(text)
     if text not in _PHRASES and number is None and not _is_prose(failure):
         return None
-    message = (
-        "These are words; write the value as a number or a formula, for example 0, l1 or theta1."
-    )
+    message = "These are words. Write a number or a formula, such as 0 or theta1."
     return error(failure, "prose", message, number, (0, len(failure.source)))
 
 

@@ -15,7 +15,7 @@ def repair(failure: Failure) -> Repair:
     if match is None:
         return None
     suggestion = _QUOTED.sub(_inside, failure.source).strip()
-    message = "Names stand here without quotation marks."
+    message = "Write names without quotation marks."
     return error(failure, "quotes", message, suggestion or None, match.span())
 
 

@@ -17,11 +17,11 @@ def repair(failure: Failure) -> Repair:
     span = _raised_letter(failure) if failure.cause == "name" else failure.span
     if span is None:
         return None
-    message = "Degrees are written with the sign °, or with deg: 90° or 90deg."
+    message = "Write degrees as 90° or 90deg."
     if failure.details.get("power"):
         message = (
-            "A 0 raised behind a number looks like the sign of degrees. If degrees are meant, "
-            "write 90° or 90deg; if it is a power, write 1."
+            "A raised 0 looks like the sign of degrees. Write 90° or 90deg for degrees, and 1 for "
+            "the power."
         )
     return error(failure, "raised_zero", message, failure.replaced("°", span), span)
 

@@ -10,6 +10,6 @@ def repair(failure: Failure) -> Repair:
         return None
     message = (
         f"{quoted(failure.written)} names one joint twice. "
-        "Write the sum of angles out, for example cos(2*q1)."
+        "Write the sum of the angles, as in cos(2*q1)."
     )
     return error(failure, "repeated_joint", message)

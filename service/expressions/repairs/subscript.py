@@ -21,7 +21,7 @@ def repair(failure: Failure) -> Repair:
     if letter in _FUNCTIONS and alone and plain:
         suggestion = failure.replaced(f" {_FUNCTIONS[letter]}({inside})", (start - 1, end)).strip()
     message = (
-        "An index holds letters and digits only, for example theta_1 or c_{12}. "
+        "An index holds letters and digits only, as in c_{12}. "
         "Write the cosine of a sum as cos(theta1 + theta2)."
     )
     return error(failure, "subscript", message, suggestion)

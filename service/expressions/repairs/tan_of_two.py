@@ -8,14 +8,16 @@ _TAN2 = re.compile(
     r"\\?(?:tan|tang|a ?tan|atang|artan|arctan|arctang)[ _]?\{?2\}?(?=\s*(?:\\left)?\()"
 )
 
+_KNOWN = {"atan2", "arctan2", r"\atan2", r"\arctan2"}
+
 
 @answers("name", "grammar")
 def repair(failure: Failure) -> Repair:
     """Offer atan2."""
     match = _TAN2.search(failure.source)
-    if match is None or match.end() > failure.span[1]:
+    if match is None or match.end() > failure.span[1] or match.group() in _KNOWN:
         return None
     if failure.cause == "grammar" and failure.terminal() != "COMMA":
         return None
-    message, span = "The angle of a point (x, y) is atan2(y, x).", match.span()
+    message, span = "Write the angle of a point (x, y) as atan2(y, x).", match.span()
     return error(failure, "tan_of_two", message, failure.replaced("atan2", span), span)

@@ -1,6 +1,6 @@
 """A text that ends in an operator."""
 
-from service.expressions.parsing.lexer import END
+from service.expressions.parsing.tokens import END
 from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
 
 OPERATORS = frozenset({"PLUS", "MINUS", "STAR", "SLASH", "POWER", "ROOT"})
@@ -13,5 +13,5 @@ def repair(failure: Failure) -> Repair:
         return None
     start, end = span = failure.place(1)
     operator, before = failure.source[start:end], failure.source[:start].rstrip()
-    message = f"The text ends in {quoted(operator)}; something is missing after it."
+    message = f"Something is missing after the {quoted(operator)} at the end."
     return error(failure, "trailing_operator", message, before or None, span)

@@ -17,7 +17,7 @@ def repair(failure: Failure) -> Repair:
             return None
         span = match.span()
     message = (
-        "A prime or a transpose has no meaning for a single value here. "
-        "If it marks another symbol, use the name that the exercise gives."
+        "A single value has no transpose and no derivative here. Leave out the mark, or use a name "
+        "of the exercise."
     )
     return error(failure, "transpose", message, failure.replaced("", span).strip() or None, span)

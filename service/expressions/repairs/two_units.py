@@ -2,4 +2,4 @@
 
 from service.expressions.repairs.failure import refusal
 
-repair = refusal("two_units", "two_units", "This has two units; one is enough.")
+repair = refusal("two_units", "two_units", "This has two units. Write one.")

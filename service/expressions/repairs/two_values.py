@@ -9,8 +9,5 @@ def repair(failure: Failure) -> Repair:
     start, end = failure.span
     if failure.terminal(1) and failure.terminal() != "COMMA":
         start = failure.place(1)[0]
-    message = (
-        "Two values stand side by side here. Write one value, or put an operator "
-        "such as * between them."
-    )
+    message = "Two values stand side by side. Write one value, or an operator between them."
     return error(failure, "two_values", message, span=(start, end))

@@ -2,7 +2,7 @@
 
 from service.expressions.errors import Span
 from service.expressions.parsing.brackets import PARTNERS
-from service.expressions.parsing.lexer import END, OPERAND_ENDS
+from service.expressions.parsing.tokens import END, OPERAND_ENDS
 from service.expressions.repairs.failure import Failure, Repair, answers, error, position, quoted
 
 _BEFORE_BRACKET = OPERAND_ENDS | {"LEFT"}

@@ -14,8 +14,5 @@ def repair(failure: Failure) -> Repair:
     suggestion = None
     if alone and rest in {"°", "deg", "degree", "degrees", "rad", "radian", "radians"}:
         suggestion = failure.replaced("", (inside[1], end))
-    message = (
-        f"The unit stands behind {failure.details['name']}, which has its own. "
-        "Put the unit directly behind the number, for example q1 + 90deg."
-    )
+    message = f"A unit belongs behind a number, not behind {failure.details['name']}: q1 + 90deg."
     return error(failure, "unit_on_variable", message, suggestion)

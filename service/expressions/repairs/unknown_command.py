@@ -10,14 +10,12 @@ def repair(failure: Failure) -> Repair:
     name = failure.details["name"]
     if failure.cause == "argument":
         example = r"\frac{a}{b}" if "frac" in name else rf"{name.strip()}{{a}}"
-        message = (
-            f"The command {quoted(name.strip())} lacks what it works on; write it as `{example}`."
-        )
+        message = f"The command {quoted(name.strip())} has no argument. Write it as `{example}`."
         return error(failure, "missing_operand", message)
     prefix = known_prefix(name)
     suggestion = prefix and failure.replaced(f"\\{prefix} {name[len(prefix) :]}")
     message = (
-        f"The command {quoted(failure.written)} is not understood here. "
-        "Write the formula with the usual commands, or in plain text: (a)/(b), sqrt(x), cos(q1)."
+        f"The command {quoted(failure.written)} is not known. Write it in plain text: (a)/(b), "
+        "sqrt(x), cos(q1)."
     )
     return error(failure, "unknown_command", message, suggestion)

@@ -23,6 +23,9 @@ def repair(failure: Failure) -> Repair:
         return None
     if match["rest"] and split(match["rest"], vocabulary) is None:
         return None
+    if match["rest"] and int(match["index"][:4]) in vocabulary.turning:
+        # This joint is there; something else is wrong with the run: theta1_theta2.
+        return None
     index, span = match["index"], _place(failure, bool(match["rest"]))
     written = failure.source[slice(*span)]
     suggestion = None

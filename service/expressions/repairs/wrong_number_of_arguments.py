@@ -9,12 +9,12 @@ def repair(failure: Failure) -> Repair:
     name, wanted = failure.details["name"], failure.details["wanted"]
     places = failure.details["places"]
     if len(places) == 2 * wanted and (point := _with_points(failure)) is not None:
-        message = "A comma separates values here. If this is one number, write it with a point."
+        message = "A comma separates values. Write one number with a point."
         return error(failure, "decimal_comma", message, point, (places[0][1], places[1][0]))
-    message = f"The function {name} takes {_count(wanted)}, but {_count(len(places))} stand here."
+    message = f"The function {name} takes {_count(wanted)}, and {_count(len(places))} stand here."
     suggestion = None
     if len(places) == 1:
-        message = f"The function {name} takes {_count(wanted)}, but only one stands here."
+        message = f"The function {name} takes {_count(wanted)}, and one stands here."
     if name == "atan" and len(places) == 2:
         suggestion = failure.replaced("atan2", failure.details["function"])
     if name == "atan2":

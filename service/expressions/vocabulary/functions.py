@@ -2,6 +2,10 @@
 
 from typing import Final, Literal
 
+PieceKind = Literal[
+    "symbol", "pi", "constant", "function", "number", "unit", "shorthand", "invalid_shorthand"
+]
+
 ARITY: Final = {
     "sin": 1, "cos": 1, "tan": 1, "asin": 1, "acos": 1, "atan": 1, "atan2": 2, "sqrt": 1, "abs": 1,
     "exp": 1,
@@ -33,6 +37,52 @@ UNIT_FUNCTIONS: Final = frozenset({"deg", "rad"})
 
 PI: Final = ("pi", "π")
 PI_CAPITALS: Final = ("Pi", "PI")
-# Where functions live in Python: np.cos, math.pi.
-MODULES: Final = frozenset({"np", "numpy", "math", "sp", "sympy", "sym", "jnp", "cmath", "mpmath"})
+# Where functions live in programs: np.cos, math.pi, Math.PI, std::cos.
+MODULES: Final = frozenset({
+    "np", "numpy", "math", "sp", "sympy", "sym", "jnp", "cmath", "mpmath", "mp", "scipy", "Math",
+    "MathF", "std", "numbers", "torch", "tf", "casadi", "ca", "symengine",
+})  # fmt: skip
+
+# Functions that are no nodes of a tree: they are built from others (see ``parsing/built``), with
+# the number of their values; 0 for any number.
+BUILT: Final = {
+    "sec": 1, "csc": 1, "cot": 1, "pow": 2, "hypot": 2, "quotient": 2, "sum": 0, "product": 0,
+    "value": 1,
+}  # fmt: skip
+# Constants of C: a root, or π over a number.
+CONSTANTS: Final = {
+    "M_PI_2": ("pi", 2), "M_PI_4": ("pi", 4), "M_SQRT2": ("sqrt", 2), "M_SQRT1_2": ("1/sqrt", 2),
+}  # fmt: skip
+# Words that are read where they stand alone, and not as a part of a longer run: cosf1 is cos(f1).
+ALONE: Final[dict[str, tuple[PieceKind, str]]] = {
+    **{
+        spelling: ("function", name)
+        for name, spellings in {
+            "sec": ("sec", "Sec", "SEC"), "csc": ("csc", "Csc", "CSC", "cosec"),
+            "cot": ("cot", "Cot", "COT", "cotan", "ctg", "cotg"),
+            "sin": ("sen", "sinf", "SEN"), "cos": ("cosf",), "tan": ("tanf",),
+            "asin": ("arcsen", "asen", "asinf"), "acos": ("acosf",), "atan": ("atanf",),
+            "atan2": ("atan2f",), "sqrt": ("sqrtf",), "abs": ("fabs", "fabsf"),
+            "pow": ("pow", "powf", "Power", "Pow", "POWER", "power"), "hypot": ("hypot",),
+            "quotient": ("Rational", "Divide"), "sum": ("Plus", "Add"),
+            "product": ("Times", "Mul"),
+            "value": ("sym", "vpa", "simplify", "Simplify", "expand", "Expand", "float", "double"),
+        }.items()
+        for spelling in spellings
+    },
+    **dict.fromkeys(("Grad", "grados", "gradi", "graus"), ("unit", "deg")),
+    **{name: ("constant", name) for name in CONSTANTS},
+    "M_PI": ("pi", "pi"), "kPi": ("pi", "pi"), "Degree": ("unit", "deg"),
+}  # fmt: skip
+# Functions that no answer needs. They are refused by name, and never read as a product.
+REFUSED: Final = frozenset({
+    "log", "ln", "lg", "log10", "log2", "log1p", "expm1", "Log", "LN", "LOG",
+    "sinh", "cosh", "tanh", "coth", "sech", "csch", "Sinh", "Cosh", "Tanh",
+    *(f"{a}{name}" for a in ("a", "ar", "arc") for name in ("sinh", "cosh", "tanh", "coth")),
+    *(f"{a}{name}" for a in ("a", "arc") for name in ("sec", "csc", "cot", "ctg", "cotg")),
+    "max", "min", "Max", "Min", "MAX", "MIN", "floor", "Floor", "ceil", "ceiling", "round", "trunc",
+    "fix", "sign", "Sign", "sgn", "SIGN", "signum", "mod", "Mod", "MOD", "rem", "fmod", "wrapToPi",
+    "factorial", "diff", "int", "sum", "dot", "cross", "norm", "det", "gcd",
+    "sinc", "cis", "versin", "haversin", "erf", "heaviside", "piecewise", "Piecewise", "unwrap",
+})  # fmt: skip
 RESERVED: Final = frozenset({*SPELLINGS, *UNITS, *PI})

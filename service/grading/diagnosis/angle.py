@@ -4,6 +4,7 @@ import numpy as np
 
 from service.expressions.tree import Call, Node
 from service.grading.comparison import difference
+from service.grading.diagnosis.angle_sum import explain_sum
 from service.grading.diagnosis.formula_rewriting import nodes
 from service.grading.diagnosis.wrong_value import (
     Hypotheses,
@@ -17,7 +18,8 @@ from service.grading.misconception import Repaired, Written, diagnosed
 from service.grading.tolerances import ROUNDED_VALUE
 
 WRONG_SIGN = (
-    "The sign of this angle is wrong: it counts positive by the right-hand rule about its axis."
+    "The sign of this angle is wrong: an angle counts positive by the right-hand rule about its "
+    "axis."
 )
 FITS_IN_DEGREES = (
     "This angle was read in radians, but it fits in degrees: write the unit behind it (deg or °)."
@@ -26,8 +28,8 @@ FITS_IN_RADIANS = (
     "This angle was read in degrees, but it fits in radians: write the unit behind it (rad)."
 )
 ARGUMENTS_SWAPPED = (
-    "The arguments of atan2 seem to be exchanged: atan2(y, x) takes the sine's part first, then "
-    "the cosine's."
+    "The arguments of atan2 are exchanged: in atan2(y, x) the part of the sine comes first, that "
+    "of the cosine second."
 )
 
 
@@ -54,9 +56,28 @@ def lost_quadrant(case: WrongValue) -> Hypotheses:
             case,
             "lost_quadrant",
             "This angle is right for some joint values and half a turn off for others: atan(y/x) "
-            "cannot tell opposite directions apart, atan2(y, x) can.",
+            "takes opposite directions for one, atan2(y, x) tells them apart.",
         )
         yield Written(case.expected + np.pi * opposite, finding, tolerance=ROUNDED_VALUE)
+
+
+def lost_sign(case: WrongValue) -> Hypotheses:
+    """Acos or asin gave the angle, which is right for one half of all directions."""
+    names = {
+        "acos": (-case.expected, "acos gives no negative angle"),
+        "asin": (np.pi - case.expected, "asin gives no angle over 90°"),
+    }
+    for function, (other, reason) in names.items():
+        if _calls(case.expression.tree, function):
+            is_other = np.abs(difference(case.actual, other, angle=True)) < ROUNDED_VALUE
+            finding = finding_on(
+                case,
+                "lost_quadrant",
+                f"This angle is right for some joint values only: {reason}, atan2(y, x) tells all "
+                "directions apart.",
+            )
+            written = np.where(is_other, other, case.expected)
+            yield Written(written, finding, tolerance=ROUNDED_VALUE)
 
 
 def half_turn(case: WrongValue) -> Hypotheses:
@@ -64,7 +85,8 @@ def half_turn(case: WrongValue) -> Hypotheses:
     finding = finding_on(
         case,
         "half_turn",
-        "This angle is not right: check which way the direction points that it is measured to.",
+        "This angle leads to the opposite direction: check which way the directions point that it "
+        "is measured between.",
         otherwise="It is off by half a turn (180°).",
     )
     yield Written(case.expected + np.pi, finding, tolerance=ROUNDED_VALUE)
@@ -83,8 +105,11 @@ def swapped_atan2(case: WrongValue) -> Hypotheses:
 
 def has_arctangent(tree: Node) -> bool:
     """Whether an arctangent was written."""
-    calls = (node for node in nodes(tree) if isinstance(node, Call))
-    return any(call.function in ("atan2", "atan") for call in calls)
+    return _calls(tree, "atan2", "atan")
+
+
+def _calls(tree: Node, *functions: str) -> bool:
+    return any(isinstance(node, Call) and node.function in functions for node in nodes(tree))
 
 
 def quarter_turn(case: WrongValue) -> Hypotheses:
@@ -101,12 +126,13 @@ def quarter_turn(case: WrongValue) -> Hypotheses:
 
 CHECKS = (undefined,)
 OF_UNIT = (degrees_as_radians, radians_as_degrees)
-OF_TURNS = (lost_quadrant, half_turn, swapped_atan2, quarter_turn)
+OF_TURNS = (lost_quadrant, lost_sign, half_turn, swapped_atan2, quarter_turn)
 MISCONCEPTIONS = (sign, *OF_UNIT, *OF_TURNS)
 
 
 def diagnose_angle(case: WrongValue) -> Finding:
     """The finding on a wrong angle."""
-    return diagnosed(case, MISCONCEPTIONS, CHECKS) or differs(
-        case, "This angle is not right; work it out again."
+    found = diagnosed(case, MISCONCEPTIONS, CHECKS) or explain_sum(case)
+    return found or differs(
+        case, "This angle is not right: look which turns lie between the two directions."
     )

@@ -64,20 +64,22 @@ def some_angles(case: WrongTriple) -> Iterator[RepairedTriple]:
 
 
 def other_order(case: WrongTriple) -> Iterator[RepairedTriple]:
-    """The angles were written down from last to first."""
+    """The angles were written down in another order, most often from last to first."""
     finding = Finding(
         "angle_order",
-        "These angles are right, but in the opposite order.",
+        "These angles are right, but in another order: the first angle is that of the first axis "
+        "of the sequence.",
         f"The order here is that of the axes {case.sequence}.",
     )
-    yield Repaired(replace(case, angles=case.angles[::-1]), finding)
+    for order in ([2, 1, 0], [1, 0, 2], [0, 2, 1], [1, 2, 0], [2, 0, 1]):
+        yield Repaired(replace(case, angles=case.angles[order]), finding)
 
 
 def inverse_rotation(case: WrongTriple) -> Iterator[RepairedTriple]:
     """The angles describe the first frame in the last."""
     finding = Finding(
         "inverse_rotation",
-        "These angles describe the inverse rotation, that of the first frame in the last.",
+        "These angles describe the inverse rotation: the first frame as seen from the last.",
         "Take them from the matrix whose columns are the axes of the last frame.",
     )
     yield Repaired(replace(case, rotation=np.swapaxes(case.rotation, 1, 2)), finding)

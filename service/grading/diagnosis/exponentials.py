@@ -54,7 +54,7 @@ def missing_home(product: Exponentials) -> Hypotheses:
     """The home pose was left out."""
     finding = Finding(
         "missing_home",
-        "This is the product of the exponentials without the home pose M.",
+        "This is the product of the exponentials alone: the home pose M is missing.",
         "Multiply M behind the space axes' exponentials.",
     )
     for axes in (product.space, product.body):
@@ -65,7 +65,7 @@ def reversed_product(product: Exponentials) -> Hypotheses:
     """The exponentials were multiplied from the last joint to the first."""
     finding = Finding(
         "reversed_product",
-        "The exponentials are multiplied in reverse order.",
+        "The exponentials are multiplied in reverse order: check which joint comes first.",
         "Begin with that of joint 1, nearest to the base.",
     )
     amounts = product.amounts[::-1]
@@ -77,8 +77,8 @@ def moment_sign(product: Exponentials) -> Hypotheses:
     """V was taken to be ω × q for every turning joint."""
     finding = Finding(
         "moment_sign",
-        "This comes from screw axes with v = ω × q; the velocity of the point at the origin is "
-        "−ω × q.",
+        "The screw axes behind this have v = ω × q: the turn moves the point at the origin with "
+        "v = −ω × q.",
     )
     for axes, multiply in ((product.space, product_in_space), (product.body, product_in_body)):
         turns = np.abs(axes[..., :3]).max(axis=-1, keepdims=True) > 0.5

@@ -123,6 +123,42 @@ def summed_from(first: int, turning: Mapping[int, Symbol]) -> Rewriting:
     return rewrite
 
 
+def with_angle(symbol: Symbol) -> Rewriting:
+    """The sine or cosine of joint angles with ``symbol`` added to them, where it is not there."""
+
+    def rewrite(node: Node) -> Node:
+        if not (isinstance(node, Call) and is_sine_or_cosine(node)):
+            return node
+        joints = _joints_in(node)
+        if not joints or symbol.joint in joints:
+            return node
+        return Call(node.function, (Binary("+", node.arguments[0], SymbolNode(symbol)),))
+
+    return rewrite
+
+
+def without_angle(symbol: Symbol) -> Rewriting:
+    """The sine or cosine of joint angles without ``symbol``, where it is one of several."""
+
+    def rewrite(node: Node) -> Node:
+        if not (isinstance(node, Call) and is_sine_or_cosine(node)):
+            return node
+        joints = _joints_in(node)
+        if symbol.joint not in joints or len(joints) < 2:
+            return node
+        terms = terms_of(node.arguments[0])
+        rest = [(sign, term) for sign, term in terms if _joint_of(term) != symbol.joint]
+        return Call(node.function, (joined(rest),)) if rest else node
+
+    return rewrite
+
+
+def _joints_in(call: Call) -> set[int]:
+    """The turning joints whose angles stand in the argument."""
+    joints = map(_joint_of, nodes(call.arguments[0]))
+    return {joint for joint in joints if joint is not None}
+
+
 def _joint_of(node: Node) -> int | None:
     """The turning joint whose angle the node is, nothing added to it."""
     if isinstance(node, SymbolNode) and node.symbol.kind == "angle":

@@ -5,12 +5,21 @@ from functools import cached_property
 
 import numpy as np
 
+from service.grading.diagnosis.given_motion import GivenMotion
 from service.grading.diagnosis.link_products import Chain, LinkPose, other_poses
+from service.grading.diagnosis.slip_search import SlipSearch
 from service.grading.diagnosis.wrong_value import Mask, WrongNumbers
 from service.grading.feedback import Finding
 from service.grading.judging.expected import as_entries
 from service.grading.misconception import Hypothesis, Index
 from service.kinematics.transforms import Numbers
+
+Block = tuple[slice, slice]
+
+ROTATION_BLOCK: Block = (slice(0, 3), slice(0, 3))
+POSITION_BLOCK: Block = (slice(0, 3), slice(3, 4))
+UPPER_ROWS: Block = (slice(0, 3), slice(None))
+BOTTOM_ROW: Block = (slice(3, 4), slice(None))
 
 
 @dataclass(frozen=True)
@@ -20,12 +29,16 @@ class MatrixCase(WrongNumbers):
     ``wrong`` ``(rows, columns)`` marks the entries that have a value and are wrong. ``rigid`` marks
     a transform (4×4) or rotation (3×3), as against a matrix of any other meaning. ``chains`` holds
     the links that it is the product of, in each convention; none where it is not a product of
-    links.
+    links. ``motion`` is what the formulas say that it is made of, where the exercise gives them.
+    ``slips`` holds it against the answers that slips of the table lead to, None where it is not the
+    robot's.
     """
 
     wrong: Mask
     rigid: bool
     chains: tuple[Chain, ...] = ()
+    slips: SlipSearch | None = None
+    motion: GivenMotion | None = None
 
     @property
     def is_transform(self) -> bool:

@@ -2,17 +2,25 @@
 
 from collections.abc import Iterator, Mapping
 
+from service.expressions import Symbol
 from service.expressions.parsing.degrees import in_degrees
 from service.expressions.tree import Node, Number, Unit, children
 from service.grading.diagnosis import formula_rewriting as rewriting
 from service.grading.diagnosis.formula_repair import Rewritten, WrongEntry
-from service.grading.diagnosis.wrong_value import UNEXPLAINED, differs, finding_on, undefined
+from service.grading.diagnosis.missing_symbol import (
+    Required,
+    Requirements,
+    explain_dependence,
+)
+from service.grading.diagnosis.wrong_value import differs, finding_on, undefined
 from service.grading.feedback import Finding
 from service.grading.misconception import Written, diagnosed
 from service.kinematics.transforms import Numbers
 
 # A planar arm of three joints has three runs of joints whose angles add up.
 MAX_RUNS = 3
+# In so many sines and cosines a joint angle may be missing in one place alone.
+MAX_PLACES = 3
 # How many nodes of unexplained formulas are taken apart before the rest of a matrix is only
 # compared: where so much has another cause, the rest will have it too. What can be explained costs
 # less of it, but not nothing: the work must be bounded.
@@ -71,8 +79,8 @@ def sum_of_cosines(case: WrongEntry) -> Formulas:
     """The cosine of a sum was taken to be the sum of the cosines; the sine likewise."""
     finding = Finding(
         "sum_of_cosines",
-        "cos(a + b) is not cos(a) + cos(b), nor is sin(a + b) the sum of the sines: add up the "
-        "angles first.",
+        "cos(a + b) is not cos(a) + cos(b), and sin(a + b) is not sin(a) + sin(b): add the angles "
+        "first.",
     )
     if len(case.sines_and_cosines) > 1:
         yield Rewritten(rewriting.sums_merged(case.tree), finding)
@@ -82,8 +90,8 @@ def product_for_sum_angle(case: WrongEntry) -> Formulas:
     """The shorthand c12 was read as c1 c2, s12 as s1 s2, in all places or for some joints."""
     finding = Finding(
         "product_for_sum_angle",
-        "The shorthand with several joint numbers is the cosine or sine of one angle, the sum of "
-        "the joint angles, and not a product of cosines or sines.",
+        "A cosine with several joint numbers is the cosine of the sum of these joint angles, not a "
+        "product of cosines. It is the same for sines.",
     )
     if len(case.sines_and_cosines) > 1:
         yield Rewritten(rewriting.products_merged(case.tree), finding)
@@ -98,12 +106,49 @@ def relative_angle(case: WrongEntry) -> Formulas:
     """
     finding = Finding(
         "relative_angle",
-        "A joint angle counts from the link before, so the direction of a link further out takes "
-        "the sum of the angles up to it.",
+        "A joint angle is measured from the link before: the direction of a link is the sum of all "
+        "joint angles up to it.",
     )
     for first in sorted(case.turning)[:-1] if case.sines_and_cosines else ():
         summed = rewriting.summed_from(first, case.turning)
         yield Rewritten(rewriting.at_sines_and_cosines(case.tree, summed), finding)
+
+
+def angle_left_out(case: WrongEntry) -> Formulas:
+    """A joint angle is not counted in a sum of joint angles: c23 stands for c123."""
+    for symbol in _joint_angles(case):
+        finding = Finding(
+            "joint_variable_missing",
+            f"{case.spelling.name(symbol)} is missing in a sine or cosine: the direction of a link "
+            "is the sum of all joint angles up to it.",
+        )
+        yield from _with_angles_changed(case, rewriting.with_angle(symbol), finding)
+
+
+def angle_too_many(case: WrongEntry) -> Formulas:
+    """A joint angle is counted in a sum of joint angles that ends before it: c123 for c12."""
+    for symbol in _joint_angles(case):
+        finding = Finding(
+            "joint_variable_extra",
+            f"{case.spelling.name(symbol)} does not belong in a sine or cosine here: the direction "
+            "of a link is the sum of the joint angles up to it, and of none behind it.",
+        )
+        yield from _with_angles_changed(case, rewriting.without_angle(symbol), finding)
+
+
+def _joint_angles(case: WrongEntry) -> list[Symbol]:
+    """The joint angles, where there is a sine or cosine that may hold one."""
+    return [case.turning[k] for k in sorted(case.turning)] if case.sines_and_cosines else []
+
+
+def _with_angles_changed(
+    case: WrongEntry, change: rewriting.Rewriting, finding: Finding
+) -> Formulas:
+    """The formula with ``change`` throughout, and in one place where there are few."""
+    yield Rewritten(rewriting.at_sines_and_cosines(case.tree, change), finding, signed=True)
+    if 1 < len(case.sines_and_cosines) <= MAX_PLACES:
+        for tree, _ in rewriting.one_place(case.tree, change):
+            yield Rewritten(tree, finding, signed=True)
 
 
 def term_sign(case: WrongEntry) -> Formulas:
@@ -117,24 +162,42 @@ def term_sign(case: WrongEntry) -> Formulas:
 CHECKS = (undefined,)
 OF_UNIT = (degrees_as_radians, radians_as_degrees)
 OF_ANGLES = (sine_for_cosine, sum_of_cosines, product_for_sum_angle, relative_angle)
-MISCONCEPTIONS = (sign, *OF_UNIT, *OF_ANGLES, term_sign)
+OF_SUMS = (angle_left_out, angle_too_many)
+MISCONCEPTIONS = (sign, *OF_UNIT, *OF_ANGLES, term_sign, *OF_SUMS)
 
 
-def diagnose(case: WrongEntry, *, take_apart: bool = True) -> Finding:
-    """The finding on a wrong entry; its formula is rewritten only if ``take_apart`` allows."""
-    misconceptions = MISCONCEPTIONS if take_apart and case.can_be_repaired else (sign,)
-    return diagnosed(case, misconceptions, CHECKS) or differs(
-        case, "This is not right; work it out again from the factors."
-    )
+def diagnose(
+    case: WrongEntry, *, take_apart: bool = True, required: Required | None = None
+) -> Finding:
+    """The finding on a wrong entry; its formula is rewritten only if ``take_apart`` allows.
+
+    ``required`` is what the right entry depends on, where that is known.
+    """
+    return _explained(case, take_apart=take_apart) or _unexplained(case, required)
 
 
 def diagnose_entries(
-    wrong: Mapping[tuple[int, int], WrongEntry], work_budget: float = WORK_BUDGET
+    wrong: Mapping[tuple[int, int], WrongEntry],
+    work_budget: float = WORK_BUDGET,
+    requirements: Requirements | None = None,
 ) -> dict[tuple[int, int], Finding]:
     """The finding on each wrong entry; once ``work_budget`` is used up, formulas stay whole."""
     findings: dict[tuple[int, int], Finding] = {}
     for place, entry in wrong.items():
-        findings[place] = diagnose(entry, take_apart=work_budget > 0)
-        explained = findings[place].code != UNEXPLAINED
+        explained = _explained(entry, take_apart=work_budget > 0)
         work_budget -= entry.size * (COST_IF_EXPLAINED if explained else 1.0)
+        required = requirements.of(*place) if requirements and not explained else None
+        findings[place] = explained or _unexplained(entry, required)
     return findings
+
+
+def _explained(case: WrongEntry, *, take_apart: bool) -> Finding | None:
+    misconceptions = MISCONCEPTIONS if take_apart and case.can_be_repaired else (sign,)
+    return diagnosed(case, misconceptions, CHECKS)
+
+
+def _unexplained(case: WrongEntry, required: Required | None) -> Finding:
+    return (required and explain_dependence(case, required)) or differs(
+        case,
+        "This is not right. Check each term: which lengths and angles belong in it, and its sign.",
+    )

@@ -6,9 +6,10 @@ from itertools import permutations
 import numpy as np
 
 from service.grading.diagnosis.link_products import Chain, named, other_poses
+from service.grading.diagnosis.slip_search import SlipSearch
 from service.grading.diagnosis.wrong_value import Hypotheses, WrongNumbers
 from service.grading.feedback import Finding
-from service.grading.misconception import Written
+from service.grading.misconception import Written, diagnosed
 from service.grading.tolerances import EXACT_VALUE
 
 
@@ -55,4 +56,16 @@ def other_pose(case: WrongPosition) -> Hypotheses:
             yield Written(position, named(pose, "This position comes from"))
 
 
-MISCONCEPTIONS = (exchanged_coordinates, reversed_position, other_pose)
+LIKELIER = (exchanged_coordinates, reversed_position)
+MISCONCEPTIONS = (*LIKELIER, other_pose)
+
+
+def explain_position(case: WrongPosition, slips: SlipSearch | None) -> Finding | None:
+    """What explains all coordinates: themselves, a slip of the table, or another pose."""
+    whole = diagnosed(case, LIKELIER)
+    if whole is None or whole.code == "reversed_position":
+        slip = slips and slips.finding(np.ones(len(case.axes), dtype=np.bool_))
+        # A position that is reversed is half a turn off, too; a length says more.
+        if slip and (whole is None or slip.code != "half_turn"):
+            return slip
+    return whole or diagnosed(case, (other_pose,))

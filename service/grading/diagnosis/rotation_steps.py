@@ -1,11 +1,13 @@
 """Slips in a composite rotation: a turn about another axis, from the wrong side, or left out."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain, combinations, permutations
 
 import numpy as np
 
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase, as_explanations
+from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import Hypotheses
 from service.grading.feedback import Finding
 from service.grading.judging.expected import as_entries
@@ -13,6 +15,9 @@ from service.grading.misconception import Written, explanation
 from service.grading.samples import Samples
 from service.kinematics.rotations import composed
 from service.kinematics.transforms import Matrices, Numbers
+
+# Of more steps one alone is taken to have a slip.
+MAX_STEPS = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,39 +51,91 @@ def fixed_for_moving(steps: Sequence[Step]) -> Hypotheses:
 
 
 def turned_back(steps: Sequence[Step]) -> Hypotheses:
-    """One turn was made the wrong way round its axis."""
-    for i, step in enumerate(steps):
-        back = replace(step, rotation=np.swapaxes(step.rotation, 1, 2))
+    """Some turns, or all of them, were made the wrong way round their axes."""
+    back = [replace(step, rotation=np.swapaxes(step.rotation, 1, 2)) for step in steps]
+    for some in _subsets(steps):
+        axes = listed(sorted({steps[i].axis.lower() for i in some}))
         finding = Finding(
             "turn_sign",
-            f"Turn {i + 1} goes the wrong way: check the sign of the sines in the fundamental "
-            f"rotation about {step.axis.lower()}.",
+            f"{_turns(some)} {'go' if len(some) > 1 else 'goes'} the wrong way: check the signs of "
+            f"the sines in the rotation about {axes}.",
         )
-        yield _made_of([*steps[:i], back, *steps[i + 1 :]], finding)
+        yield _made_of([(back if i in some else steps)[i] for i in range(len(steps))], finding)
 
 
 def about_another_axis(steps: Sequence[Step]) -> Hypotheses:
     """One turn was made about another coordinate axis."""
     for i, step in enumerate(steps):
         for axis in "XYZ".replace(step.axis, ""):
-            shift = (ord(axis) - ord(step.axis)) % 3
-            other = replace(step, rotation=np.roll(step.rotation, (shift, shift), axis=(1, 2)))
             finding = Finding(
                 "turn_axis",
-                f"Turn {i + 1} was made about {axis.lower()}: look at the axis it is about.",
+                f"Turn {i + 1} was made about {axis.lower()}: look which axis it is about.",
                 f"It is about {step.axis.lower()}.",
             )
-            yield _made_of([*steps[:i], other, *steps[i + 1 :]], finding)
+            turned = replace(step, rotation=_about(axis, step))
+            yield _made_of([*steps[:i], turned, *steps[i + 1 :]], finding)
+
+
+def by_another_angle(steps: Sequence[Step]) -> Hypotheses:
+    """A turn was made by the angle of another, or two by each other's."""
+    for i, j in permutations(range(len(steps)), 2):
+        finding = Finding(
+            "turn_angle",
+            f"Turn {i + 1} was made by the angle of turn {j + 1}: look which angle belongs to "
+            "which axis.",
+        )
+        turned = list(steps)
+        turned[i] = replace(steps[i], rotation=_about(steps[i].axis, steps[j]))
+        yield _made_of(turned, finding)
+    for i, j in combinations(range(len(steps)), 2):
+        finding = Finding(
+            "turn_angle",
+            f"The angles of turns {i + 1} and {j + 1} are exchanged: look which angle belongs to "
+            "which axis.",
+        )
+        turned = list(steps)
+        for one, other in ((i, j), (j, i)):
+            turned[one] = replace(steps[one], rotation=_about(steps[one].axis, steps[other]))
+        yield _made_of(turned, finding)
 
 
 def left_out(steps: Sequence[Step]) -> Hypotheses:
-    """One turn is not in the product."""
-    for i in range(len(steps)) if len(steps) > 1 else ():
-        finding = Finding("missing_turn", f"Turn {i + 1} is not contained in this rotation.")
-        yield _made_of([*steps[:i], *steps[i + 1 :]], finding)
+    """Some turns are not in the product."""
+    for some in _subsets(steps):
+        if len(some) < len(steps):
+            verb = "are" if len(some) > 1 else "is"
+            finding = Finding("missing_turn", f"{_turns(some)} {verb} missing from this rotation.")
+            yield _made_of([step for i, step in enumerate(steps) if i not in some], finding)
 
 
-MISCONCEPTIONS = (fixed_for_moving, turned_back, about_another_axis, left_out)
+def another_order(steps: Sequence[Step]) -> Hypotheses:
+    """The turns were multiplied in another order."""
+    moving = [replace(step, fixed=False) for step in steps if not step.fixed]
+    factors = [*(replace(step, fixed=False) for step in steps[::-1] if step.fixed), *moving]
+    finding = Finding("reversed_product", f"The turns were multiplied in the wrong order. {RULE}")
+    for order in list(permutations(factors))[1:] if len(steps) <= MAX_STEPS else ():
+        yield _made_of(order, finding)
+
+
+def _about(axis: str, step: Step) -> Matrices:
+    """The turn of a step about another axis."""
+    shift = (ord(axis) - ord(step.axis)) % 3
+    return np.roll(step.rotation, (shift, shift), axis=(1, 2))
+
+
+def _subsets(steps: Sequence[Step]) -> Iterator[tuple[int, ...]]:
+    """The places of some steps, the fewest first; of many steps one alone."""
+    most = len(steps) if len(steps) <= MAX_STEPS else 1
+    return chain.from_iterable(combinations(range(len(steps)), k) for k in range(1, most + 1))
+
+
+def _turns(places: Sequence[int]) -> str:
+    numbers = listed([str(i + 1) for i in places])
+    return f"Turns {numbers}" if len(places) > 1 else f"Turn {numbers}"
+
+
+OF_TURNS = (turned_back, about_another_axis, by_another_angle, left_out)
+MISCONCEPTIONS = (fixed_for_moving, *OF_TURNS, another_order)
 
 
 def explain_steps(case: MatrixCase, steps: Sequence[Step]) -> list[Explanation]:

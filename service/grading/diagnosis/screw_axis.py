@@ -54,58 +54,66 @@ class WrongScrew(WrongNumbers):
         return np.concatenate([self.direction, velocity])
 
 
+EXCHANGED_HALVES = Finding(
+    "exchanged_halves", "ω comes first here, v second: the order is (ω; v).", "Exchange ω and v."
+)
+AXIS_REVERSED = Finding(
+    "axis_reversed",
+    "The axis points the opposite way: look which way the joint counts positive.",
+    "Change the sign of all six numbers.",
+)
+MOMENT_SIGN = Finding(
+    "moment_sign",
+    "v has the wrong sign: the turn moves the point at the origin with v = −ω × q, not ω × q.",
+)
+
+
+def seen_from_elsewhere(frame: str) -> Finding:
+    """The finding that an axis is seen from the other frame than "space" or "body", asked for."""
+    seen, asked = ("tool", "base") if frame == "space" else ("base", "tool")
+    return Finding(
+        "body_for_space" if frame == "space" else "space_for_body",
+        f"ω and v are written as seen from the {seen} frame. A {frame} axis is seen from the "
+        f"{asked} frame.",
+        f"Measure ω and the point q in the {asked} frame, with the arm in its home position.",
+    )
+
+
 def axis_reversed(case: WrongScrew) -> Hypotheses:
     """The axis was taken to point the opposite way."""
-    finding = Finding(
-        "axis_reversed",
-        "This axis points the opposite way: look which way the joint counts positive.",
-        "Change the sign of all six numbers.",
-    )
-    yield Written(-case.expected, finding)
+    yield Written(-case.expected, AXIS_REVERSED)
 
 
 def moment_sign(case: WrongScrew) -> Hypotheses:
     """V was taken to be ω × q."""
-    finding = Finding(
-        "moment_sign",
-        "v has the wrong sign: it is the velocity that the turn gives to the point at the origin, "
-        "−ω × q and not ω × q.",
-    )
     if case.turns:
-        yield Written(case.with_velocity(case.pitch * case.direction - case.moment), finding)
+        velocity = case.pitch * case.direction - case.moment
+        yield Written(case.with_velocity(velocity), MOMENT_SIGN)
 
 
 def other_frame(case: WrongScrew) -> Hypotheses:
     """The body axis was given for the space axis, or the other way."""
-    seen, asked = ("tool", "base") if case.frame == "space" else ("base", "tool")
-    finding = Finding(
-        "body_for_space" if case.frame == "space" else "space_for_body",
-        f"This is the axis as seen from the {seen} frame; the {case.frame} axis is seen from the "
-        f"{asked} frame.",
-        f"Measure ω and the point q in the {asked} frame, with the arm in its home position.",
-    )
     if case.elsewhere is not None:
-        yield Written(case.elsewhere, finding)
+        yield Written(case.elsewhere, seen_from_elsewhere(case.frame))
 
 
 def sliding_as_turning(case: WrongScrew) -> Hypotheses:
-    """The direction of a sliding joint was written in ω: infinite pitch is ω = 0."""
+    """A sliding joint was written as one that turns: infinite pitch is ω = 0."""
     finding = Finding(
         "infinite_pitch",
-        "This joint slides, so its pitch is infinite: look which of ω and v holds its direction.",
+        "This joint slides and does not turn: look which of ω and v holds its direction.",
         "ω is 0, and v is the unit vector of the direction.",
     )
-    if not case.turns:
-        # Whatever was written for v.
-        for direction in (case.expected[3:], -case.expected[3:]):
-            yield Written(np.concatenate([direction, case.actual[3:]]), finding)
+    if not case.turns and (np.abs(case.actual[:3]).max(axis=0) > EXACT_VALUE).all():
+        # Whatever was written for ω and v.
+        yield Written(case.actual, finding)
 
 
 def turning_as_sliding(case: WrongScrew) -> Hypotheses:
     """The axis of a turning joint was written in v."""
     finding = Finding(
         "infinite_pitch",
-        "This joint turns, so its pitch is finite: look which of ω and v holds its direction.",
+        "This joint turns and does not slide: look which of ω and v holds its direction.",
         "ω is the unit vector along the axis, and v = −ω × q.",
     )
     if case.turns:
@@ -114,8 +122,7 @@ def turning_as_sliding(case: WrongScrew) -> Hypotheses:
 
 def exchanged_halves(case: WrongScrew) -> Hypotheses:
     """V was written in front of ω."""
-    finding = Finding("exchanged_halves", "ω comes first here, v second: the order is (ω; v).")
-    yield Written(np.concatenate([case.expected[3:], case.direction]), finding)
+    yield Written(np.concatenate([case.expected[3:], case.direction]), EXCHANGED_HALVES)
 
 
 def not_normalised(case: WrongScrew) -> Hypotheses:
@@ -123,7 +130,7 @@ def not_normalised(case: WrongScrew) -> Hypotheses:
     letter, unit = ("ω", slice(0, 3)) if case.turns else ("v", slice(3, 6))
     finding = Finding(
         "not_normalised",
-        f"The direction is right, but {letter} of this axis must be a unit vector.",
+        f"The direction is right, but {letter} is not of length 1, as it must be here.",
         f"Divide all six numbers by the length of {letter}.",
     )
     factor = (case.actual[unit] * case.expected[unit]).sum(axis=0)
@@ -135,8 +142,7 @@ def point_for_velocity(case: WrongScrew) -> Hypotheses:
     """A point on the axis was written in place of v."""
     finding = Finding(
         "point_for_velocity",
-        "v is not a point on the axis, but the velocity that the turn gives to the point at the "
-        "origin: v = −ω × q.",
+        "v holds a point q on the axis. It must be a velocity, v = −ω × q.",
     )
     if case.turns and np.abs(case.moment).max() >= EXACT_VALUE:
         point = case.actual[3:]
@@ -149,16 +155,43 @@ def pitch(case: WrongScrew) -> Hypotheses:
     """The advance along the axis was left out, added, or is another."""
     if not case.turns:
         return
-    hint = "The part of v along ω is not right: it is the pitch h times ω."
+    hint = "The part of v along ω is not right. It is h ω with the pitch h of this joint."
     along = ((case.actual[3:] - case.moment) * case.direction).sum(axis=0)
     if np.abs(along - case.pitch).max() >= ROUNDED_VALUE * case.length_scale:
         velocity = case.moment + along * case.direction
         yield Written(case.with_velocity(velocity), Finding("pitch", hint, "v = −ω × q + h ω."))
 
 
+def point_off_axis(case: WrongScrew) -> Hypotheses:
+    """The point q that v was taken from does not lie on the axis."""
+    finding = Finding(
+        "point_off_axis",
+        "ω is right, v is not: v = −ω × q needs a point q on this axis. Check the coordinates of q "
+        f"in the {'base' if case.frame == 'space' else 'tool'} frame, and the cross product.",
+    )
+    along = (case.actual[3:] * case.direction).sum(axis=0)
+    if case.turns and nearly_equal(along, case.pitch, case.length_scale):
+        yield Written(case.with_velocity(case.actual[3:]), finding)
+
+
+def other_direction(case: WrongScrew) -> Hypotheses:
+    """The unit vector lies along another line than the joint."""
+    letter, unit = ("ω", slice(0, 3)) if case.turns else ("v", slice(3, 6))
+    finding = Finding(
+        "other_direction",
+        f"{letter} is a unit vector, but not along the axis of this joint: look along which "
+        f"direction the joint {'turns' if case.turns else 'slides'} in the home position.",
+    )
+    length = np.sqrt((case.actual[unit] ** 2).sum(axis=0))
+    along = (case.actual[unit] * case.expected[unit]).sum(axis=0)
+    if nearly_equal(length, np.ones_like(length)) and np.abs(np.abs(along) - 1).max() > EXACT_VALUE:
+        yield Written(case.actual, finding)
+
+
 OF_DIRECTION = (axis_reversed, moment_sign, other_frame)
 OF_HALVES = (sliding_as_turning, turning_as_sliding, exchanged_halves)
-MISCONCEPTIONS = (*OF_DIRECTION, *OF_HALVES, not_normalised, point_for_velocity, pitch)
+OF_VELOCITY = (point_for_velocity, pitch, point_off_axis)
+MISCONCEPTIONS = (*OF_DIRECTION, *OF_HALVES, not_normalised, *OF_VELOCITY, other_direction)
 
 
 def explain_screw(case: WrongScrew) -> Finding | None:

@@ -7,7 +7,8 @@ import numpy as np
 from service.catalogue import Joint
 from service.expressions.printing.spelling import PLAIN, spelling_for
 from service.grading.comparison import Match
-from service.grading.diagnosis.wording import listed
+from service.grading.diagnosis.quantity import quantity_of
+from service.grading.diagnosis.wording import POSITIVE, listed
 from service.grading.diagnosis.wrong_value import (
     Hypotheses,
     WrongCell,
@@ -21,18 +22,32 @@ from service.grading.joint_motion import coefficients
 from service.grading.judging.table import Judgement, column_scales
 from service.grading.misconception import Repaired, Written, diagnosed
 from service.grading.part import Grading
+from service.grading.reading.absent_variables import absent_names, joint_counted
 from service.grading.reading.table import IS_ANGLE
 from service.grading.tolerances import ROUNDED_VALUE
 from service.kinematics.chain import D
 
 SUM_COUNTS = (
-    "The axis is parallel to its neighbour, so it is the sum of the offsets along it that counts."
+    "A neighbouring joint has a parallel axis, so only the sum of the offsets along both counts."
 )
 
 # The turn that an angle is off by may itself have been rounded.
 ROUNDED_TURN = ROUNDED_VALUE * np.pi
 
 # --- checks of the joint variables in the cell
+
+
+def joint_variable_absent(case: WrongCell) -> Finding | None:
+    """The cell contains a joint variable that the robot does not have."""
+    absent = sorted(absent_names([case.expression], case.samples))
+    if not absent:
+        return None
+    known = {joint.index: joint for joint in case.joints}
+    joint = known.get(joint_counted(absent[0]))
+    why = f"its joints are {min(known)} to {max(known)}"
+    if joint is not None:
+        why = f"joint {joint.index} {_motion(joint)}, and its variable is {case.name(joint)}"
+    return finding_on(case, "joint_variable_absent", f"This robot has no {absent[0]}: {why}.")
 
 
 def joint_variable_missing(case: WrongCell) -> Finding | None:
@@ -58,8 +73,8 @@ def joint_variable_sign(case: WrongCell) -> Finding | None:
     return finding_on(
         case,
         "joint_variable_sign",
-        f"The joint variable has the wrong sign: look which way z points on this joint's axis, and "
-        f"in which sense the joint {_motion(case.joint)}.",
+        f"The sign of the joint variable is wrong: check which way z points along this joint's "
+        f"axis, and in which sense the joint {_motion(case.joint)}.",
     )
 
 
@@ -84,8 +99,8 @@ def joint_variable_doubled(case: WrongCell) -> Finding | None:
     return finding_on(
         case,
         "joint_variable_doubled",
-        f"The joint variable is contained more than once: the joint {_motion(joint)} by its "
-        f"variable, neither more nor less.",
+        f"The cell contains the joint variable more than once: the joint {_motion(joint)} by that "
+        f"variable itself.",
     )
 
 
@@ -94,11 +109,12 @@ def joint_variable_column(case: WrongCell) -> Finding | None:
     joint, _ = case.contained_alone
     if joint is None or joint != case.joint or case.required:
         return None
-    kind = "slides, so its variable is d" if joint.prismatic else "turns, so its variable is θ"
+    moves, column = ("slides", "d") if joint.prismatic else ("turns", "θ")
     return finding_on(
         case,
         "joint_variable_column",
-        f"Joint {joint.index} {kind}; {case.symbol} is constant here.",
+        f"Joint {joint.index} {moves}, so its variable belongs in {column}; {case.symbol} is "
+        f"constant here.",
     )
 
 
@@ -110,7 +126,19 @@ def joint_variable_extra(case: WrongCell) -> Finding | None:
     return finding_on(
         case,
         "joint_variable_extra",
-        f"The cell contains {listed(extra)}: check which cells of a table change with the joints.",
+        f"The cell contains {listed(extra)}: check whether {case.symbol} changes with "
+        f"{'it' if len(extra) == 1 else 'them'}.",
+    )
+
+
+def wrong_quantity(case: WrongCell) -> Finding | None:
+    """An angle where a length is asked for, or a length where an angle is."""
+    found = quantity_of(case.expression.tree)
+    if found not in ("angle", "length") or (found == "angle") == case.angle:
+        return None
+    asked, written = ("an angle", "a length") if case.angle else ("a length", "an angle")
+    return finding_on(
+        case, "wrong_quantity", f"{case.symbol} is {asked}, but {written} is written here."
     )
 
 
@@ -123,7 +151,7 @@ def sign(case: WrongCell) -> Hypotheses:
         case,
         "sign",
         f"The sign of {case.symbol} is wrong: measure the {'turn' if case.angle else 'distance'} "
-        f"{case.measured}, positive in the direction of that axis.",
+        f"{case.measured}, positive {POSITIVE[case.column]}.",
     )
     yield Written(-case.constants[1], finding)
 
@@ -133,7 +161,7 @@ def distance_left_out(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         "distance_left_out",
-        f"A distance is left out of {case.symbol}{_beside(case)}: these two frames are apart "
+        f"A distance is left out of {case.symbol}{_beside(case)}: the two frames are apart "
         f"{case.measured}.",
     )
     yield Written(0 * case.actual, finding)
@@ -144,8 +172,7 @@ def distance_extra(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         "distance_extra",
-        f"Check the distance in {case.symbol}{_beside(case)}: look along which axis of which frame "
-        f"it is measured.",
+        f"Check the distance in {case.symbol}{_beside(case)}: along which axis does it lie?",
     )
     yield Repaired(0 * case.actual, finding)
 
@@ -180,8 +207,8 @@ def quarter_turn(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         "quarter_turn",
-        f"{case.symbol} is not right: compare the two axes that it is measured between, in the "
-        f"home configuration.",
+        f"{case.symbol} is not right: compare the directions of the two axes that it is measured "
+        f"between{', in the home configuration' if case.joint else ''}.",
         otherwise="It is off by a quarter turn (90°).",
     )
     for turn in (np.pi / 2, -np.pi / 2):
@@ -193,13 +220,15 @@ def half_turn(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         "half_turn",
-        f"{case.symbol} is not right: check which way the axes point that it is measured between.",
+        f"{case.symbol} is not right: check the directions of the two axes that it is measured "
+        f"between.",
         otherwise="It is off by half a turn (180°).",
     )
     yield Written(case.constants[1] + np.pi, finding, tolerance=ROUNDED_TURN)
 
 
 CHECKS = (
+    joint_variable_absent,
     undefined,
     joint_variable_missing,
     joint_variable_sign,
@@ -207,6 +236,7 @@ CHECKS = (
     joint_variable_doubled,
     joint_variable_column,
     joint_variable_extra,
+    wrong_quantity,
 )
 OF_DISTANCE = (distance_left_out, distance_extra)
 OF_ANGLE = (degrees_as_radians, radians_as_degrees, quarter_turn, half_turn)
@@ -285,6 +315,7 @@ def diagnose_cells(judgement: Judgement, grading: Grading) -> dict[tuple[int, in
                 contained=_by_joint(contained, joints),
                 required=_by_joint(required, joints) or {},
                 shared=judged.shared,
+                joints=joints,
             )
         )
     return slips

@@ -1,12 +1,14 @@
 """The findings on a wrong table as a whole."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue.parts.dh_table import DhTableSpec
+from service.expressions import Symbol
 from service.grading.comparison import Match, difference
 from service.grading.diagnosis.table_freedom import lost_freedom
 from service.grading.diagnosis.whole_table import WrongTable, explaining
@@ -23,12 +25,15 @@ from service.grading.judging.own_frames.written_table import (
 )
 from service.grading.judging.table import Judgement, departures_of, judged_by_intended
 from service.grading.part import Grading
-from service.grading.reading.table import IS_ANGLE, values_of
+from service.grading.reading.table import IS_ANGLE, table_values, values_of
 from service.grading.report import Severity
 from service.grading.tolerances import INTENDED_CELL, INTENDED_POSE
 from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers
+
+# Of more lengths in wrong cells nobody can say which two were exchanged.
+MOST_LENGTHS = 4
 
 # How many samples of each half tell tables apart that are tried by the dozen.
 TABLE_SAMPLES = 3
@@ -66,17 +71,18 @@ def explained(
     values = values_of([role.row for role in roles if role.row is not None])
     if len(values) < len(roles) or not np.isfinite(values).all():
         return (), judgement
-    case = _wrong_table(part, roles, convention, values, grading)
+    exchanges = tuple(_exchanges(judgement, roles, grading))
+    case = _wrong_table(part, roles, convention, values, exchanges, grading)
     found = explaining(case, combine=combine)
     intended = [_intended(repaired, case.written, roles, grading) for repaired in found]
     wrong = judgement.matches < Match.ROUNDED
     agree = [each for each in intended if each.table is None or np.array_equal(each.changed, wrong)]
     if agree:
-        return _findings(agree), judgement
+        return agree[0].findings, judgement
     nearest = min(intended, key=lambda each: each.departures, default=None)
     if nearest is None or nearest.table is None or nearest.departures >= judgement.departures:
         return (), judgement
-    return _findings([nearest]), judged_by_intended(nearest.table, roles, convention, grading)
+    return nearest.findings, judged_by_intended(nearest.table, roles, convention, grading)
 
 
 def _wrong_table(
@@ -84,18 +90,44 @@ def _wrong_table(
     roles: tuple[Role, ...],
     convention: Convention,
     values: Table,
+    exchanges: tuple[tuple[str, str, Table], ...],
     grading: Grading,
 ) -> WrongTable:
     exercise, samples = grading.exercise, grading.samples
     table = exercise.robot.tables.get(convention)
     reference = None if table is None else reference_values(table, samples)
     written = written_table(values, convention, reference, exercise.robot.joints, samples)
+    written = replace(written, exchanges=exchanges)
     freedom, subset = freedom_of(part), samples.subset(TABLE_SAMPLES)
 
     def valid(tables: Numbers, convention: Convention) -> NDArray[np.bool_]:
         return valid_tables(tables, roles, convention, freedom, exercise, subset, INTENDED_POSE)
 
     return WrongTable(written, written.subset(TABLE_SAMPLES), valid)
+
+
+def _exchanges(
+    judgement: Judgement, roles: Sequence[Role], grading: Grading
+) -> Iterator[tuple[str, str, Table]]:
+    """Each two lengths in the wrong cells, with the change of the table if they are exchanged."""
+    by_name = grading.exercise.vocabulary.by_name
+    lengths: set[str] = set()
+    for i, column in np.argwhere(judgement.matches < Match.ROUNDED).tolist():
+        row = judgement.rows[i].row
+        expression = None if row is None else row.expressions[column]
+        if expression is not None:
+            lengths.update(name for name in expression.symbols if _is_length(by_name.get(name)))
+    if not 2 <= len(lengths) <= MOST_LENGTHS:
+        return
+    rows = [role.row for role in roles if role.row is not None]
+    written = table_values(rows, grading.samples)
+    for one, other in combinations(sorted(lengths), 2):
+        exchanged = grading.samples.renamed({one: other, other: one})
+        yield one, other, table_values(rows, exchanged) - written
+
+
+def _is_length(symbol: Symbol | None) -> bool:
+    return symbol is not None and symbol.kind == "length" and symbol.joint is None
 
 
 def _intended(
@@ -109,18 +141,6 @@ def _intended(
     frames = frames_from_reference(table, roles, written.convention, grading)
     departures = departures_of(frames, grading)
     return _Intended(repaired.findings, table, error > INTENDED_CELL, departures)
-
-
-def _findings(intended: Sequence[_Intended]) -> tuple[Finding, ...]:
-    """The first finding of each code."""
-    by_code: dict[str, Finding] = {}
-    for each in intended:
-        for finding in each.findings:
-            by_code.setdefault(finding.code, finding)
-    if "other_convention" in by_code:
-        # Columns one row off are the same slip seen from the other side.
-        by_code.pop("link_columns_shifted", None)
-    return tuple(by_code.values())
 
 
 def freedom_lost(

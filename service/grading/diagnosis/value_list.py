@@ -1,23 +1,54 @@
 """Slips in a list of single values, each of its own quantity."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from service.expressions.printing.spelling import PLAIN
 from service.grading.diagnosis.angle import diagnose_angle
 from service.grading.diagnosis.formula_repair import WrongEntry
 from service.grading.diagnosis.matrix_entry import diagnose
+from service.grading.diagnosis.missing_symbol import Requirements
+from service.grading.diagnosis.slip_search import SlipSearch
+from service.grading.diagnosis.slipped_answers import SlippedAnswers
+from service.grading.diagnosis.wrong_value import Mask
 from service.grading.feedback import Finding
 from service.grading.judging.value_list import ComparedValues
 from service.grading.part import Grading
 
 
+def search_of(
+    answers: SlippedAnswers | None, compared: ComparedValues, wrong: Mask, grading: Grading
+) -> SlipSearch | None:
+    """The search for slips of the table behind a list of values; None for None."""
+    if answers is None:
+        return None
+    student = compared.student
+    return SlipSearch(
+        answers,
+        grading.samples,
+        student.values,
+        compared.expected,
+        wrong,
+        scale=compared.scales(grading),
+        angle=np.array([[quantity == "angle"] for quantity in student.quantities]),
+        name=grading.symbol_names(student.entries),
+    )
+
+
 def slips_of(
-    compared: ComparedValues, wrong: NDArray[np.bool_], grading: Grading
+    compared: ComparedValues,
+    wrong: Mask,
+    grading: Grading,
+    answers: SlippedAnswers | None = None,
 ) -> dict[tuple[int, int], Finding]:
-    """The finding on each wrong value that was read, at (its place, 0)."""
+    """The finding on each wrong value that was read, at (its place, 0).
+
+    ``answers`` are those that changed symbols lead to.
+    """
     student, scales = compared.student, compared.scales(grading)
-    spelling = grading.spelling(student.entries) if wrong.any() and grading.corrects else PLAIN
+    requirements = answers and Requirements(
+        answers, grading.exercise, grading.samples, compared.expected, scales
+    )
+    spelling = grading.spelling(student.entries) if wrong.any() else PLAIN
     slips: dict[tuple[int, int], Finding] = {}
     for i in np.flatnonzero(wrong).tolist():
         if (expression := student.entries[i].expression) is None:
@@ -35,5 +66,6 @@ def slips_of(
             turning=grading.exercise.vocabulary.turning,
             corrects=grading.corrects,
         )
-        slips[i, 0] = diagnose_angle(case) if angle else diagnose(case)
+        required = requirements.of(i) if requirements else None
+        slips[i, 0] = diagnose_angle(case) if angle else diagnose(case, required=required)
     return slips

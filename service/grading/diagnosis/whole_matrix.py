@@ -3,14 +3,24 @@
 Entries that a hypothesis explains need no finding of their own.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from itertools import permutations
+from itertools import chain, permutations
 
 import numpy as np
 
+from service.grading.diagnosis import inverse_slips, motion_slips
 from service.grading.diagnosis.link_products import named
-from service.grading.diagnosis.matrix_case import Explanation, MatrixCase, as_explanations
+from service.grading.diagnosis.matrix_case import (
+    BOTTOM_ROW,
+    POSITION_BLOCK,
+    ROTATION_BLOCK,
+    UPPER_ROWS,
+    Block,
+    Explanation,
+    MatrixCase,
+    as_explanations,
+)
 from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, Hypotheses, Mask
 from service.grading.feedback import Finding
@@ -20,12 +30,7 @@ from service.grading.report import Severity
 from service.grading.tolerances import EXACT_VALUE, ROUNDED_VALUE
 from service.kinematics.transforms import Numbers, inverse
 
-Block = tuple[slice, slice]
-
-ROTATION_BLOCK: Block = (slice(0, 3), slice(0, 3))
-POSITION_BLOCK: Block = (slice(0, 3), slice(3, 4))
-UPPER_ROWS: Block = (slice(0, 3), slice(None))
-BOTTOM_ROW: Block = (slice(3, 4), slice(None))
+Misconceptions = tuple[Callable[[MatrixCase], Hypotheses], ...]
 
 
 def transposed_matrix(case: MatrixCase) -> Hypotheses:
@@ -141,10 +146,20 @@ def _line_sign(code: str, indices: list[int], frame: str) -> Finding:
     )
 
 
-OF_UPPER_ROWS = (inverse_transform, other_pose, inverse_of_other_pose)
-OF_ROTATION = (transposed_rotation, columns_exchanged, other_rotation)
-OF_POSITION = (other_position,)
-MISCONCEPTIONS = (transposed_matrix, *OF_UPPER_ROWS, *OF_ROTATION, *OF_POSITION, line_sign)
+# In front of the slips of tables stand misconceptions that are likelier than any of them, behind
+# them those that are less so.
+OF_UPPER_ROWS = ((), (inverse_transform, other_pose, inverse_of_other_pose))
+OF_ROTATION = ((transposed_rotation,), (columns_exchanged, other_rotation))
+OF_POSITION = ((), (other_position,))
+# The same of transforms and rotations that the exercise gives in formulas.
+GIVEN_UPPER_ROWS = (*inverse_slips.OF_UPPER_ROWS, *motion_slips.OF_UPPER_ROWS)
+GIVEN_ROTATION = (*inverse_slips.OF_ROTATION, *motion_slips.OF_ROTATION)
+GIVEN_POSITION = (*inverse_slips.OF_POSITION, *motion_slips.OF_POSITION)
+MISCONCEPTIONS = (
+    transposed_matrix,
+    *chain.from_iterable(OF_UPPER_ROWS + OF_ROTATION + OF_POSITION),
+    line_sign,
+)
 
 
 # --- checks
@@ -204,23 +219,65 @@ CHECKS = (bottom_row, left_handed_rotation, rotation_not_orthonormal)
 
 def explain(case: MatrixCase) -> list[Explanation]:
     """What is wrong with the matrix as a whole, or with a large part of it."""
-    transposed = explanation(case, (transposed_matrix,))
+    is_given = case.motion is not None
+    of_matrix = inverse_slips.OF_MATRIX if is_given else ()
+    transposed = explanation(case, (transposed_matrix, *of_matrix))
     if transposed is not None or not case.rigid:
         return as_explanations(case, transposed)
     bottom = bottom_row(case)
     explained = [Explanation(bottom, case.mask(BOTTOM_ROW))] if bottom else []
     if case.wrong[UPPER_ROWS].any():
-        explained += as_explanations(case, explanation(case, OF_UPPER_ROWS)) or _of_blocks(case)
+        given = GIVEN_UPPER_ROWS if is_given and case.is_transform else ()
+        explained += _of_block(case, UPPER_ROWS, *OF_UPPER_ROWS, given) or _of_blocks(case)
     return explained
 
 
 def _of_blocks(case: MatrixCase) -> list[Explanation]:
     explained: list[Explanation] = []
-    for block, misconceptions in ((ROTATION_BLOCK, OF_ROTATION), (POSITION_BLOCK, OF_POSITION)):
+    is_given = case.motion is not None
+    of_rotation = (*OF_ROTATION, GIVEN_ROTATION if is_given else ())
+    of_position = (*OF_POSITION, GIVEN_POSITION if is_given else ())
+    for block, misconceptions in ((ROTATION_BLOCK, of_rotation), (POSITION_BLOCK, of_position)):
         if case.wrong[block].any():
-            explained += as_explanations(case, explanation(case, misconceptions))
+            explained += _of_block(case, block, *misconceptions)
     rest = replace(case, wrong=unexplained(case, explained))
     return explained + as_explanations(rest, explanation(rest, (line_sign,)))
+
+
+def _of_block(
+    case: MatrixCase,
+    block: Block,
+    likelier: Misconceptions,
+    less_likely: Misconceptions,
+    given: Misconceptions,
+) -> list[Explanation]:
+    """What explains a block: a likely misconception, a slip of the table, or an unlikely one."""
+    return (
+        as_explanations(case, explanation(case, likelier))
+        or _of_slips(case, block)
+        or as_explanations(case, explanation(case, (*less_likely, *given)))
+    )
+
+
+def _of_slips(case: MatrixCase, block: Block) -> list[Explanation]:
+    """The slips of the table that explain a block.
+
+    A turned frame, of which only axes have the wrong sign, is left to ``line_sign``. So is a single
+    wrong entry to itself, unless the slip explains the whole matrix.
+    """
+    entries = case.mask(block)
+    if case.slips is None or (case.wrong[block].sum() == 1 and block != UPPER_ROWS):
+        return []
+    finding = case.slips.finding(entries)
+    if finding is None or (finding.code == "half_turn" and _is_of_signs(case, entries)):
+        return []
+    return [Explanation(finding, entries)]
+
+
+def _is_of_signs(case: MatrixCase, entries: Mask) -> bool:
+    """Whether the wrong signs of whole lines explain all that is wrong in these entries."""
+    signs = explanation(case, (line_sign,))
+    return signs is not None and not (case.wrong & entries & ~case.mask(signs.entries)).any()
 
 
 def unexplained(case: MatrixCase, explained: Sequence[Explanation]) -> Mask:

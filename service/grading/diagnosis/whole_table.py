@@ -104,7 +104,7 @@ def columns_swapped(table: WrittenTable) -> Iterator[RepairedTable]:
         moving = np.abs(table.motion[:, one] - table.motion[:, other]).max(axis=-1) > 0
         for row in (None, *range(len(still))):
             rows = slice(None) if row is None else slice(row, row + 1)
-            finding = partial(_swapped, SYMBOLS[one], SYMBOLS[other], row)
+            finding = partial(exchanged_columns, one, other)
             constants = _exchanged(table.constants, rows, one, other)
             if still[rows].any():
                 yield Repaired(table.changed(constants), finding)
@@ -119,13 +119,14 @@ def _exchanged(cells: Table, rows: slice, one: int, other: int) -> Table:
     return exchanged
 
 
-def _swapped(one: str, other: str, row: int | None) -> Finding:
-    where = "" if row is None else f" in row {row + 1}"
+def exchanged_columns(one: int, other: int) -> Finding:
+    """The finding that two columns stand in each other's places, throughout or in a row."""
+    names = SYMBOLS[one], SYMBOLS[other]
     return Finding(
         "columns_swapped",
-        f"{one} and {other} are exchanged{where}: one is measured along or about x, the other "
-        f"along or about z.",
-        f"Exchange {one} and {other}{where}.",
+        f"{names[0]} and {names[1]} are exchanged: {names[0]} is measured {MEASURED[one]}, "
+        f"{names[1]} {MEASURED[other]}.",
+        f"Exchange {names[0]} and {names[1]}.",
     )
 
 
@@ -148,8 +149,30 @@ def _reordered(order: list[int]) -> Finding:
     )
 
 
+def lengths_exchanged(table: WrittenTable) -> Iterator[RepairedTable]:
+    """Two lengths were taken for each other."""
+    for one, other, change in table.exchanges:
+        finding = partial(_exchanged_lengths, one, other)
+        yield Repaired(table.changed(table.constants + change), finding)
+
+
+def _exchanged_lengths(one: str, other: str) -> Finding:
+    return Finding(
+        "lengths_exchanged",
+        f"{one} and {other} are exchanged: look in the drawing which length each of them is.",
+        f"Exchange {one} and {other}.",
+    )
+
+
 BASIC = written_table.MISCONCEPTIONS
-MISCONCEPTIONS = (*BASIC, link_columns_shifted, column_sign, columns_swapped, row_order)
+MISCONCEPTIONS = (
+    *BASIC,
+    lengths_exchanged,
+    link_columns_shifted,
+    column_sign,
+    columns_swapped,
+    row_order,
+)
 
 
 def _with_another(

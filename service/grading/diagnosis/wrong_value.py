@@ -99,7 +99,7 @@ class WrongCell(WrongValue):
 
     ``contained`` says how often the student's cell contains which joint variables, None if not
     linearly; ``required`` how often the expected one does. ``shared`` says that the joint's axis
-    has a parallel neighbour, so that offsets along it add up.
+    has a parallel neighbour, so that offsets along it add up. ``joints`` are all of the robot's.
     """
 
     column: int
@@ -107,6 +107,7 @@ class WrongCell(WrongValue):
     contained: Mapping[Joint, int] | None
     required: Mapping[Joint, int]
     shared: bool = False
+    joints: tuple[Joint, ...] = ()
 
     @property
     def symbol(self) -> str:
@@ -201,21 +202,33 @@ def undefined(case: WrongValue) -> Finding | None:
 
 
 def differs(case: WrongValue, hint: str) -> Finding:
-    """``hint`` and one counterexample, for a value that no known misconception explains."""
+    """``hint`` and one counterexample, for a value that no known misconception explains.
+
+    The entry is worked out at the numbers as they are printed, so that a pocket calculator agrees.
+    A bare number has no counterexample: that it is what it is tells nothing.
+    """
     # A right number without its formula can be checked only with the values of all symbols.
     alone = case.corrects and case.correction is None
     symbols = case.samples.values.keys() if alone else case.expression.symbols
-    values: dict[str, float | str] = {
-        **case.samples.at(0, symbols),
-        YOURS: _number(case, case.actual),
+    values: dict[str, float | str] = {**case.samples.at(0, symbols)}
+    if values:
+        values[YOURS] = _printed(case, _at_printed(case))
+        if case.corrects:
+            values[EXPECTED] = _printed(case, float(case.expected[0]))
+    return finding_on(case, UNEXPLAINED, hint, values or None)
+
+
+def _at_printed(case: WrongValue) -> float:
+    """The entry's value where its symbols have the numbers of sample 0 as they are printed."""
+    samples, names = case.samples, case.expression.symbols
+    printed = {
+        name: np.array([math.radians(number) if name in samples.in_degrees else number])
+        for name, number in samples.at(0, names).items()
     }
-    if case.corrects:
-        values[EXPECTED] = _number(case, case.expected)
-    return finding_on(case, UNEXPLAINED, hint, values)
+    return float(np.ravel(case.expression.evaluate(printed))[0])
 
 
-def _number(case: WrongValue, values: Numbers) -> float:
-    """The first of the values, short enough to be read, and in degrees where the student is."""
-    in_degrees = case.angle and case.samples.in_degrees
-    number = math.degrees(values[0]) if in_degrees else float(values[0])
+def _printed(case: WrongValue, value: float) -> float:
+    """The value, short enough to be read, and in degrees where the student is."""
+    number = math.degrees(value) if case.angle and case.samples.in_degrees else value
     return 0.0 if abs(number) < PRINTED_NUMBER else float(f"{number:.4g}")

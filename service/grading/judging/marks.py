@@ -107,7 +107,8 @@ def shares_of(judged: Judged, marking: Marking) -> Shares:
     shares, slip_cost = _SHARES[marking](judged.content, verdicts)
     total = sum(shares.earned) - slip_cost * judged.slips
     if judged.whole_cost is not None and marking != "whole":
-        total = max(total, 1 - judged.whole_cost)
+        most = 1.0 if judged.beside is None else sum(shares_of(judged.beside, marking).earned)
+        total = max(total, most - judged.whole_cost)
     if judged.at_most is not None:
         total = min(total, sum(shares_of(judged.at_most, marking).earned))
     if judged.stands_still:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from service.grading.feedback import ROUNDED, Finding
 from service.grading.part import Grading
 from service.grading.reading.entry import Entry
 from service.grading.reading.value_list import StudentValues
-from service.grading.report import CellReport, ReadEntry, RowReport, Verdict, row_report
+from service.grading.report import CellReport, Place, ReadEntry, RowReport, Verdict, row_report
 
 _EXACT = int(Match.EXACT)
 
@@ -55,6 +56,15 @@ def value_rows(
     return entry_rows(column, found[:, None], slips, grading)
 
 
+# The note on the reading of an entry that says the same as a slip.
+NOTES_ON: Final = {"swapped_atan2": "atan2_order"}
+
+
+def value_places(marked: NDArray[np.bool_]) -> tuple[Place, ...]:
+    """The places of the marked values ``(n,)`` of a list."""
+    return tuple(Place(str(i + 1), "1") for i in np.flatnonzero(marked).tolist())
+
+
 @lru_cache(maxsize=64)
 def _right(column: str) -> CellReport:
     """The report on a right entry without a message, as most are."""
@@ -75,7 +85,9 @@ def cell_report(
         findings = (*findings, ROUNDED)
     elif entry.expression is not None and match < Match.ROUNDED:
         verdict = Verdict.INCORRECT
-        findings = (*findings, slip) if slip else findings
+        if slip is not None:
+            told = NOTES_ON.get(slip.code) if grading.visible((slip,)) else None
+            findings = (*(note for note in findings if note.code != told), slip)
     return CellReport(column, verdict, grading.visible(findings), _read(entry, grading))
 
 

@@ -1,6 +1,5 @@
 """Answer kind ``dh_row``: the DH row of a transform, or that it has none."""
 
-import re
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Literal
@@ -22,7 +21,8 @@ from service.grading.judging.expected import given_values
 from service.grading.judging.report_rows import cell_report
 from service.grading.misconception import diagnosed
 from service.grading.part import Grading, Judged
-from service.grading.reading.entry import MISSING
+from service.grading.reading.entry import MISSING, Entry
+from service.grading.reading.row_text import NamedCell, in_one_line, named_cells, says_none
 from service.grading.reading.table import IS_ANGLE, StudentRow, read_table
 from service.grading.reading.table_json import canonical_table
 from service.grading.report import CellReport, Verdict, row_report
@@ -144,11 +144,11 @@ def _says_none(answer: object) -> bool:
     if isinstance(answer, Mapping):
         named = answer.get(NONE)
         if named in _NOT_SAID:
-            return False
+            return _is_none_in_each_cell(answer)
         if _gives_a_row(answer):
             raise UnreadableAnswerError(_CONTRADICTION)
         return named is True
-    return isinstance(answer, str) and _NONE.fullmatch(answer.strip()) is not None
+    return isinstance(answer, str) and says_none(answer)
 
 
 def _gives_a_row(answer: Mapping[str, object]) -> bool:
@@ -158,13 +158,25 @@ def _gives_a_row(answer: Mapping[str, object]) -> bool:
     return any(map(_is_written, (answer.get("rows"), *cells)))
 
 
+def _is_none_in_each_cell(answer: Mapping[str, object]) -> bool:
+    """Whether "none" is all that is written, in one cell of a form or in several."""
+    written = [value for value in answer.values() if _is_written(value)]
+    return bool(written) and all(isinstance(each, str) and says_none(each) for each in written)
+
+
 def _is_written(value: object) -> bool:
     return bool(value.strip()) if isinstance(value, str) else value is not None and value != []
 
 
 def _read_row(answer: object, grading: Grading) -> StudentRow:
     """The one row that was handed in. Raises UnreadableAnswerError."""
-    if not isinstance(answer, str):
+    if isinstance(answer, str):
+        if (named := named_cells(answer)) is not None:
+            if not named:
+                raise UnreadableAnswerError(_WRONG_TEXT)
+            return _row_of(named, grading)
+        answer = in_one_line(answer)
+    else:
         answer = canonical_table(answer if _has_rows(answer) else [answer])
         if not isinstance(answer, Mapping):
             raise UnreadableAnswerError(_WRONG_SHAPE)
@@ -182,6 +194,26 @@ def _read_row(answer: object, grading: Grading) -> StudentRow:
     return table.rows[0]
 
 
+def _row_of(named: Mapping[str, NamedCell], grading: Grading) -> StudentRow:
+    """The row of which some cells are named in a text."""
+    cells = {column: cell.text for column, cell in named.items()}
+    row = read_table({"rows": [{**dict.fromkeys(COLUMNS), **cells}]}, grading.reader).rows[0]
+    entries = tuple(
+        _moved(entry, named[column].start) if column in named else entry
+        for column, entry in zip(COLUMNS, row.entries, strict=True)
+    )
+    return replace(row, entries=entries)
+
+
+def _moved(entry: Entry, start: int) -> Entry:
+    """The entry of a text that begins at ``start`` of the one that was handed in."""
+    findings = tuple(
+        replace(finding, span=finding.span and (start + finding.span[0], start + finding.span[1]))
+        for finding in entry.findings
+    )
+    return replace(entry, findings=findings)
+
+
 def _has_rows(answer: object) -> bool:
     """Whether the row lies in a list of rows."""
     if isinstance(answer, Mapping):
@@ -189,22 +221,20 @@ def _has_rows(answer: object) -> bool:
     return isinstance(answer, list) and any(isinstance(row, list | dict) for row in answer)
 
 
-# The text alone, and the JSON for it as text.
-_NONE = re.compile(r"""["']?none["']?\.?|\{\s*["']?none["']?\s*:\s*true\s*\}""", re.IGNORECASE)
 _NOT_SAID: tuple[object, ...] = (None, False, "")
 
 _WRONG_SHAPE = reading_error(
     "wrong_shape",
-    'This answer is one row, {"a": …, "alpha": …, "d": …, "theta": …}, or {"none": true} where '
-    "there is none.",
+    'One row is asked for: {"a": …, "alpha": …, "d": …, "theta": …}, or {"none": true} where there '
+    "is none.",
 )
 _WRONG_TEXT = reading_error(
     "wrong_shape",
-    "This answer is one row: write its four values in the order a, α, d, θ with commas between "
-    "them, or none where there is no row.",
+    "One row is asked for: write a, α, d, θ in this order with commas between them, or by name as "
+    "in a = …, d = …. Write none where there is no row.",
 )
 _CONTRADICTION = reading_error(
     "contradiction",
-    'This answer says that there is no row, and gives one: write {"none": true} alone, or the '
-    "row alone.",
+    'The answer says that there is no row, and gives one: write {"none": true} alone, or the row '
+    "alone.",
 )

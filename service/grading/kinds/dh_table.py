@@ -5,6 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from service.catalogue.parts.dh_table import DhTableSpec
+from service.grading.diagnosis.column_order import in_other_orders
+from service.grading.diagnosis.intended_table import IntendedTable, with_exchanged_row
+from service.grading.diagnosis.joint_numbering import by_other_numbering
 from service.grading.diagnosis.table_cell import diagnose_cells
 from service.grading.diagnosis.table_explained import explained, freedom_lost
 from service.grading.feedback import Finding
@@ -42,12 +45,79 @@ WRONG_THROUGHOUT = 3
 
 def read(part: DhTableSpec, answer: object, grading: Grading) -> StudentTable | None:
     """The rows of a table; None where there are none."""
-    table = read_table(answer, grading.reader)
+    empty_is_zero = part.empty_cells == "zero"
+    table = read_table(answer, grading.reader, empty_is_zero=empty_is_zero)
     return table if table.rows else None
 
 
 def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     """The table row by row and cell by cell.
+
+    Where the joints are counted otherwise throughout, or the columns stand in another order, it is
+    judged as it was intended.
+    """
+    judged = _judged_as_read(part, answer, grading)
+    if judged.is_right:
+        return judged
+    if (intended := by_other_numbering(answer, grading)) is not None:
+        without = _judged_as_read(part, intended.table, grading)
+        return _with_slip(intended, without, judged, grading)
+    if judged.whole_cost is not None:
+        return judged
+    wrong = _wrong_cells(judged)
+    for intended in in_other_orders(answer, grading):
+        without = _judged_as_read(part, intended.table, grading)
+        if 3 * _wrong_cells(without) <= wrong:
+            return _with_slip(intended, without, judged, grading)
+    convention = part.convention if part.convention != "either" else answer.convention
+    if (intended := with_exchanged_row(answer, convention, grading)) is not None:
+        without = _judged_as_read(part, intended.table, grading)
+        if 1 < wrong > _wrong_cells(without):
+            return _with_slip(intended, without, judged, grading)
+    return judged
+
+
+def _wrong_cells(judged: Judged) -> int:
+    return sum(cell.verdict is not Verdict.CORRECT for row in judged.rows for cell in row.cells)
+
+
+def _with_slip(
+    intended: IntendedTable, without: Judged, judged: Judged, grading: Grading
+) -> Judged:
+    """A table with a slip that runs through it, judged ``without`` the slip and as it is read.
+
+    The cells of the slip are wrong, and cost together what one slip of the whole table costs.
+    """
+    rows = tuple(
+        row_report(
+            row.label,
+            tuple(
+                replace(cell, verdict=Verdict.INCORRECT)
+                if (i, j) in intended.cells and cell.verdict is Verdict.CORRECT
+                else cell
+                for j, cell in enumerate(row.cells)
+            ),
+            row.feedback,
+        )
+        for i, row in enumerate(without.rows)
+    )
+    places = tuple(
+        Place(rows[i].label, COLUMNS[column])
+        for i, column in sorted(intended.cells)
+        if i < len(rows)
+    )
+    return replace(
+        without,
+        rows=rows,
+        feedback=(*grading.visible((intended.finding,), places), *without.feedback),
+        whole_cost=COST,
+        beside=without,
+        chain=judged.chain,
+    )
+
+
+def _judged_as_read(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
+    """The table row by row, each symbol and each column taken for what it says.
 
     A wrong table earns no more than it would without the rows too many, for the points belong to
     the rows of the mechanism; and no more than with lazy entries in the cells that were not read,
@@ -63,7 +133,7 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
         return _with_rows_too_many(part, fixed, kept, judged, grading)
     if np.isnan(answer.values).any():
         filled = with_lazy_cells(fixed, convention, grading)
-        return replace(judged, at_most=judge(part, filled, grading))
+        return replace(judged, at_most=_judged_as_read(part, filled, grading))
     return judged
 
 
@@ -72,7 +142,7 @@ def _with_rows_too_many(
 ) -> Judged:
     """A wrong table with more rows than the mechanism has; ``kept`` are the places of those."""
     rows = tuple(answer.rows[i] for i in kept)
-    without = judge(part, replace(answer, rows=rows, values=answer.values[kept]), grading)
+    without = _judged_as_read(part, replace(answer, rows=rows, values=answer.values[kept]), grading)
     extra = [i for i, row in enumerate(answer.rows) if i not in kept and not row.is_zero]
     # Where nothing that was read is wrong, the table may be right.
     messages = grading.visible(tuple(map(_row_too_many, extra))) if judged.is_wrong else ()
@@ -212,8 +282,8 @@ def _missing(judged: JudgedRow) -> Finding:
 def _row_too_many(i: int) -> Finding:
     return Finding(
         "row_too_many",
-        f"Row {i + 1} of what was handed in stands for no joint and is not the end effector's. "
-        f"Such a row is allowed in a right table, but it costs points in a wrong one.",
+        f"Row {i + 1} of your table belongs to no joint and not to the end effector. A right table "
+        f"may have such a row, but in a wrong one it costs points.",
         severity=Severity.WARNING,
     )
 
@@ -221,5 +291,5 @@ def _row_too_many(i: int) -> Finding:
 def _extra_row(i: int) -> Finding:
     return Finding(
         "extra_row",
-        f"Row {i + 1} of what was handed in answers to no joint of this robot; it was left out.",
+        f"Row {i + 1} of your table belongs to no joint of this robot, so it is left out.",
     )

@@ -23,7 +23,6 @@ from service.grading.comparison import (
 from service.grading.diagnosis.angle import has_arctangent
 from service.grading.diagnosis.euler_triple import RepairedTriple, WrongTriple, explain_triple
 from service.grading.diagnosis.value_list import slips_of
-from service.grading.diagnosis.wrong_value import UNEXPLAINED
 from service.grading.feedback import Finding
 from service.grading.formula_text import value_formula
 from service.grading.judging.content import known_cells, of_list
@@ -74,9 +73,8 @@ def judge(part: EulerAnglesSpec, answer: StudentValues, grading: Grading) -> Jud
         case = WrongTriple(angles, rotation, turns, fixed, _arctangents(answer.entries))
         found, slips, explained = _explained(found, explain_triple(case))
         findings += explained
-    slips = {**_slips(answer, expected, found, grading), **slips}
-    if findings and findings[-1] is not SINGULAR:
-        slips = {place: slip for place, slip in slips.items() if slip.code != UNEXPLAINED}
+    if not findings or findings[-1] is SINGULAR:
+        slips = {**_slips(answer, expected, found, grading), **slips}
     rows = value_rows(answer, found, slips, grading)
     return Judged(rows, _content(expected, rotation, part), grading.visible(findings))
 

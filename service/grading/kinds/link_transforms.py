@@ -1,12 +1,16 @@
 """Answer kind ``link_transforms``: the matrices A_1 … A_n that a table's rows stand for."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from service.catalogue.formulas import HOMOGENEOUS
 from service.catalogue.parts.link_transforms import LinkTransformsSpec
+from service.grading.diagnosis.link_slips import LinkAmongOthers, explain_link
+from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
 from service.grading.diagnosis.matrix_entry import WORK_BUDGET
+from service.grading.diagnosis.slipped_link import slipped_link
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.follow_through import stands_still
 from service.grading.judging.content import of_links
@@ -15,7 +19,8 @@ from service.grading.judging.own_frames.best_roles import nearest_with_tool_row
 from service.grading.judging.own_frames.row_roles import FrameFreedom, Role
 from service.grading.kinds.matrix_rows import matrix_rows
 from service.grading.part import Content, Grading, Judged, StudentChain
-from service.grading.reading.matrix import StudentMatrix, read_matrix
+from service.grading.reading.matrix import StudentMatrix, read_matrix, unreadable_matrix
+from service.grading.reading.matrix_list import read_matrices
 from service.grading.reading.table import StudentRow, computed_row
 from service.grading.report import Feedback, RowReport
 from service.grading.samples import SAMPLES, Samples
@@ -45,21 +50,32 @@ class StudentLinks:
 
 
 def read(part: LinkTransformsSpec, answer: object, grading: Grading) -> StudentLinks:
-    """The matrices of a list, one for each row of the table.
+    """The matrices of a list or of one pasted text, one for each row of the table.
 
     A matrix that was left off at the end is one of missing entries.
     """
     labels = grading.exercise.robot.tables[part.convention].labels
+    if isinstance(answer, str):
+        matrices = tuple(read_matrices(answer, labels, HOMOGENEOUS, grading.reader))
+    else:
+        matrices = _listed(answer, labels, grading)
+    return StudentLinks(matrices, _links_of([matrix.values for matrix in matrices]))
+
+
+def _listed(answer: object, labels: tuple[str, ...], grading: Grading) -> tuple[StudentMatrix, ...]:
     if not isinstance(answer, list) or not 0 < len(answer) <= len(labels):
         raise UnreadableAnswerError(_wrong_shape(labels))
     absent: list[object] = [[None] * 4] * (len(labels) - len(answer))
-    try:
-        matrices = tuple(
-            read_matrix(matrix, HOMOGENEOUS, grading.reader) for matrix in (*answer, *absent)
-        )
-    except UnreadableAnswerError as error:
-        raise UnreadableAnswerError(_wrong_shape(labels)) from error
-    return StudentLinks(matrices, _links_of([matrix.values for matrix in matrices]))
+    matrices = []
+    for matrix in (*answer, *absent):
+        try:
+            matrices.append(read_matrix(matrix, HOMOGENEOUS, grading.reader))
+        except UnreadableAnswerError as error:
+            if not isinstance(matrix, str):
+                raise UnreadableAnswerError(_wrong_shape(labels)) from error
+            # A pasted text that cannot be read costs only itself.
+            matrices.append(unreadable_matrix(error.finding, HOMOGENEOUS, grading.reader))
+    return tuple(matrices)
 
 
 def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> Judged:
@@ -69,11 +85,13 @@ def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> J
     rows: list[RowReport] = []
     messages: list[Feedback] = []
     expected = np.moveaxis(right, 1, -1)
-    for label, matrix, values in zip(labels, answer.matrices, expected, strict=True):
+    for i, (label, matrix) in enumerate(zip(labels, answer.matrices, strict=True)):
         judged = matrix_rows(
             matrix,
-            ExpectedMatrix(values, HOMOGENEOUS, rigid=True),
+            ExpectedMatrix(expected[i], HOMOGENEOUS, rigid=True),
             grading,
+            slipped=partial(slipped_link, i, right[i], part.convention, grading),
+            explanations=partial(_by_other_links, right[: i + 1], part, grading),
             work_budget=WORK_BUDGET / len(labels),
             name=f"A{label}",
         )
@@ -86,6 +104,15 @@ def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> J
         stands_still=stands_still(np.moveaxis(answer.values, 1, -1), HOMOGENEOUS, grading),
         chain=answer.chain,
     )
+
+
+def _by_other_links(
+    links: Matrices, part: LinkTransformsSpec, grading: Grading, case: MatrixCase
+) -> list[Explanation]:
+    """What explains the last of ``links`` by those before it."""
+    joints, count = grading.exercise.robot.joints, case.actual.shape[-1] // 2
+    link = LinkAmongOthers.of(links, joints, grading.samples, part.convention, count)
+    return explain_link(link, case)
 
 
 def _content(right: Matrices, part: LinkTransformsSpec, grading: Grading) -> Content:

@@ -9,9 +9,13 @@ import numpy as np
 from service.expressions.printing.spelling import PLAIN
 from service.grading.comparison import Match
 from service.grading.diagnosis.formula_repair import WrongEntry
+from service.grading.diagnosis.given_motion import GivenMotion
 from service.grading.diagnosis.link_products import Chain
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
 from service.grading.diagnosis.matrix_entry import WORK_BUDGET, diagnose_entries
+from service.grading.diagnosis.missing_symbol import Requirements
+from service.grading.diagnosis.slip_search import SlipSearch
+from service.grading.diagnosis.slipped_answers import SlippedAnswers
 from service.grading.diagnosis.whole_matrix import check_yourself, explain, unexplained
 from service.grading.diagnosis.wrong_value import Mask
 from service.grading.formula_text import number_formula
@@ -43,21 +47,32 @@ def _no_explanations(_case: MatrixCase) -> list[Explanation]:
     return []
 
 
+def _no_slips() -> SlippedAnswers | None:
+    return None
+
+
+def _no_motion(_samples: Samples) -> GivenMotion | None:
+    return None
+
+
 def matrix_rows(
     student: StudentMatrix,
     expected: ExpectedMatrix,
     grading: Grading,
     chains: Callable[[Samples], tuple[Chain, ...]] = _no_chains,
     explanations: Callable[[MatrixCase], list[Explanation]] = _no_explanations,
+    slipped: Callable[[], SlippedAnswers | None] = _no_slips,
+    motion: Callable[[Samples], GivenMotion | None] = _no_motion,
     work_budget: float = WORK_BUDGET,
     name: str = "",
 ) -> MatrixRows:
     """The rows of a matrix, with what explains its wrong entries.
 
     ``chains`` gives, at the samples it is handed, the links that the matrix is the product of;
-    ``explanations`` explains the matrix by what else it is made of, and is asked first. Both are
-    asked only where something is wrong. ``work_budget`` bounds how much is taken apart. A ``name``
-    tells one matrix of several: its rows are then "A2.1" and so on.
+    ``explanations`` explains the matrix by what else it is made of, and is asked first; ``motion``
+    gives, like ``chains``, what formulas say that it is made of, ``slipped`` what it becomes by
+    slips of the table. All are asked only where something is wrong. ``work_budget`` bounds how much
+    is taken apart. A ``name`` tells one matrix of several: its rows are then "A2.1" and so on.
     """
     labels = [f"{name}.{i + 1}" if name else str(i + 1) for i in range(len(student.entries))]
     found = expected.matches(student, grading.exercise.length_scale, grading.samples)
@@ -65,17 +80,27 @@ def matrix_rows(
         rows = entry_rows(student.entries, found, {}, grading, labels=labels)
         return MatrixRows(rows, is_right=True)
     scale = expected.scale(grading.exercise.length_scale)
+    actual = Samples.subset_of(student.values, SUBSET)
+    right = Samples.subset_of(expected.values, SUBSET)
+    wrong = found == Match.DIFFERENT
+    search = None
+    if (answers := slipped()) is not None:
+        names = grading.symbol_names(chain(*student.entries))
+        search = SlipSearch(answers, grading.samples, actual, right, wrong, scale, name=names)
     case = MatrixCase(
-        actual=Samples.subset_of(student.values, SUBSET),
-        expected=Samples.subset_of(expected.values, SUBSET),
+        actual=actual,
+        expected=right,
         scale=scale,
-        wrong=found == Match.DIFFERENT,
+        wrong=wrong,
         rigid=expected.rigid,
         chains=chains(grading.samples.subset(SUBSET)),
+        slips=search,
+        motion=motion(grading.samples.subset(SUBSET)),
     )
     explained = explanations(case) or explain(case)
-    spelling = grading.spelling(chain(*student.entries)) if grading.corrects else PLAIN
-    wrong = {
+    left = unexplained(case, explained) | (found == Match.UNDEFINED)
+    spelling = grading.spelling(chain(*student.entries)) if left.any() else PLAIN
+    entries = {
         (int(i), int(j)): WrongEntry(
             expression=expression,
             actual=student.values[i, j],
@@ -88,10 +113,15 @@ def matrix_rows(
             turning=grading.exercise.vocabulary.turning,
             corrects=grading.corrects,
         )
-        for i, j in np.argwhere(unexplained(case, explained) | (found == Match.UNDEFINED))
+        for i, j in np.argwhere(left)
         if (expression := student.entries[i][j].expression) is not None
     }
-    slips = diagnose_entries(wrong, work_budget)
+    requirements = (
+        None
+        if answers is None
+        else Requirements(answers, grading.exercise, grading.samples, expected.values, scale)
+    )
+    slips = diagnose_entries(entries, work_budget, requirements)
     check = check_yourself(case, slips)
     findings = [(each.finding, _cells(each.entries & case.wrong, labels)) for each in explained]
     findings += [(check, tuple(map(Place, labels[:3])))] if check else []

@@ -6,17 +6,21 @@ from service.catalogue import Robot
 from service.catalogue.parts.position import PositionSpec
 from service.expressions import Kind
 from service.grading.comparison import Match
+from service.grading.diagnosis.given_motion import GivenMotion
 from service.grading.diagnosis.link_products import chains_of
-from service.grading.diagnosis.position import MISCONCEPTIONS, WrongPosition
-from service.grading.diagnosis.value_list import slips_of
+from service.grading.diagnosis.motion_slips import explain_displacements
+from service.grading.diagnosis.position import WrongPosition, explain_position
+from service.grading.diagnosis.slipped_answers import SlippedAnswers, slipped_answers
+from service.grading.diagnosis.value_list import search_of, slips_of
+from service.grading.diagnosis.wrong_value import Mask
 from service.grading.feedback import Finding
 from service.grading.judging.content import known_cells, of_list
 from service.grading.judging.expected import as_entries, asked_pose, formula_values, is_whole_chain
-from service.grading.judging.report_rows import value_rows
+from service.grading.judging.report_rows import value_places, value_rows
 from service.grading.judging.value_list import ComparedValues, number_corrections
-from service.grading.misconception import diagnosed
 from service.grading.part import Grading, Judged
 from service.grading.reading.value_list import StudentValues, read_list
+from service.grading.report import Place
 from service.kinematics.transforms import Numbers
 
 
@@ -34,11 +38,13 @@ def judge(part: PositionSpec, answer: StudentValues, grading: Grading) -> Judged
     compared = ComparedValues(answer, expected, number_corrections(expected, grading))
     found = compared.matches(grading)
     wrong = found < Match.ROUNDED
-    explained = _explained(part, compared, grading) if wrong.any() else None
-    slips = {} if explained else slips_of(compared, wrong, grading)
+    different = found == Match.DIFFERENT
+    answers = _slipped(part, grading) if wrong.any() else None
+    explained = _explained(part, compared, different, answers, grading) if wrong.any() else None
+    slips = slips_of(compared, wrong & ~(different & bool(explained)), grading, answers)
     rows = value_rows(answer, found, slips, grading)
     content = of_list(known_cells(expected, 0.0, compared.scales(grading)))
-    return Judged(rows, content, grading.visible((explained,) if explained else ()))
+    return Judged(rows, content, grading.visible(*explained) if explained else ())
 
 
 def _expected(part: PositionSpec, grading: Grading) -> Numbers:
@@ -53,7 +59,14 @@ def _axes(part: PositionSpec) -> list[int]:
     return ["xyz".index(letter) for letter in part.coordinates]
 
 
-def _explained(part: PositionSpec, compared: ComparedValues, grading: Grading) -> Finding | None:
+def _explained(
+    part: PositionSpec,
+    compared: ComparedValues,
+    wrong: Mask,
+    answers: SlippedAnswers | None,
+    grading: Grading,
+) -> tuple[tuple[Finding], tuple[Place, ...]] | None:
+    """What explains all wrong coordinates, with their places."""
     exercise = grading.exercise
     linked = is_whole_chain(part, exercise) and isinstance(exercise.reference, Robot)
     case = WrongPosition(
@@ -63,4 +76,14 @@ def _explained(part: PositionSpec, compared: ComparedValues, grading: Grading) -
         axes=tuple(_axes(part)),
         chains=chains_of(exercise, grading.samples) if linked else (),
     )
-    return diagnosed(case, MISCONCEPTIONS)
+    search = search_of(answers, compared, wrong, grading)
+    motion = GivenMotion.of(part.id, exercise, grading.samples)
+    finding = explain_position(case, search) or explain_displacements(case, motion)
+    return ((finding,), value_places(wrong)) if finding else None
+
+
+def _slipped(part: PositionSpec, grading: Grading) -> SlippedAnswers | None:
+    answers = slipped_answers(part, grading)
+    if answers is None or part.expected is not None:
+        return answers and answers.of(lambda grid: grid[:, 0])
+    return answers.of(lambda poses: poses[:, _axes(part), 3])

@@ -3,9 +3,11 @@
 from service.catalogue import Robot
 from service.catalogue.formulas import ROTATION
 from service.catalogue.parts.rotation import RotationSpec
+from service.grading.diagnosis.given_motion import GivenMotion
 from service.grading.diagnosis.link_products import Chain, chains_of
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
 from service.grading.diagnosis.rotation_steps import Step, explain_steps
+from service.grading.diagnosis.slipped_answers import SlippedAnswers, slipped_answers
 from service.grading.judging.content import of_rigid
 from service.grading.judging.expected import (
     as_entries,
@@ -37,11 +39,19 @@ def judge(part: RotationSpec, answer: StudentMatrix, grading: Grading) -> Judged
     def chains(samples: Samples) -> tuple[Chain, ...]:
         return chains_of(exercise, samples) if linked else ()
 
+    def motion(samples: Samples) -> GivenMotion | None:
+        return None if steps else GivenMotion.of(part.id, exercise, samples)
+
     def explanations(case: MatrixCase) -> list[Explanation]:
         return explain_steps(case, steps)
 
+    def slipped() -> SlippedAnswers | None:
+        # The formulas of steps are their angles, and not the rotation.
+        answers = None if steps else slipped_answers(part, grading)
+        return answers and answers.of(lambda poses: poses[:, :3, :3])
+
     expected = ExpectedMatrix(_expected(part, steps, grading), ROTATION, rigid=True)
-    judged = matrix_rows(answer, expected, grading, chains, explanations)
+    judged = matrix_rows(answer, expected, grading, chains, explanations, slipped, motion)
     content = of_rigid(expected.values, part, grading)
     return Judged(judged.rows, content, judged.feedback)
 

@@ -1,5 +1,6 @@
 """Answer kind ``screw_axes``: the screw axis (ω; v) of each joint, seen from base or tool."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,9 @@ from service.catalogue.formulas import SCREW
 from service.catalogue.parts.screw_axes import ScrewAxesSpec
 from service.catalogue.robot import at_home
 from service.grading.comparison import Match, entry_matches
-from service.grading.diagnosis.screw_axis import WrongScrew, explain_screw
+from service.grading.diagnosis.all_screws import WrongScrews, explain_screws
+from service.grading.diagnosis.home_position import NOT_AT_HOME, with_joint_variable
+from service.grading.diagnosis.screw_axis import explain_screw
 from service.grading.diagnosis.value_list import slips_of
 from service.grading.feedback import Finding
 from service.grading.judging.content import known_cells, of_rows
@@ -19,10 +22,14 @@ from service.grading.judging.value_list import ComparedValues, number_correction
 from service.grading.part import Grading, Judged
 from service.grading.reading.matrix import StudentMatrix, read_matrix
 from service.grading.reading.value_list import StudentValues
-from service.grading.report import Severity
-from service.grading.samples import SAMPLES
+from service.grading.report import Feedback, Place, Severity
+from service.grading.samples import SAMPLES, Samples
 from service.kinematics.screws import moved
 from service.kinematics.transforms import Numbers, inverse
+
+# The share of the points that a slip costs which runs through all axes: it is charged once.
+COST = 0.25
+COSTS = {"body_for_space": 0.5, "space_for_body": 0.5}
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,22 +63,75 @@ def judge(part: ScrewAxesSpec, answer: StudentMatrix, grading: Grading) -> Judge
         axes = np.where(better[:, None, None], -axes, axes)
         remarks = {int(i): REVERSED for i in np.flatnonzero(better)}
     wrong = found < Match.ROUNDED
-    explained = _explained(answer.values, axes, wrong, expected, part, grading)
+    case = WrongScrews(
+        answer.values, axes, _scale(grading), wrong, expected.elsewhere, frame=part.frame
+    )
+    explained, cost = _explained(answer, case, grading) if wrong.any() else ({}, None)
     slips = {
         (i, j): slip
         for i in np.flatnonzero(wrong.any(axis=1)).tolist()
         if i not in explained
         for (j, _), slip in _slips(answer, i, axes[i], wrong[i], grading).items()
     }
+    told, of_single_rows = _told(explained, wrong, expected.labels, grading)
+    remarks = {i: remark for i, remark in remarks.items() if i not in explained}
     rows = entry_rows(
         answer.entries,
         found,
         slips,
         grading,
         labels=expected.labels,
-        remarks={**remarks, **explained},
+        remarks={**remarks, **of_single_rows},
     )
-    return Judged(rows, of_rows(_known(axes, grading)))
+    return Judged(rows, of_rows(_known(axes, grading)), told, whole_cost=cost)
+
+
+def _explained(
+    answer: StudentMatrix, case: WrongScrews, grading: Grading
+) -> tuple[dict[int, Finding], float | None]:
+    """The finding that explains the whole of a wrong axis, by its place.
+
+    With it the share of the points that one slip costs which runs through all axes, or None.
+    """
+    wrong = np.flatnonzero(case.wrong.any(axis=1)).tolist()
+    if (throughout := explain_screws(case)) is not None:
+        return dict.fromkeys(wrong, throughout), COSTS.get(throughout.code, COST)
+    entries = case.wrong & with_joint_variable(answer.entries, grading.exercise)
+    moves = np.asarray(entries.any(axis=1))
+    explained: dict[int, Finding] = {}
+    for i in wrong:
+        finding = NOT_AT_HOME if moves[i] else explain_screw(case.axis(i))
+        if finding is not None:
+            explained[i] = finding
+    is_one_slip = bool(moves[wrong].all()) and _is_right_at_home(answer, case, grading)
+    return explained, COST if is_one_slip else None
+
+
+def _is_right_at_home(answer: StudentMatrix, case: WrongScrews, grading: Grading) -> bool:
+    """Whether the axes are right with 0 for every joint variable."""
+    exercise, samples = grading.exercise, grading.samples
+    home = at_home(exercise.joints, samples.values, SAMPLES)
+    values = answer.values_at(Samples(home))
+    return bool(case.agree(values, case.expected).all())
+
+
+def _told(
+    explained: Mapping[int, Finding],
+    wrong: NDArray[np.bool_],
+    labels: Sequence[str],
+    grading: Grading,
+) -> tuple[tuple[Feedback, ...], dict[int, Finding]]:
+    """The messages that several axes share, with their places, and the findings on single ones."""
+    told: list[Feedback] = []
+    alone: dict[int, Finding] = {}
+    for finding in dict.fromkeys(explained.values()):
+        axes = [i for i, each in explained.items() if each == finding]
+        places = tuple(Place(labels[i], str(j + 1)) for i in axes for j in np.flatnonzero(wrong[i]))
+        if len(axes) > 1:
+            told += grading.visible((finding,), places)
+        else:
+            alone[axes[0]] = finding
+    return tuple(told), alone
 
 
 def _known(axes: Numbers, grading: Grading) -> NDArray[np.bool_]:
@@ -129,25 +189,6 @@ def _matches(student: StudentMatrix, expected: Numbers, grading: Grading) -> NDA
 def _scale(grading: Grading) -> Numbers:
     """The size that each number of an axis is measured against, ``(6,)``."""
     return np.repeat([1.0, grading.exercise.length_scale], 3)
-
-
-def _explained(
-    actual: Numbers,
-    axes: Numbers,
-    wrong: NDArray[np.bool_],
-    expected: ExpectedScrews,
-    part: ScrewAxesSpec,
-    grading: Grading,
-) -> dict[int, Finding]:
-    """The finding that explains the whole of a wrong axis, by its place."""
-    explained: dict[int, Finding] = {}
-    for i in np.flatnonzero(wrong.any(axis=1)).tolist():
-        elsewhere = None if expected.elsewhere is None else expected.elsewhere[i]
-        case = WrongScrew(actual[i], axes[i], _scale(grading), elsewhere, part.frame)
-        finding = explain_screw(case)
-        if finding is not None:
-            explained[i] = finding
-    return explained
 
 
 def _slips(

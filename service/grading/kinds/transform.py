@@ -6,8 +6,11 @@ from service.catalogue import Robot
 from service.catalogue.formulas import HOMOGENEOUS
 from service.catalogue.parts.transform import TransformSpec
 from service.grading.diagnosis.exponentials import explain_product
+from service.grading.diagnosis.given_motion import GivenMotion
+from service.grading.diagnosis.home_position import explain_moving
 from service.grading.diagnosis.link_products import Chain, chains_of
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
+from service.grading.diagnosis.slipped_answers import SlippedAnswers, slipped_answers
 from service.grading.follow_through import stands_still
 from service.grading.judging.content import of_rigid
 from service.grading.judging.expected import as_entries, asked_pose, formula_values, is_whole_chain
@@ -36,11 +39,19 @@ def judge(part: TransformSpec, answer: StudentMatrix, grading: Grading) -> Judge
     def chains(samples: Samples) -> tuple[Chain, ...]:
         return chains_of(exercise, samples) if linked else ()
 
+    def motion(samples: Samples) -> GivenMotion | None:
+        return GivenMotion.of(part.id, exercise, samples)
+
     def explanations(case: MatrixCase) -> list[Explanation]:
+        if part.home:
+            return explain_moving(case, answer.entries, exercise)
         return explain_product(case, exercise, grading.samples) if whole else []
 
+    def slipped() -> SlippedAnswers | None:
+        return slipped_answers(part, grading)
+
     expected = ExpectedMatrix(values, HOMOGENEOUS, rigid=True)
-    judged = matrix_rows(answer, expected, grading, chains, explanations)
+    judged = matrix_rows(answer, expected, grading, chains, explanations, slipped, motion)
     may_stand_still = whole and not judged.is_right
     return Judged(
         judged.rows,

@@ -1,12 +1,17 @@
 """Answer kind ``vector``: a list of lengths, angles and numbers."""
 
+import numpy as np
+
 from service.catalogue.parts.vector import VectorSpec
 from service.grading.comparison import Match
-from service.grading.diagnosis.value_list import slips_of
+from service.grading.diagnosis.slipped_answers import SlippedAnswers, slipped_answers
+from service.grading.diagnosis.value_list import search_of, slips_of
+from service.grading.diagnosis.wrong_value import Mask
+from service.grading.feedback import Finding
 from service.grading.formula_text import spelled
 from service.grading.judging.content import known_cells, of_list
 from service.grading.judging.expected import given_values
-from service.grading.judging.report_rows import value_rows
+from service.grading.judging.report_rows import value_places, value_rows
 from service.grading.judging.value_list import ComparedValues
 from service.grading.part import Grading, Judged
 from service.grading.reading.value_list import StudentValues, read_list
@@ -30,6 +35,21 @@ def judge(part: VectorSpec, answer: StudentValues, grading: Grading) -> Judged:
     if wrong.any() and grading.corrects:
         spelling = grading.spelling(answer.entries)
         corrections = [spelled(formula.tree, spelling) for formula in formulas]
-    slips = slips_of(ComparedValues(answer, expected, corrections), wrong, grading)
+    different = found == Match.DIFFERENT
+    answers = slipped_answers(part, grading) if wrong.any() else None
+    answers = answers and answers.of(lambda grid: grid[:, 0])
+    explained = _slip(answers, compared, different, grading) if different.sum() > 1 else None
+    wrong &= ~(different & bool(explained))
+    corrected = ComparedValues(answer, expected, corrections)
+    slips = slips_of(corrected, wrong, grading, answers)
     content = of_list(known_cells(expected, 0.0, compared.scales(grading)))
-    return Judged(value_rows(answer, found, slips, grading), content)
+    feedback = grading.visible((explained,), value_places(different)) if explained else ()
+    return Judged(value_rows(answer, found, slips, grading), content, feedback)
+
+
+def _slip(
+    answers: SlippedAnswers | None, compared: ComparedValues, wrong: Mask, grading: Grading
+) -> Finding | None:
+    """The slip of the table of which all wrong values follow; one alone has its own message."""
+    search = search_of(answers, compared, wrong, grading)
+    return search.finding(np.ones_like(wrong)) if search else None

@@ -20,6 +20,7 @@ from service.expressions import (
     read,
 )
 from service.grading.feedback import Finding, reading_error, reading_note
+from service.grading.reading.absent_variables import with_absent_variables
 from service.grading.reading.work_budget import MAX_CHARACTERS, WorkBudget
 from service.grading.report import Verdict
 from service.grading.samples import SAMPLES, Samples
@@ -27,6 +28,9 @@ from service.kinematics.transforms import Numbers
 
 # Textbooks mark the joint variable so in every table: six notes on it would hide the others.
 EXPECTED_IN_TABLES = frozenset({"joint_marker"})
+
+# The errors on a name that may be the variable of a joint that the robot does not have.
+_UNKNOWN_NAMES = frozenset({"unknown_joint", "unknown_symbol"})
 
 # Beyond these nobody measures a robot, and an angle has lost its digits to whole turns.
 BOUNDS: Mapping[Kind, float] = {"angle": 1e6, "length": 1e9, "number": 1e9}
@@ -72,14 +76,17 @@ class Reader:
     def read(self, raw: object, quantity: Kind, *, in_table: bool = False) -> Entry:
         """The entry for a JSON value. Whatever it is, the worst that comes back is unreadable.
 
-        ``in_table`` says that it is a cell of a DH table, where a star marks the joint variable.
+        ``in_table`` says that it is a cell of a DH table, where a star marks the joint variable,
+        and where the variable of a joint that the robot does not have is a wrong one.
         """
         budget = self.budget
+        counted = 0
         if isinstance(raw, str):
             if not raw.strip():
                 return MISSING
             if len(raw) <= LIMITS.characters:
-                budget.characters -= len(raw)
+                counted = len(raw)
+                budget.characters -= counted
         elif raw is None:
             return MISSING
         elif isinstance(raw, bool) or not isinstance(raw, int | float):
@@ -95,17 +102,32 @@ class Reader:
                 repairs=budget.repairs > 0,
             )
         except ExpressionError as error:
-            budget.repairs -= 1
-            return unreadable(_from_error(error))
+            is_unknown = in_table and error.code in _UNKNOWN_NAMES
+            absent = self._in_absent_variables(raw, quantity) if is_unknown else None
+            budget.charge_unreadable(counted)
+            if absent is None:
+                return unreadable(_from_error(error))
+            expression = absent
         if not expression.notes:
             return Entry(expression)
         untold = self._untold(expression) if in_table else frozenset()
         told = (note for note in expression.notes if note.code not in untold)
         return Entry(expression, findings=tuple(map(from_note, told)))
 
+    def _in_absent_variables(self, raw: str | int | float, quantity: Kind) -> Expression | None:
+        """The expression in joint variables that the robot does not have, if it is one."""
+        vocabulary = with_absent_variables(self.vocabulary)
+        try:
+            return read(
+                raw, vocabulary, quantity=quantity, angle_unit=self.angle_unit, repairs=False
+            )
+        except ExpressionError:
+            return None
+
     def _untold(self, expression: Expression) -> frozenset[str]:
         """The codes of notes that are not told of a cell of a table."""
-        joints = [self.vocabulary.by_name[name].joint for name in expression.symbols]
+        known = with_absent_variables(self.vocabulary).by_name
+        joints = [known[name].joint for name in expression.symbols]
         return EXPECTED_IN_TABLES if len(joints) - joints.count(None) < 2 else frozenset()
 
 
@@ -132,7 +154,7 @@ def _bounds(quantities: tuple[Kind, ...]) -> Numbers:
 
 _TOO_MUCH = reading_error(
     "too_long",
-    f"The answers hold more than {MAX_CHARACTERS} characters together; what follows is not read.",
+    f"The answers are too long: they have more than {MAX_CHARACTERS:,} characters together.",
 )
 
 MISSING = Entry(
@@ -140,6 +162,9 @@ MISSING = Entry(
     Verdict.MISSING,
     (reading_error("missing", "Nothing is written here; if the value is zero, write 0."),),
 )
+
+# One of several entries that cannot be read together, the first of which says why.
+UNREADABLE = Entry(None, Verdict.UNREADABLE)
 
 
 def unreadable(finding: Finding) -> Entry:

@@ -5,18 +5,19 @@ from dataclasses import dataclass, replace
 from itertools import chain
 
 from service.expressions import Expression, Kind
-from service.grading.feedback import UnreadableAnswerError, reading_error
+from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.reading.entry import (
     MISSING,
+    UNREADABLE,
     Entry,
     Reader,
     entry_values,
     from_note,
     unreadable,
 )
-from service.grading.reading.pasted import from_grid_error, place_of, placed
+from service.grading.reading.pasted import from_grid_error, pasted_grid, place_of, placed
 from service.grading.samples import Samples
-from service.grids import GridCell, GridError, read_grid
+from service.grids import Grid, GridCell, GridError
 from service.kinematics.transforms import Numbers
 
 Quantities = Sequence[Sequence[Kind]]
@@ -50,8 +51,26 @@ def read_matrix(answer: object, quantities: Quantities, reader: Reader) -> Stude
     can say which entry is which. Raises UnreadableAnswerError where there are no rows at
     all, or too many.
     """
-    entries = _entries(answer, quantities, reader)
-    entries += [[MISSING] * len(row) for row in quantities[len(entries) :]]
+    return matrix_of_entries(_entries(answer, quantities, reader), quantities, reader)
+
+
+def matrix_of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> StudentMatrix:
+    """The matrix in a pasted grid. Raises UnreadableAnswerError where it has another size."""
+    return matrix_of_entries(_of_grid(grid, quantities, reader), quantities, reader)
+
+
+def unreadable_matrix(finding: Finding, quantities: Quantities, reader: Reader) -> StudentMatrix:
+    """One of several matrices that cannot be read: the first entry says why."""
+    entries = [_unreadable_row(None, kinds) for kinds in quantities]
+    entries[0] = _unreadable_row(finding, quantities[0])
+    return matrix_of_entries(entries, quantities, reader)
+
+
+def matrix_of_entries(
+    entries: list[list[Entry]], quantities: Quantities, reader: Reader
+) -> StudentMatrix:
+    """The matrix of these rows; those that were left off at the end are missing."""
+    entries = [*entries, *([MISSING] * len(row) for row in quantities[len(entries) :])]
     return StudentMatrix(entries, quantities, matrix_values(entries, quantities, reader.samples))
 
 
@@ -85,14 +104,24 @@ def _row(row: object, kinds: Sequence[Kind], reader: Reader) -> list[Entry]:
 
 def _of_wrong_length(found: str, wanted: int, span: tuple[int, int] | None = None) -> list[Entry]:
     message = f"A row has {wanted} entries; this is {found}."
-    return [unreadable(reading_error("row_length", message, span))] * wanted
+    return _unreadable_row(reading_error("row_length", message, span), [""] * wanted)
+
+
+def _unreadable_row(finding: Finding | None, cells: Sequence[object]) -> list[Entry]:
+    """Unreadable entries; the first says why, so that it is told once."""
+    first = unreadable(finding) if finding else UNREADABLE
+    return [first, *[UNREADABLE] * (len(cells) - 1)]
 
 
 def _pasted(text: str, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
     try:
-        grid = read_grid(text)
+        grid = pasted_grid(text, reader)
     except GridError as error:
         raise UnreadableAnswerError(from_grid_error(error)) from error
+    return _of_grid(grid, quantities, reader)
+
+
+def _of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
     height, width = len(quantities), len(quantities[0])
     if len(grid.rows) > height or all(len(row) != width for row in grid.rows):
         message = (

@@ -4,8 +4,40 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from service.grading.feedback import Finding
-from service.grading.reading.entry import Entry
-from service.grids import GridCell, GridError
+from service.grading.reading.entry import Entry, Reader
+from service.grading.reading.work_budget import MAX_PASTED
+from service.grids import (
+    GRID_LIMITS,
+    Grid,
+    GridCell,
+    GridError,
+    NamedGrid,
+    read_grid,
+    read_grids,
+)
+
+
+def pasted_grid(text: str, reader: Reader) -> Grid:
+    """The table or matrix in a pasted text.
+
+    Raises GridError where there is none, and where the texts of a submission are too long.
+    """
+    _charge(text, reader)
+    return read_grid(text)
+
+
+def pasted_grids(text: str, reader: Reader) -> tuple[NamedGrid, ...]:
+    """The matrices in a pasted text, each with its name. Raises GridError as ``pasted_grid``."""
+    _charge(text, reader)
+    return read_grids(text)
+
+
+def _charge(text: str, reader: Reader) -> None:
+    if len(text) <= GRID_LIMITS.characters:
+        reader.budget.pasted -= len(text)
+    if reader.budget.pasted < 0:
+        message = f"The pasted texts have more than {MAX_PASTED} characters together."
+        raise GridError("too_long", message, (0, len(text)))
 
 
 def from_grid_error(error: GridError) -> Finding:

@@ -9,9 +9,9 @@ from service.grading.reading import column_headers
 from service.grading.reading.column_headers import METRES, QUANTITIES, Header, is_wordy, read_header
 from service.grading.reading.entry import Entry, Reader, from_note, unreadable
 from service.grading.reading.length_units import in_unit
-from service.grading.reading.pasted import place_of, placed, quoted
+from service.grading.reading.pasted import pasted_grid, place_of, placed, quoted
 from service.grading.reading.row_labels import in_order, is_label
-from service.grids import Grid, GridCell, GridError, read_grid
+from service.grids import Grid, GridCell, GridError
 from service.kinematics.chain import COLUMNS
 
 # Names for these columns, as they are written in a message.
@@ -33,28 +33,36 @@ class PastedRow:
 
 @dataclass(frozen=True, slots=True)
 class PastedTable:
-    """A table's rows in the order of its joints, and the header of each of a, α, d, θ."""
+    """A table's rows in the order of its joints, and the header of each of a, α, d, θ.
+
+    ``is_named`` says that the columns have headers.
+    """
 
     rows: tuple[PastedRow, ...]
     headers: tuple[Header, ...]
     findings: tuple[Finding, ...] = ()
+    is_named: bool = True
 
 
-def read_pasted_table(text: str, reader: Reader) -> PastedTable:
+def read_pasted_table(text: str, reader: Reader, order: Sequence[str] = COLUMNS) -> PastedTable:
     """The rows of a pasted DH table.
 
     Columns go by their headers, in any order; without headers there must be four, or five with
-    the rows' numbers in front, in the order a, α, d, θ. Rows go by their labels, where they have
+    the rows' numbers in front, in ``order``. Rows go by their labels, where they have
     any. Raises GridError where the text is no table, or which column is which cannot be told.
     """
-    grid = read_grid(text)
+    grid = pasted_grid(text, reader)
+    findings: tuple[Finding, ...] = ()
+    if _has_parameters_in_rows(grid):
+        grid, findings = _turned(grid)
     found = _found_headers(grid.rows[0], reader)
     if found is None:
-        columns, labels, findings = _columns_in_order(grid)
+        columns, labels, more = _columns_in_order(grid, order)
         body = grid.rows
     else:
-        columns, labels, findings = _columns_by_headers(grid.rows[0], found)
+        columns, labels, more = _columns_by_headers(grid.rows[0], found)
         body = grid.rows[1:]
+    findings = (*findings, *more)
     if not body:
         raise GridError(
             "no_rows", "There are headers here, but no rows below them.", place_of(grid.rows[0])
@@ -62,12 +70,28 @@ def read_pasted_table(text: str, reader: Reader) -> PastedTable:
     width = len(grid.rows[0]) if found is not None else max(map(len, body))
     rows = tuple(_row(row, columns, width) for row in body)
     if labels is not None:
-        order, more = in_order([row[labels] if labels < len(row) else row[0] for row in body])
-        rows = tuple(rows[i] for i in order)
+        labelled, more = in_order([row[labels] if labels < len(row) else row[0] for row in body])
+        rows = tuple(rows[i] for i in labelled)
         findings = (*findings, *more)
     notes = tuple(map(from_note, grid.notes))
     heads = tuple(header for _, header in columns)
-    return PastedTable(rows, heads, (*notes, *findings))
+    return PastedTable(rows, heads, (*notes, *findings), found is not None)
+
+
+def _has_parameters_in_rows(grid: Grid) -> bool:
+    """Whether a, α, d and θ are the names of rows; a row of the joints' numbers may stand above."""
+    rows = grid.rows[len(grid.rows) - len(COLUMNS) :]
+    if len(grid.rows) > len(COLUMNS) + 1 or len({len(row) for row in grid.rows}) > 1:
+        return False
+    headers = [read_header(row[0].text) for row in rows]
+    return sorted(header.column for header in headers if header) == sorted(COLUMNS)
+
+
+def _turned(grid: Grid) -> tuple[Grid, tuple[Finding, ...]]:
+    """The table with its rows as columns, and the note on it."""
+    message = "The parameters stand in rows, so each column was read as the row of a joint."
+    note = _note("parameters_in_rows", message, grid.rows[-len(COLUMNS)][0])
+    return replace(grid, rows=tuple(zip(*grid.rows, strict=True))), (note,)
 
 
 def entries_of(table: PastedTable, reader: Reader) -> list[tuple[Entry, ...]]:
@@ -194,7 +218,7 @@ def _convention_hint(
 
 
 def _columns_in_order(
-    grid: Grid,
+    grid: Grid, order: Sequence[str]
 ) -> tuple[tuple[ColumnOrder, ...], int | None, tuple[Finding, ...]]:
     """The columns of a table without headers."""
     width = max(map(len, grid.rows))
@@ -208,7 +232,7 @@ def _columns_in_order(
             place_of(grid.rows[0]),
         )
     first = 1 if has_labels else 0
-    columns = tuple((first + i, Header(column)) for i, column in enumerate(COLUMNS))
+    columns = tuple((first + order.index(column), Header(column)) for column in COLUMNS)
     message = (
         "The columns have no headers and were read in the order a, α, d, θ. If yours is another, "
         "such as θ, d, a, α in the Robotics Toolbox, put headers above them."

@@ -1,15 +1,19 @@
 """The preview of a pasted table or matrix: the reading of each cell, without a grading."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from service.catalogue import Exercise
+from service.catalogue.parts.link_transforms import LinkTransformsSpec
 from service.expressions import AngleUnit, Kind, Note
 from service.expressions.errors import Span
+from service.grading.feedback import Finding, UnreadableAnswerError
 from service.grading.reading.entry import Entry, Reader
-from service.grading.reading.pasted import placed
+from service.grading.reading.matrix_list import grids_in_order
+from service.grading.reading.pasted import pasted_grid, placed
 from service.grading.reading.pasted_table import read_pasted_table, table_entry
 from service.grading.samples import draw
-from service.grids import GridCell, GridError, read_grid
+from service.grids import Grid, GridCell, GridError
 from service.kinematics.chain import COLUMNS
 
 
@@ -67,8 +71,8 @@ def preview_pasted(
 ) -> PastedPreview:
     """The reading of ``text`` as the answer to a part, exactly as grading reads it.
 
-    The part says whether a table is pasted or a matrix. A matrix of any size is read: grading
-    checks the size. Raises LookupError for a part that does not exist.
+    The part says whether a table is pasted, a matrix or several. A matrix of any size is read:
+    grading checks the size. Raises LookupError for a part that does not exist.
     """
     spec = exercise.part(part)
     if spec is None:
@@ -77,9 +81,16 @@ def preview_pasted(
     try:
         if spec.pasted_as == "table":
             return _table(text, reader)
-        return _matrix(text, "angle" if spec.pasted_as == "angles" else "number", reader)
+        if isinstance(spec, LinkTransformsSpec):
+            return _matrices(text, exercise.robot.tables[spec.convention].labels, reader)
+        grid = pasted_grid(text, reader)
+        quantity: Kind = "angle" if spec.pasted_as == "angles" else "number"
+        return PastedPreview(_rows(grid, quantity, reader), grid.notes)
     except GridError as error:
         return PastedPreview(problem=Problem(error.code, error.message, error.span))
+    except UnreadableAnswerError as error:
+        finding = error.finding
+        return PastedPreview(problem=Problem(finding.code, finding.hint, finding.span or (0, 0)))
 
 
 def _table(text: str, reader: Reader) -> PastedPreview:
@@ -97,22 +108,42 @@ def _table(text: str, reader: Reader) -> PastedPreview:
             entry = table_entry(cell, column, header, reader)
             cells.append(_cell(entry, cell, (str(i + 1), column)))
         rows.append(tuple(cells))
-    notes = tuple(
-        Note(finding.code, finding.hint, finding.span or (0, 0)) for finding in table.findings
-    )
-    return PastedPreview(tuple(rows), notes)
+    return PastedPreview(tuple(rows), _notes(table.findings))
 
 
-def _matrix(text: str, quantity: Kind, reader: Reader) -> PastedPreview:
-    grid = read_grid(text)
-    rows = tuple(
+def _matrices(text: str, labels: Sequence[str], reader: Reader) -> PastedPreview:
+    """The rows of all matrices, with labels such as A2.3."""
+    grids, findings = grids_in_order(text, labels, reader)
+    rows: list[tuple[CellPreview, ...]] = []
+    notes = list(_notes(findings))
+    for label, grid in zip(labels, grids, strict=True):
+        if isinstance(grid, GridError):
+            problem = Problem(grid.code, grid.message, grid.span)
+            typed = text[slice(*grid.span)]
+            rows.append((CellPreview(f"A{label}", "", grid.span, typed, problem=problem),))
+        elif grid is not None:
+            rows += _rows(grid, "number", reader, f"A{label}.")
+            notes += grid.notes
+    return PastedPreview(tuple(rows), tuple(notes))
+
+
+def _rows(
+    grid: Grid, quantity: Kind, reader: Reader, name: str = ""
+) -> tuple[tuple[CellPreview, ...], ...]:
+    """The rows of a matrix of any size."""
+    return tuple(
         tuple(
-            _cell(placed(reader.read(cell.text, quantity), cell), cell, (str(i + 1), str(j + 1)))
+            _cell(
+                placed(reader.read(cell.text, quantity), cell), cell, (f"{name}{i + 1}", str(j + 1))
+            )
             for j, cell in enumerate(row)
         )
         for i, row in enumerate(grid.rows)
     )
-    return PastedPreview(rows, grid.notes)
+
+
+def _notes(findings: Iterable[Finding]) -> tuple[Note, ...]:
+    return tuple(Note(each.code, each.hint, each.span or (0, 0)) for each in findings)
 
 
 def _cell(entry: Entry, cell: GridCell, place: tuple[str, str]) -> CellPreview:

@@ -1,19 +1,22 @@
 """A DH table as handed in, JSON or pasted text -> its rows and their numbers."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TypeAlias
 
 import numpy as np
 
 from service.expressions import Expression, Vocabulary
 from service.expressions import read as read_expression
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
+from service.grading.reading.absent_variables import absent_names
 from service.grading.reading.column_headers import QUANTITIES
-from service.grading.reading.entry import MISSING, Entry, Reader, entry_values, unreadable
+from service.grading.reading.entry import Entry, Reader, entry_values, unreadable
 from service.grading.reading.pasted import from_grid_error
-from service.grading.reading.pasted_table import entries_of, read_pasted_table
-from service.grading.reading.table_json import canonical_table
-from service.grading.report import Severity
+from service.grading.reading.pasted_table import PastedTable, entries_of, read_pasted_table
+from service.grading.reading.table_json import canonical_table, has_unnamed_columns
+from service.grading.reading.work_budget import WorkBudget
+from service.grading.report import Severity, Verdict
 from service.grading.samples import Samples
 from service.grids import GridError
 from service.kinematics.chain import COLUMNS, Table
@@ -79,29 +82,56 @@ class StudentRow:
 class StudentTable:
     """A table as read: its rows, and the numbers of all of them, ``(rows, 4, SAMPLES)``.
 
-    ``convention`` is what the answer itself says, if it says so.
+    ``convention`` is what the answer itself says, if it says so. ``reread`` reads its columns in
+    another order, where nothing but their order says what they hold.
     """
 
     rows: tuple[StudentRow, ...]
     values: Table
     convention: Convention | None
     findings: tuple[Finding, ...] = ()
+    reread: "Reread | None" = field(default=None, compare=False)
 
 
-def read_table(answer: object, reader: Reader) -> StudentTable:
+# Reads a table with its columns in another order of "a", "alpha", "d" and "theta".
+Reread: TypeAlias = Callable[[Sequence[str]], StudentTable]
+
+
+def read_table(
+    answer: object,
+    reader: Reader,
+    order: Sequence[str] = COLUMNS,
+    *,
+    empty_is_zero: bool = False,
+) -> StudentTable:
     """The table in a JSON answer ``{"rows": [{"a", "alpha", "d", "theta"} …], "convention"?}``.
 
     It may have other shapes that mean the same (``table_json``), and it, or its rows, may be
-    pasted text.
+    pasted text. Columns without names are in ``order``. A cell that is empty or holds a dash alone
+    is missing, or 0 with ``empty_is_zero`` where anything is written in its row.
 
     Raises UnreadableAnswerError where the answer has no rows at all; a row or cell that cannot be
     read costs only itself.
     """
     if isinstance(answer, str):
         answer = {"rows": answer}
-    answer = canonical_table(answer)
+    written = answer
+
+    def reread(other: Sequence[str]) -> StudentTable:
+        # The cells are known by now; what they cost must not be missing for the parts that follow.
+        afresh = replace(reader, budget=WorkBudget())
+        return read_table(written, afresh, other, empty_is_zero=empty_is_zero)
+
+    is_unnamed = has_unnamed_columns(answer)
+    answer = canonical_table(answer, order)
     if isinstance(answer, Mapping) and isinstance(answer.get("rows"), str):
-        return _pasted(answer["rows"], answer.get("convention"), reader)
+        convention, findings = _convention(answer.get("convention"))
+        pasted = _pasted(answer["rows"], reader, order)
+        if pasted is None:
+            return StudentTable((), _NO_ROWS, convention, findings)
+        rows = [_with_empty_cells(row, empty_is_zero) for row in entries_of(pasted, reader)]
+        table = _table(rows, convention, (*findings, *pasted.findings), reader)
+        return table if pasted.is_named else replace(table, reread=reread)
     if not isinstance(answer, Mapping) or not isinstance(answer.get("rows"), list):
         raise UnreadableAnswerError(
             reading_error(
@@ -113,21 +143,35 @@ def read_table(answer: object, reader: Reader) -> StudentTable:
     if len(rows) > MAX_ROWS:
         raise UnreadableAnswerError(_too_many_rows(len(rows)))
     convention, findings = _convention(answer.get("convention"))
-    return _table([_entries(row, reader) for row in rows], convention, findings, reader)
+    entries = [_with_empty_cells(_entries(row, reader), empty_is_zero) for row in rows]
+    table = _table(entries, convention, findings, reader)
+    return replace(table, reread=reread) if is_unnamed else table
 
 
-def _pasted(text: str, stated: object, reader: Reader) -> StudentTable:
-    convention, findings = _convention(stated)
+def _pasted(text: str, reader: Reader, order: Sequence[str]) -> PastedTable | None:
+    """The pasted table; None for blanks alone. Raises UnreadableAnswerError."""
     if not text.strip():
-        return StudentTable((), _NO_ROWS, convention, findings)
+        return None
     try:
-        pasted = read_pasted_table(text, reader)
+        pasted = read_pasted_table(text, reader, order)
     except GridError as error:
         raise UnreadableAnswerError(from_grid_error(error)) from error
     if len(pasted.rows) > MAX_ROWS:
         raise UnreadableAnswerError(_too_many_rows(len(pasted.rows)))
-    entries = entries_of(pasted, reader)
-    return _table(entries, convention, (*findings, *pasted.findings), reader)
+    return pasted
+
+
+def _with_empty_cells(row: tuple[Entry, ...], empty_is_zero: bool) -> tuple[Entry, ...]:
+    """The row with its empty cells alike, whether they are blank or hold a dash."""
+    if all(entry.readable for entry in row):
+        return row
+    empty = [entry.verdict is Verdict.MISSING or _is_dash(entry) for entry in row]
+    meant = ZERO if empty_is_zero and not all(empty) else EMPTY
+    return tuple(meant if is_empty else entry for entry, is_empty in zip(row, empty, strict=True))
+
+
+def _is_dash(entry: Entry) -> bool:
+    return [finding.code for finding in entry.findings] == ["dash"]
 
 
 def _table(
@@ -141,6 +185,28 @@ def _table(
     values = _values(read, reader.samples)
     return StudentTable(tuple(map(StudentRow, read, values)), values, convention, findings)
 
+
+# The cells of a table that are blank or hold a dash: the message is one for all of them.
+EMPTY = Entry(
+    None,
+    Verdict.MISSING,
+    (
+        reading_error(
+            "missing", "Empty cells and dashes have no value: write 0 where a parameter is 0."
+        ),
+    ),
+)
+ZERO = Entry(
+    read_expression(0, Vocabulary([])),
+    findings=(
+        Finding(
+            "empty_cells",
+            "Empty cells and dashes were read as 0.",
+            severity=Severity.INFO,
+            reading=True,
+        ),
+    ),
+)
 
 # A number that was computed stands for a cell that was read.
 COMPUTED = Entry(read_expression(0, Vocabulary([])))
@@ -156,6 +222,8 @@ _NO_ROWS: Table = np.empty((0, len(COLUMNS), 0))
 
 def _values(rows: Sequence[tuple[Entry, ...]], samples: Samples) -> Table:
     cells = [entry for entries in rows for entry in entries]
+    if absent := absent_names((entry.expression for entry in cells), samples):
+        samples = samples.with_names(absent)
     numbers = entry_values(cells, (*QUANTITIES.values(),) * len(rows), samples)
     return numbers.reshape(len(rows), len(COLUMNS), -1)
 
@@ -173,8 +241,8 @@ def _convention(stated: object) -> tuple[Convention | None, tuple[Finding, ...]]
         return CONVENTION_NAMES[name], ()
     unknown = Finding(
         "unknown_convention",
-        'The convention is "standard" (distal) or "modified" (proximal); what is written was not '
-        "understood and is left aside.",
+        'The convention is "standard" (distal) or "modified" (proximal): this name is neither, and '
+        "is left aside.",
         severity=Severity.WARNING,
         reading=True,
     )
@@ -183,7 +251,7 @@ def _convention(stated: object) -> tuple[Convention | None, tuple[Finding, ...]]
 
 def _entries(row: object, reader: Reader) -> tuple[Entry, ...]:
     if row is None:
-        return (MISSING,) * len(COLUMNS)
+        return (EMPTY,) * len(COLUMNS)
     if not isinstance(row, Mapping):
         return (unreadable(_NO_ROW),) * len(COLUMNS)
     # A value under an unknown name must not pass for a missing one.
@@ -197,6 +265,11 @@ def _entries(row: object, reader: Reader) -> tuple[Entry, ...]:
 
 
 _NO_ROW = reading_error("wrong_shape", 'A row is written {"a": …, "alpha": …, "d": …, "theta": …}.')
+
+
+def table_values(rows: Sequence[StudentRow], samples: Samples) -> Table:
+    """The numbers of the rows at other samples, as they were handed in: ``(rows, 4, samples)``."""
+    return _values([row.entries for row in rows], samples)
 
 
 def values_of(rows: Sequence[StudentRow]) -> Table:

@@ -16,13 +16,14 @@ _MOST_NAMES: Final = 40
 _Read = tuple[object, object]
 
 
-def canonical_table(answer: object) -> object:
+def canonical_table(answer: object, order: Sequence[str] = _IN_ORDER) -> object:
     """The answer as ``{"rows": [{"a", "alpha", "d", "theta"} …], …}``, where it is a table.
 
     Understood is a mapping with ``rows``, whose other fields stay, or the list of rows alone. A row
-    is a mapping whose keys are headers in any spelling ("α", "alpha_i", "twist"), or a list in the
-    order a, α, d, θ, with the row's number in front or without; a list of four headers may stand
-    above such rows. Rows that all have a number or "e" are put into that order.
+    is a mapping whose keys are headers in any spelling ("α", "alpha_i", "twist"), or a list in
+    ``order``, with the row's number in front or without; a list of four headers may stand above
+    such rows, or they in front of lists of a parameter each. A mapping of such headers to lists is
+    a table, too. Rows that all have a number or "e" are put into that order.
 
     A row that is none of these stays as it is, and so does one whose keys name a unit, or one
     column twice: the reader refuses it, or reads of it what it knows. An answer without any row
@@ -30,26 +31,63 @@ def canonical_table(answer: object) -> object:
     """
     if isinstance(answer, Mapping):
         rows = answer.get("rows")
+        if rows is None and (rows := _from_columns(answer)) is not None:
+            return {**answer, "rows": _canonical_rows(rows, order)}
         if not isinstance(rows, list) or _is_canonical(rows):
             return answer
-        return {**answer, "rows": _canonical_rows(rows)}
+        return {**answer, "rows": _canonical_rows(rows, order)}
     if not isinstance(answer, list):
         return answer
-    found = answer if _is_canonical(answer) else _canonical_rows(answer)
+    found = answer if _is_canonical(answer) else _canonical_rows(answer, order)
     has_rows = any(isinstance(row, Mapping) and not _KEYS.isdisjoint(row) for row in found)
     return {"rows": found} if has_rows else answer
+
+
+def _from_columns(answer: Mapping[str, object]) -> list[object] | None:
+    """The rows of a table that is sent as a list for each parameter; None for another answer."""
+    columns = {key: cells for key, cells in answer.items() if isinstance(cells, list)}
+    lengths = {len(cells) for cells in columns.values()}
+    if not len(_IN_ORDER) <= len(columns) <= _MOST_NAMES or len(lengths) > 1:
+        return None
+    cells = [cells[:_MOST_ROWS] for cells in columns.values()]
+    return [dict(zip(columns, row, strict=True)) for row in zip(*cells, strict=True)]
+
+
+def _with_parameters_in_columns(rows: list[object]) -> list[object]:
+    """The rows; or, where a, α, d and θ are the first cells of lists, the columns of these lists.
+
+    A list of the joints' numbers may stand above them.
+    """
+    lists = [row for row in rows[: len(_IN_ORDER) + 1] if isinstance(row, list)]
+    if len(lists) < len(rows) or len({len(row) for row in lists}) > 1 or not lists or not lists[0]:
+        return rows
+    first = [_header(row[0], {}) for row in lists[-len(_IN_ORDER) :]]
+    if sorted(header.column for header in first if header) != sorted(_IN_ORDER):
+        return rows
+    if len(lists) > len(_IN_ORDER):
+        lists[0] = ["i", *lists[0][1:]]
+    return [list(row) for row in zip(*lists, strict=True)]
+
+
+def has_unnamed_columns(answer: object) -> bool:
+    """Whether the rows are lists without headers, so that their order says what they hold."""
+    rows = answer.get("rows") if isinstance(answer, Mapping) else answer
+    if not isinstance(rows, list) or not any(isinstance(row, list) for row in rows):
+        return False
+    return _columns(_with_parameters_in_columns(rows), {}) is None
 
 
 def _is_canonical(rows: Sequence[object]) -> bool:
     return all(isinstance(row, dict) and row.keys() == _KEYS for row in rows)
 
 
-def _canonical_rows(rows: list[object]) -> list[object]:
+def _canonical_rows(rows: list[object], order: Sequence[str]) -> list[object]:
     names: dict[str, Header | None] = {}
+    rows = _with_parameters_in_columns(rows)
     columns = _columns(rows, names)
     body = rows if columns is None else rows[1:]
     if columns is None:
-        columns = (LABEL, *_IN_ORDER) if _are_numbered(rows[:_MOST_ROWS]) else _IN_ORDER
+        columns = (LABEL, *order) if _are_numbered(rows[:_MOST_ROWS]) else tuple(order)
     read = [_read_row(row, columns, names) for row in body[:_MOST_ROWS]]
     return [*_in_order(read), *body[_MOST_ROWS:]]
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from service.expressions import Expression, Kind
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error, reading_note
 from service.grading.reading.entry import MISSING, Entry, Reader, entry_values
-from service.grading.reading.pasted import from_grid_error, placed
-from service.grids import GridCell, GridError, read_grid
+from service.grading.reading.pasted import from_grid_error, pasted_grid, placed
+from service.grids import GridCell, GridError
 from service.kinematics.transforms import Numbers
 
 
@@ -86,7 +86,7 @@ def _pasted(text: str, quantities: Sequence[Kind], reader: Reader, *, planar: bo
     if not text.strip():
         return [MISSING] * len(quantities)
     try:
-        rows = read_grid(text).rows
+        rows = pasted_grid(text, reader).rows
     except GridError as error:
         entries = None
         if error.code in _OF_TABLES:

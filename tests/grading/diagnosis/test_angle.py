@@ -37,6 +37,12 @@ PAIRS = [
     Pair(angle.degrees_as_radians, wrong("90", "pi/2"), wrong("91", "pi/2")),
     Pair(angle.radians_as_degrees, wrong("pi*pi/360", "pi/2"), wrong("pi/180", "pi/2")),
     Pair(angle.lost_quadrant, wrong("atan(sin(q1)/cos(q1))", "q1"), wrong("q1 + pi", "q1")),
+    Pair(
+        angle.lost_sign,
+        wrong("acos(cos(q1))", "q1"),
+        wrong("acos(cos(q1)/2)", "q1"),
+        "lost_quadrant",
+    ),
     Pair(angle.half_turn, wrong("q1 - pi", "q1"), wrong("q1 + pi/2", "q1")),
     Pair(angle.swapped_atan2, wrong("atan2(cos(q1), sin(q1))", "q1"), wrong("0", "pi/2")),
     Pair(angle.quarter_turn, wrong("0", "pi/2"), wrong("q1 + pi", "q1")),
@@ -52,3 +58,9 @@ def test_what_no_misconception_explains() -> None:
     finding = diagnose_angle(wrong("q1 + 0.5", "q1"))
     assert finding.code == "value"
     assert finding.values is not None
+
+
+def test_asin_tells_half_the_directions_apart() -> None:
+    finding = diagnose_angle(wrong("asin(sin(q1))", "q1"))
+    assert finding.code == "lost_quadrant"
+    assert "asin" in finding.hint

@@ -58,6 +58,18 @@ PAIRS = [
     Pair(matrix_entry.sum_of_cosines, wrong("c1 + c2", "c12"), wrong("c1 + s2", "c12")),
     Pair(matrix_entry.product_for_sum_angle, wrong("c1*c2", "c12"), wrong("c1*s2", "c12")),
     Pair(matrix_entry.relative_angle, wrong("c2", "c12"), wrong("c1", "c12")),
+    Pair(
+        matrix_entry.angle_left_out,
+        wrong("c1 s23", "c1 s123"),
+        wrong("c1 s24", "c1 s123"),
+        "joint_variable_missing",
+    ),
+    Pair(
+        matrix_entry.angle_too_many,
+        wrong("l1 c123 - l2 s3", "l1 c12 - l2 s3"),
+        wrong("l1 c124", "l1 c23"),
+        "joint_variable_extra",
+    ),
     Pair(matrix_entry.term_sign, wrong("l1 - l2*c1", "l1 + l2*c1"), wrong("l1 - l2", "l3")),
 ]
 

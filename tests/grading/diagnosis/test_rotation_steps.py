@@ -3,11 +3,13 @@
 from functools import reduce
 
 import numpy as np
+import pytest
 from scipy.spatial.transform import Rotation
 
 from service.grading.diagnosis import rotation_steps
 from service.grading.diagnosis.matrix_case import MatrixCase
 from service.grading.diagnosis.rotation_steps import Step
+from service.grading.misconception import explanation
 from service.kinematics.transforms import Numbers
 from tests.grading.diagnosis.example_chain import COUNT, wrong_matrix
 from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
@@ -56,6 +58,14 @@ PAIRS = [
         "turn_axis",
         steps,
     ),
+    Pair(
+        rotation_steps.by_another_angle,
+        wrong(Y, turn("x", ANGLES[2]), turn("z", ANGLES[0])),
+        wrong(Y, turn("z", ANGLES[0]), Z),
+        "turn_angle",
+        steps,
+    ),
+    Pair(rotation_steps.another_order, wrong(Y, Z, X), wrong(Y, Z), "reversed_product", steps),
     Pair(rotation_steps.left_out, wrong(Y, Z), wrong(Z, Y), "missing_turn", steps),
 ]
 
@@ -63,3 +73,18 @@ PAIRS = [
 @each_pair(PAIRS)
 def test_a_misconception(pair: Pair) -> None:
     assert_explains_one_case_alone(pair)
+
+
+@pytest.mark.parametrize(
+    ("factors", "said"),
+    [
+        ((turn("y", -ANGLES[1]), turn("x", -ANGLES[0]), Z), "Turns 1 and 2 go the wrong way"),
+        ((Z,), "Turns 1 and 2 are missing"),
+        ((Y, turn("x", ANGLES[1]), Z), "Turn 1 was made by the angle of turn 2"),
+        ((Y, turn("x", ANGLES[2]), turn("z", ANGLES[0])), "The angles of turns 1 and 3"),
+    ],
+)
+def test_several_turns(factors: tuple[Numbers, ...], said: str) -> None:
+    found = explanation(wrong(*factors), rotation_steps.MISCONCEPTIONS, STEPS)
+    assert found is not None
+    assert found.findings[0].hint.startswith(said)

@@ -55,7 +55,7 @@ PAIRS = [
     Pair(
         screw_axis.sliding_as_turning,
         case(axis(1, 0, 0, 0, 0, 0), SLIDE),
-        case(axis(0, 1, 0, 0, 0, 0), SLIDE),
+        case(axis(0, 0, 0, 0, 1, 0), SLIDE),
         "infinite_pitch",
     ),
     Pair(
@@ -82,7 +82,25 @@ PAIRS = [
         case(axis(0, 0, 1, 0, LENGTH, 0), SCREW),
         "pitch",
     ),
+    Pair(
+        screw_axis.point_off_axis,
+        case(axis(0, 0, 1, 0.4, LENGTH / 2, PITCH), SCREW),
+        case(axis(0, 0, 1, 0.4, LENGTH / 2, 0), SCREW),
+    ),
+    Pair(
+        screw_axis.other_direction,
+        case(axis(0, 0.6, 0.8, 0.4, 0, 0)),
+        case(axis(0, 0, -1, 0.4, 0, 0)),
+    ),
 ]
+
+
+@pytest.mark.parametrize("direction", [(0, 0, 1), (0.6, 0, 0.8)])
+def test_a_slide_along_another_line(direction: tuple[float, float, float]) -> None:
+    finding = explain_screw(case(axis(0, 0, 0, *direction), SLIDE))
+    assert finding is not None
+    assert finding.code == "other_direction"
+    assert "v is a unit vector" in finding.hint
 
 
 @each_pair(PAIRS)

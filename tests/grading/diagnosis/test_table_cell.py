@@ -20,7 +20,12 @@ LETTERS = {name: np.tile(RNG.uniform(0.2, 0.9, HALF), 2) for name in ("a1", "a2"
 VALUES = {joint.variable: RNG.uniform(-3, 3, SAMPLES) for joint in JOINTS} | LETTERS
 SAMPLE = Samples(VALUES)
 KINDS = {"q1": "angle", "q2": "angle", "d3": "length", "a1": "length", "a2": "length"}
-WORDS = Vocabulary([Symbol(name, kind) for name, kind in KINDS.items()])  # type: ignore[arg-type]
+# The robot has no theta3, for its joint 3 slides; a table may contain it all the same.
+WORDS = Vocabulary(
+    [Symbol(name, kind) for name, kind in KINDS.items()]  # type: ignore[arg-type]
+    + [Symbol("theta3", "angle")]
+)
+TYPED = SAMPLE.with_names({"theta3"}).values
 
 
 def wrong(column: str, number: int, written: str, right: str) -> WrongCell:
@@ -29,7 +34,7 @@ def wrong(column: str, number: int, written: str, right: str) -> WrongCell:
     quantity = "angle" if angle else "length"
     expression = read(written, WORDS, quantity=quantity)  # type: ignore[arg-type]
     expected = read(right, WORDS, quantity=quantity)  # type: ignore[arg-type]
-    values = [np.zeros(SAMPLES) + text.evaluate(VALUES) for text in (expression, expected)]
+    values = [np.zeros(SAMPLES) + text.evaluate(TYPED) for text in (expression, expected)]
     values[0][~np.isfinite(values[0])] = np.nan
     contained, required = (
         None if counts is None else {JOINTS[k]: n for k, n in enumerate(counts) if n}
@@ -47,12 +52,14 @@ def wrong(column: str, number: int, written: str, right: str) -> WrongCell:
         joint=JOINTS[number - 1],
         contained=contained,
         required=required or {},
+        joints=JOINTS,
     )
 
 
 PAIRS = [
     Pair(function, wrong(*explained), wrong(*left_alone))
     for function, explained, left_alone in (
+        (table_cell.joint_variable_absent, ("theta", 3, "theta3", "0"), ("theta", 3, "q2", "0")),
         (undefined, ("d", 1, "a1/0", "a1"), ("d", 1, "a2", "a1")),
         (
             table_cell.joint_variable_missing,
@@ -76,6 +83,7 @@ PAIRS = [
             ("theta", 1, "q1 + q2", "q1"),
             ("theta", 1, "-q1", "q1"),
         ),
+        (table_cell.wrong_quantity, ("d", 1, "90deg", "a1"), ("d", 1, "90", "a1")),
         (table_cell.sign, ("a", 1, "-a1", "a1"), ("a", 1, "-a2", "a1")),
         (table_cell.distance_left_out, ("d", 1, "0", "a1"), ("d", 1, "a2", "a1")),
         (table_cell.distance_extra, ("d", 3, "d3 + a1", "d3"), ("a", 3, "a1", "a2")),

@@ -5,6 +5,8 @@ and a2 added so that every column holds something. A table is right if its pose 
 here.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -96,8 +98,21 @@ def with_cell(table: Table, row: int, column: int, value: float) -> Table:
     return table
 
 
+def with_lengths_exchanged() -> WrongTable:
+    """d1 where d2 belongs, and the other way."""
+    table = right()
+    table[0, D], table[1, D] = LENGTHS["d2"], LENGTHS["d1"]
+    written = replace(wrong(table).written, exchanges=(("d1", "d2", right() - table),))
+    return WrongTable(written, written, valid)
+
+
 PAIRS = [
-    Pair(function, wrong(explained), wrong(left_alone), source=lambda case: case.written)
+    Pair(
+        function,
+        explained if isinstance(explained, WrongTable) else wrong(explained),
+        wrong(left_alone),
+        source=lambda case: case.written,
+    )
     for function, explained, left_alone in (
         (
             written_table.other_convention,
@@ -113,6 +128,11 @@ PAIRS = [
             written_table.radians_as_degrees,
             with_angles(right(), np.pi / 180),
             with_angles(right(), 0.5),
+        ),
+        (
+            whole_table.lengths_exchanged,
+            with_lengths_exchanged(),
+            with_cell(right(), 0, D, 0.3),
         ),
         (
             whole_table.link_columns_shifted,

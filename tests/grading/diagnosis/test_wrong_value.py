@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from service.expressions import Vocabulary, read
-from service.grading.diagnosis.wrong_value import WrongNumbers, WrongValue
+from service.expressions import Symbol, Vocabulary, read
+from service.grading.diagnosis.wrong_value import WrongNumbers, WrongValue, differs
 from service.grading.feedback import Finding
 from service.grading.misconception import Hypothesis, Repaired, Written
 from service.grading.samples import SAMPLES, Samples
@@ -65,3 +65,43 @@ def test_some_entries_alone() -> None:
     second = (slice(0, 1), slice(1, 2))
     written = Written(np.array([[2 * ONES]]), FINDING, second)
     assert case.explained_by([written]) == [written]
+
+
+def counterexample(text: str, *, degrees: bool = False, corrects: bool = False) -> Finding:
+    """The finding on a wrong length that nothing explains."""
+    words = Vocabulary([Symbol("q1", "angle", joint=1), Symbol("l1", "length")])
+    rng = np.random.default_rng(3)
+    values = {"q1": rng.uniform(-3, 3, SAMPLES), "l1": rng.uniform(0.3, 0.9, SAMPLES)}
+    expression = read(text, words)
+    case = WrongValue(
+        expression=expression,
+        actual=ONES * expression.evaluate(values),
+        expected=ONES,
+        samples=Samples(values, frozenset({"q1"} if degrees else ())),
+        scale=1.0,
+        angle=False,
+        corrects=corrects,
+    )
+    return differs(case, "Hint.")
+
+
+def test_a_counterexample_can_be_checked_with_a_pocket_calculator() -> None:
+    """Near 180° four figures of the angle leave two of the sine: the printed angle counts."""
+    for degrees in (True, False):
+        found = counterexample("1000 l1 sin(q1)", degrees=degrees).values
+        assert found is not None
+        assert set(found) == {"q1", "l1", "yours"}
+        angle, length, yours = (float(found[name]) for name in ("q1", "l1", "yours"))
+        sine = np.sin(np.radians(angle) if degrees else angle)
+        assert yours == float(f"{1000 * length * sine:.4g}")
+
+
+def test_a_bare_number_has_no_counterexample() -> None:
+    assert counterexample("1.6").values is None
+    # With the right number it is one.
+    assert set(counterexample("1.6", corrects=True).values or ()) == {
+        "q1",
+        "l1",
+        "yours",
+        "expected",
+    }

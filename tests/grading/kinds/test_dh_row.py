@@ -44,6 +44,21 @@ def conditions(catalogue: Mapping[str, Exercise]) -> Exercise:
         ("fourth", [[3, 0, 2, "pi/2"]]),
         ("fourth", "3, 0, 2, pi/2"),
         ("fourth", "a,alpha,d,theta\n3,0,2,pi/2"),
+        ("fourth", "a=3, d=2, theta=90deg, alpha=0"),
+        ("fourth", "a = 3; alpha = 0; d = 2; theta = pi/2"),
+        ("fourth", "α: 0\nθ: 90°\na: 3\nd: 2\n"),
+        ("fourth", r"$a_1 = 3,\ \alpha_1 = 0,\ d_1 = 2,\ \theta_1 = \frac{\pi}{2}$"),
+        ("fourth", "a=3 alpha=0 d=2 theta=90deg"),
+        ("first", "a=l, d=h, theta=phi and alpha=-90deg"),
+        ("fourth", "(3, 0, 2, pi/2)"),
+        ("fourth", "3; 0; 2; pi/2"),
+        ("fourth", "3\n0\n2\npi/2"),
+        ("fourth", "3 0 2 pi/2"),
+        ("second", r"\text{none}"),
+        ("second", r"$\mathrm{None}$"),
+        ("third", "N/A"),
+        ("third", "There is no row."),
+        ("third", {"a": "n/a", "alpha": "", "d": None, "theta": "n/a"}),
     ],
 )
 def test_what_is_right(part_id: str, answer: object, conditions: Exercise) -> None:
@@ -91,7 +106,7 @@ def test_a_wrong_cell_costs_itself(
 
 
 @pytest.mark.parametrize(
-    "answer", [[], 1, "", "no row", {"none": "yes"}, {"rows": [FIRST, FIRST]}, {"rows": 3}, [1, 2]]
+    "answer", [[], 1, "", "no idea", {"none": "yes"}, {"rows": [FIRST, FIRST]}, {"rows": 3}, [1, 2]]
 )
 def test_another_shape_is_no_answer(answer: object, conditions: Exercise) -> None:
     report = part(handed_in(conditions, {"first": answer}), "first")
@@ -119,14 +134,12 @@ def test_none_with_a_row_contradicts_itself(
     assert all_codes(report) == {"contradiction"}
 
 
-@pytest.mark.parametrize(
-    "text", ["no", "no row", "-", "impossible", "3, 0, 2", "3 0 2", "3,0\n2,1"]
-)
+@pytest.mark.parametrize("text", ["no", "-", "impossible", "3, 0, 2", "3 0 2", "3,0\n2,1"])
 def test_text_that_is_no_row_is_told_what_a_row_is(text: str, conditions: Exercise) -> None:
     report = part(handed_in(conditions, {"fourth": text}), "fourth")
     assert (report.verdict, all_codes(report)) == (Verdict.UNREADABLE, {"wrong_shape"})
     [message] = report.feedback
-    assert "one row" in message.message
+    assert "One row" in message.message
     assert "none" in message.message
     assert "table" not in message.message
 
@@ -163,3 +176,35 @@ def test_the_row_of_the_other_convention(make_exercise: Make) -> None:
     assert full_marks(graded(exercise, {"a": "l", "alpha": 0, "d": 0, "theta": "pi/2"}))
     inverse = {"a": "-l", "alpha": 0, "d": 0, "theta": "-pi/2"}
     assert all_codes(graded(exercise, inverse)) >= {"sign"}
+
+
+def test_the_place_of_what_cannot_be_read_in_a_row_by_names(conditions: Exercise) -> None:
+    text = "a = 3, d = 2 + foo, theta = 90deg, alpha = 0"
+    report = part(handed_in(conditions, {"fourth": text}), "fourth")
+    assert not_correct(report) == {("1", "d"): Verdict.UNREADABLE}
+    [message] = report.rows[0].cells[2].feedback
+    assert message.span is not None
+    assert text[slice(*message.span)] == "foo"
+
+
+def test_what_is_not_named_is_missing(conditions: Exercise) -> None:
+    report = part(handed_in(conditions, {"fourth": "a=3, theta=pi/2"}), "fourth")
+    assert not_correct(report) == {
+        ("1", "alpha"): Verdict.MISSING,
+        ("1", "d"): Verdict.MISSING,
+    }
+
+
+@pytest.mark.parametrize(
+    "text", ["a=3, a=2, d=0, theta=0", "b=3, d=2", "3 - 2 pi", "-", "x: 3, alpha: 0", "(3)(0)"]
+)
+def test_no_other_text_is_a_row(text: str, conditions: Exercise) -> None:
+    report = part(handed_in(conditions, {"fourth": text}), "fourth")
+    assert report.verdict is Verdict.UNREADABLE
+
+
+def test_a_text_about_no_joint_names_no_home_configuration(conditions: Exercise) -> None:
+    report = part(handed_in(conditions, {"fourth": "3, 0, 2, 0"}), "fourth")
+    [message] = report.rows[0].cells[3].feedback
+    assert message.code == "quarter_turn"
+    assert "home" not in message.message

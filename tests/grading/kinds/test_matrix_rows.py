@@ -43,7 +43,7 @@ PLACES = [(i, j) for i in range(4) for j in range(4)]
     ("text", "verdict", "code"),
     [
         ("0.05", Verdict.INCORRECT, "value"),
-        ("q1 + l1", Verdict.INCORRECT, "value"),
+        ("q1 + l1", Verdict.INCORRECT, "quantity"),
         ("sqrt(-1)", Verdict.INCORRECT, "undefined"),
         ("c124", Verdict.UNREADABLE, "not_revolute"),
         ("(c1", Verdict.UNREADABLE, "unbalanced_bracket"),
@@ -66,8 +66,13 @@ def test_a_bad_entry_costs_itself_only(
     cost = units / 2 / (2 if j == 3 else 4)
     assert report.points == pytest.approx(report.max_points * (1 - cost))
     assert sum(row.points for row in report.rows) == pytest.approx(report.points, abs=1e-5)
-    if i == 3 and verdict is Verdict.INCORRECT and code == "value":
+    if i == 3 and verdict is Verdict.INCORRECT and code != "undefined":
         code = "bottom_row"
+    elif code == "value" and known:
+        code = "independent_of"
+    elif code == "quantity" and POSE[i][j] == "0":
+        # A zero is no more a length than a number, but nothing may change it.
+        code = "joint_variable_extra"
     assert (code, (Place(*place),)) in [(m.code, places) for m, places, _ in messages_of(report)]
 
 
@@ -133,12 +138,12 @@ def test_numbers_need_not_be_text(arm: Exercise) -> None:
 
 
 def test_a_counterexample_shows_the_students_own_number(arm: Exercise) -> None:
-    report = graded_pose(arm, with_entry(2, 3, "l1 + 2"))
+    report = graded_pose(arm, with_entry(2, 3, "2 l1"))
     [feedback] = cell(report, "3", "4").feedback
     assert feedback.values is not None
     assert set(feedback.values) == {"l1", "yours", "expected"}
     assert feedback.values["expected"] == 0
-    assert feedback.values["yours"] == pytest.approx(float(feedback.values["l1"]) + 2, abs=2e-3)
+    assert feedback.values["yours"] == pytest.approx(2 * float(feedback.values["l1"]), abs=2e-3)
 
 
 def test_where_an_entry_has_no_value_the_joint_values_are_told(arm: Exercise) -> None:

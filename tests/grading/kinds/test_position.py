@@ -37,7 +37,7 @@ def test_a_position_in_each_shape(answer: object, make_exercise: Make) -> None:
     [
         ([SPATIAL[1], SPATIAL[0], SPATIAL[2]], {"1", "2"}, {"exchanged_coordinates"}),
         ([f"-({text})" for text in SPATIAL], {"1", "2", "3"}, {"reversed_position"}),
-        (["c1 (L1 c2 + R)", "s1 (L1 c2 + R)", "L1 s2"], {"1", "2", "3"}, {"wrong_frame"}),
+        (["c1 (L1 c2 + R)", "s1 (L1 c2 + R)", "L1 s2"], {"1", "2", "3"}, {"distance_left_out"}),
         ([SPATIAL[0], SPATIAL[1], "-L2 s23 - L1 s2"], {"3"}, {"sign"}),
         ([SPATIAL[0], SPATIAL[1], "L2 c23 + L1 c2"], {"3"}, {"sine_for_cosine"}),
         ([SPATIAL[0], SPATIAL[1], "1/0"], {"3"}, {"undefined"}),

@@ -55,6 +55,12 @@ SLIPS: dict[str, tuple[str, int, list[Any], str]] = {
     "turns nowhere": ("space-screws", 2, [0, 0, 0, 0, 0, 1], "infinite_pitch"),
     "halves exchanged": ("space-screws", 2, [0, "-L1", 0, 0, 0, 1], "exchanged_halves"),
     "the point": ("space-screws", 2, [0, 0, 1, "L1", 0, 0], "point_for_velocity"),
+    "a sliding joint that turns": ("space-screws", 1, [0, 0, 1, 1, 0, 0], "infinite_pitch"),
+    "a sliding joint as a turn": ("space-screws", 1, [0, 0, 1, 0, 0, 0], "infinite_pitch"),
+    "another point": ("space-screws", 2, [0, 0, 1, 0, "-L1 - L2", 0], "point_off_axis"),
+    "through the origin": ("space-screws", 2, [0, 0, 1, 0, 0, 0], "point_off_axis"),
+    "another direction": ("space-screws", 2, [0, 1, 0, 0, 0, "L1"], "other_direction"),
+    "with a joint variable": ("space-screws", 2, [0, 0, 1, 0, "-L1 - theta2", 0], "not_at_home"),
     "a pitch": ("space-screws", 2, [0, 0, 1, 0, "-L1", "0.5"], "pitch"),
 }
 
@@ -71,10 +77,16 @@ def test_a_slip_is_named_in_its_row(name: str, rpr: Exercise) -> None:
 
 
 def test_another_slip_is_told_number_by_number(rpr: Exercise) -> None:
+    screws = changed(SPACE, 2, [0, 0, 0.5, 0, "-L1", 0])
+    report = part(handed_in(rpr, {"space-screws": screws}), "space-screws")
+    assert not_correct(report) == {("3", "3"): Verdict.INCORRECT}
+    assert report.rows[2].cells[2].feedback
+
+
+def test_a_wrong_number_costs_itself(rpr: Exercise) -> None:
     screws = changed(SPACE, 2, [0, 0, 1, 0, "-L1 - L2", 0])
     report = part(handed_in(rpr, {"space-screws": screws}), "space-screws")
     assert not_correct(report) == {("3", "5"): Verdict.INCORRECT}
-    assert report.rows[2].cells[4].feedback
     # v2 and ω are what one has to know in row 3, ...
     assert report.points == pytest.approx(6 * (1 - 1 / 2.6), abs=1e-5)
 

@@ -28,7 +28,7 @@ def test_an_angle_of_a_vector_counts_modulo_whole_turns(
         ([*TASK, "theta1 + theta2 + pi/2"], "3", "quarter_turn"),
         ([*TASK, "atan(s12/c12)"], "3", "lost_quadrant"),
         ([*TASK, "pi/2 - theta1 - theta2"], "3", "swapped_atan2"),
-        ([*TASK, "theta2"], "3", "value"),
+        ([*TASK, "theta2"], "3", "joint_variable_missing"),
         (["a1 c1 + a2 c2", TASK[1], "theta1 + theta2"], "1", "relative_angle"),
     ],
 )

@@ -20,13 +20,15 @@ class WrittenTable:
     """A student's table ``(rows, 4, samples)``, angles in radians, every cell with a value.
 
     Its values are the sum of ``constants`` and ``motion``, the part of the joint variables.
-    ``reference`` is the reference's table where it has as many rows.
+    ``reference`` is the reference's table where it has as many rows. ``exchanges`` are pairs of
+    lengths, each with the change of the table where the two are exchanged.
     """
 
     constants: Table
     motion: Table
     convention: Convention
     reference: Table | None = None
+    exchanges: tuple[tuple[str, str, Table], ...] = ()
 
     @property
     def values(self) -> Table:
@@ -39,12 +41,15 @@ class WrittenTable:
             Samples.subset_of(cells, count) for cells in (self.constants, self.motion)
         )
         reference = None if self.reference is None else Samples.subset_of(self.reference, count)
-        return WrittenTable(constants, motion, self.convention, reference)
+        exchanges = tuple(
+            (one, other, Samples.subset_of(change, count)) for one, other, change in self.exchanges
+        )
+        return WrittenTable(constants, motion, self.convention, reference, exchanges)
 
     def changed(self, constants: Table, motion: Table | None = None) -> "WrittenTable":
         """The same table with other constants, or with other joint variables too."""
         moves = self.motion if motion is None else motion
-        return WrittenTable(constants, moves, self.convention, self.reference)
+        return replace(self, constants=constants, motion=moves)
 
 
 RepairedTable = Repaired[WrittenTable]
@@ -72,8 +77,8 @@ def other_convention(table: WrittenTable) -> Iterator[RepairedTable]:
     used, asked = names[table.convention.other], names[table.convention]
     finding = Finding(
         "other_convention",
-        f"This is a right table in the {used} convention, but it was read in the {asked} "
-        f"one: look which link's a and α belong in row i.",
+        f"The table is right in the {used} convention, but not in the {asked} one, which "
+        f"counts here: check which link's a and α belong in row i.",
         f"In the {asked} convention a and α move by one row.",
     )
     yield Repaired(replace(table, convention=table.convention.other), finding)

@@ -1,0 +1,156 @@
+"""The schemas of the OpenAPI document as generators of clients want them.
+
+Pydantic's own say how a value is checked. A client wants a name for each model and each choice, and
+a field that is left out where it says nothing as optional, not as one that may be null.
+"""
+
+import json
+from typing import Any, Final
+
+Schema = dict[str, Any]
+
+_REFERENCE: Final = "#/components/schemas/"
+_NULL: Final = {"type": "null"}
+
+# The names in the document of classes whose plain names the program uses for something else.
+_PUBLIC_NAMES: Final = {
+    "Alive": "Liveness",
+    "ComponentView": "ListComponent",
+    "ExerciseView": "Exercise",
+    "LinkSolution": "LinkTransform",
+    "PartAnswer": "PartSolution",
+    "PartView": "Part",
+    "PreviewAnswer": "Preview",
+    "ProblemDocument": "Problem",
+    "Ready": "Readiness",
+    "Reason": "ProblemReason",
+    "Shown": "PrintedMatrix",
+    "SymbolView": "ExerciseSymbol",
+}
+# The names of choices, which the models write out.
+_CHOICES: Final = {
+    ("angle", "length", "number"): "Quantity",
+    ("content", "cells", "rows", "whole"): "Marking",
+    ("full", "hints", "verdicts", "score"): "FeedbackLevel",
+    ("given", "free"): "FrameFreedom",
+    ("moving", "fixed"): "RotationAxes",
+    ("radians", "degrees"): "AngleUnit",
+    ("space", "body"): "ScrewFrame",
+    ("unread", "zero"): "EmptyCells",
+}
+
+
+def public_name(name: str) -> str:
+    """The name in the document of the class with this name."""
+    return _PUBLIC_NAMES.get(name, name)
+
+
+def tidy_schemas(document: Schema) -> None:
+    """Give the document a named schema for each model and choice, in alphabetical order."""
+    components = document.setdefault("components", {})
+    tidying = _Tidying()
+    for name, schema in components.get("schemas", {}).items():
+        tidying.name(name, schema)
+    for path in document["paths"].values():
+        for operation in path.values():
+            tidying.visit_operation(operation)
+    components["schemas"] = dict(sorted(tidying.named.items()))
+
+
+class _Tidying:
+    """One tidying of a document; ``named`` are the schemas that got a name."""
+
+    def __init__(self) -> None:
+        self.named: Schema = {}
+
+    def visit_operation(self, operation: Schema) -> None:
+        """Tidy the schemas of one operation in their places."""
+        for parameter in operation.get("parameters", ()):
+            parameter["schema"] = self.tidied(parameter["schema"])
+        asked = operation.get("requestBody", {"content": {}})
+        for message in (asked, *operation["responses"].values()):
+            for content in message.get("content", {}).values():
+                content["schema"] = self.tidied(content["schema"], is_sent=message is not asked)
+
+    def name(self, name: str, schema: Schema, *, is_sent: bool = True) -> Schema:
+        """A reference to the schema by its public name; that of a class counts before others."""
+        name = public_name(name)
+        if name not in self.named:
+            self.named[name] = {}
+            self.named[name] = self._body(schema, is_sent=is_sent)
+        return {"$ref": f"{_REFERENCE}{name}"}
+
+    def tidied(self, schema: Schema, *, is_sent: bool = True) -> Schema:
+        """A schema that stands in some place; ``is_sent`` where the service answers it."""
+        for name, definition in schema.get("$defs", {}).items():
+            self.name(name, definition, is_sent=is_sent)
+        if "properties" in schema:
+            return self.name(schema["title"], schema, is_sent=is_sent)
+        if "enum" in schema:
+            choice = {"type": schema["type"], "enum": schema["enum"]}
+            reference = self.name(_CHOICES[tuple(schema["enum"])], choice)
+            return {**reference, **_texts(schema)}
+        return self._body(schema, is_sent=is_sent)
+
+    def _body(self, schema: Schema, *, is_sent: bool) -> Schema:
+        body = {
+            key: value
+            for key, value in schema.items()
+            if key not in ("$defs", "title", "default", "description", "properties")
+        } | _texts(schema)
+        if "$ref" in body:
+            body["$ref"] = _REFERENCE + public_name(body["$ref"].removeprefix(_REFERENCE))
+        for key in ("anyOf", "oneOf", "prefixItems"):
+            if key in body:
+                body[key] = [self.tidied(each, is_sent=is_sent) for each in body[key]]
+        for key in ("items", "additionalProperties"):
+            if isinstance(body.get(key), dict):
+                body[key] = self.tidied(body[key], is_sent=is_sent)
+        if mapping := body.get("discriminator", {}).get("mapping"):
+            renamed = {
+                value: _REFERENCE + public_name(reference.removeprefix(_REFERENCE))
+                for value, reference in mapping.items()
+            }
+            body["discriminator"] = {**body["discriminator"], "mapping": renamed}
+        if "properties" in schema:
+            body |= self._fields(schema, is_sent=is_sent)
+        return body
+
+    def _fields(self, schema: Schema, *, is_sent: bool) -> Schema:
+        """The fields of a model.
+
+        What the service sends has every field but those without a value. In a request a default is
+        told in words: as ``default`` it makes some generators ask for the field.
+        """
+        required = list(schema.get("required", ()))
+        fields = {}
+        for name, field in schema["properties"].items():
+            if name not in required:
+                field = _without_null(field)
+                if "default" in field:
+                    default = json.dumps(field.pop("default"))
+                    if is_sent:
+                        required.append(name)
+                    else:
+                        field["description"] += f" Default: `{default}`."
+            fields[name] = self.tidied(field, is_sent=is_sent)
+        in_order = [name for name in fields if name in required]
+        return {"properties": fields} | ({"required": in_order} if in_order else {})
+
+
+def _without_null(field: Schema) -> Schema:
+    """An optional field that is left out rather than null."""
+    forms = [form for form in field.get("anyOf", ()) if form != _NULL]
+    rest = {key: value for key, value in field.items() if key != "anyOf"}
+    if rest.get("default", ()) is None:
+        del rest["default"]
+    if len(forms) == 1:
+        return {**forms[0], **rest}
+    return {**rest, "anyOf": forms} if forms else rest
+
+
+def _texts(schema: Schema) -> Schema:
+    """The description, if there is one, with code as Markdown has it."""
+    if "description" not in schema:
+        return {}
+    return {"description": schema["description"].replace("``", "`")}

@@ -1,0 +1,136 @@
+"""The plain characters of a text so far, and the places where they were typed."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from service.expressions.characters import latex_commands, unicode
+from service.expressions.errors import UnreadableError
+
+_DECIMAL_COMMA: Final = re.compile(r"(?<=[0-9])\{,\}(?=[0-9])")
+# Longer words in braces are no stem of a name.
+_LONGEST_STEM: Final = 24
+_POWER: Final = re.compile(r"[+-]?[0-9]+|[A-Za-z]")
+# These separate cells or lines, and not the factors of a product.
+BREAKS: Final = frozenset("\t\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029")
+
+
+@dataclass(frozen=True, slots=True)
+class Characters:
+    """Plain text, and for each of its characters the [start, end) in the text as typed.
+
+    ``starts`` and ``ends`` are None where nothing was changed.
+    """
+
+    text: str
+    starts: list[int] | None = None
+    ends: list[int] | None = None
+
+
+class CharacterWriter:
+    """Writes plain characters, and reads what LaTeX and Unicode put around them."""
+
+    def __init__(self, source: str, partners: dict[int, int] | None = None) -> None:
+        self.source = source
+        self.letters: list[str] = []
+        self.starts: list[int] = []
+        self.ends: list[int] = []
+        self.dollars = source.count("$") % 2 == 0
+        self.commas = [] if "{,}" not in source else list(_DECIMAL_COMMA.finditer(source))[::-1]
+        self.partners = partners
+
+    def _copy(self, start: int, end: int) -> None:
+        self.letters.extend(self.source[start:end])
+        self.starts.extend(range(start, end))
+        self.ends.extend(range(start + 1, end + 1))
+
+    def _emit(self, text: str, start: int, end: int) -> int:
+        for letter in text:
+            self.letters.append(letter)
+            self.starts.append(start)
+            self.ends.append(end)
+        return end
+
+    def _close_up(self) -> None:
+        r"""Let an index stand right behind its name: \theta _1, {\theta}_1, {\rm c}_1."""
+        letters = self.letters
+        while letters and letters[-1] == " " and self.source[self.starts[-1]] in " \\":
+            self._drop(len(letters) - 1)
+        if not letters or letters[-1] != "}":
+            return
+        for at in range(len(letters) - 2, max(-1, len(letters) - _LONGEST_STEM - 2), -1):
+            if letters[at] == "{":
+                # Behind these a brace holds an index, a power or the operand of a root.
+                if at + 2 < len(letters) and (at == 0 or letters[at - 1] not in "_^√"):
+                    letters[at] = " "
+                    self._drop(len(letters) - 1)
+                return
+            if not letters[at].isalpha() and letters[at] != " ":
+                return
+
+    def _drop(self, at: int) -> None:
+        del self.letters[at:], self.starts[at:], self.ends[at:]
+
+    def _subscript_run(self, at: int) -> int:
+        """Read ₁₂: one index."""
+        self._close_up()
+        end = self._end_of_run(at, unicode.SUBSCRIPTS)
+        if self.source[end : end + 1] in {"₊", "₋"}:
+            raise UnreadableError("subscript", (at, end + 1), index=self.source[at:end])
+        for place in range(at, end):
+            digit = unicode.SUBSCRIPTS[self.source[place]]
+            # As in ``_underscore``: l₁ₕ is no product of l₁.
+            self._emit(digit if digit.isdigit() and place > at else f"_{digit}", place, place + 1)
+        if self.source[end : end + 1].isdigit():
+            self._emit(" ", end, end)
+        return end
+
+    def _superscript_run(self, at: int) -> int:
+        """Read ⁻¹: one power."""
+        end = self._end_of_run(at, unicode.SUPERSCRIPTS)
+        if self.source[at:end] == "⁰" and self.source[at - 1 : at].isdigit():
+            raise UnreadableError("raised_zero", (at, end))
+        power = "".join(unicode.SUPERSCRIPTS[letter] for letter in self.source[at:end])
+        is_simple = _POWER.fullmatch(power) is not None
+        self._emit("^" if is_simple else "^(", at, at)
+        self._spell(unicode.SUPERSCRIPTS, at, end)
+        # The blank keeps x²3 from becoming x^23.
+        self._emit(" " if is_simple else ")", end, end)
+        return end
+
+    def _end_of_run(self, at: int, table: Mapping[str, str]) -> int:
+        end = at
+        while end < len(self.source) and self.source[end] in table:
+            end += 1
+        return end
+
+    def _spell(self, table: Mapping[str, str], at: int, end: int) -> None:
+        for place in range(at, end):
+            self._emit(table[self.source[place]], place, place + 1)
+
+    def _argument(self, at: int, after: int, end: int) -> tuple[int, int, int]:
+        """The [start, stop) of a command's argument, and the place behind it."""
+        start = self._skip_blanks(after, end)
+        if start >= end or self.source[start] in "}+-*/)]":
+            raise UnreadableError("argument", (at, after), name=self.source[at:after])
+        if self.source[start] == "{":
+            stop = self._partner(start, end)
+            return start + 1, stop, stop + 1
+        command = latex_commands.COMMAND.match(self.source, start, end)
+        stop = command.end() if command else start + 1
+        return start, stop, stop
+
+    def _skip_blanks(self, at: int, end: int) -> int:
+        while at < end and self.source[at].isspace():
+            at += 1
+        return at
+
+    def _partner(self, at: int, end: int) -> int:
+        """The place of the brace that closes the one at ``at``."""
+        if self.partners is None:
+            self.partners = latex_commands.brace_partners(self.source)
+        place = self.partners.get(at, end)
+        if place >= end:
+            raise UnreadableError("unclosed", (at, at + 1))
+        return place

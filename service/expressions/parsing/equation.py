@@ -1,0 +1,56 @@
+r"""An equation whose left side is a name: x = l1 c1, p_x := l1 c1, T(1,4) = l1 c1, = cos(q1).
+
+Its value is the right side. The left side becomes blanks, so that all places stay as typed.
+"""
+
+import re
+from typing import Final
+
+from service.expressions.characters import greek
+from service.expressions.errors import Note
+from service.expressions.parsing.words import split
+from service.expressions.vocabulary.symbols import Vocabulary
+
+_STYLE: Final = r"\\(?:mathrm|mathbf|mathit|mathsf|text|boldsymbol|bm|vec)\s*"
+_LETTERS: Final = rf"(?:\\?[A-Za-z]{{1,12}}[0-9]{{0,3}}|[{greek.CLASS}][0-9]{{0,3}})"
+_SCRIPT: Final = r"[_^]\s*(?:\{[^{}=]{0,24}\}|\\?[A-Za-z0-9*]{1,12})"
+_LEFT: Final = re.compile(
+    rf"""
+    (?: \$ | \s | \\[(\[] | \\begin\{{[a-z]+\*?\}} ){{0,8}}
+    (?P<side>
+        (?: (?:let|const|var|double|float|auto) \s++ )?
+        (?: \{{\s*+\}}\s*+ )?
+        (?: {_SCRIPT}\s*+ ){{0,2}}
+        (?P<name> {_STYLE}\{{\s*{_LETTERS}\s*\}} | {_STYLE}[A-Za-z] | {_LETTERS} )?
+        (?: \s*+{_SCRIPT} | [₀-₉]+ | ['’′*] | \.[A-Za-z]{{1,8}} ){{0,3}}
+        (?P<brackets> (?: \s*+[(\[{{]\s*+[\w\s,:\\]{{1,32}}[)\]}}] ){{0,2}} )
+        \s*+ &? \s*+ (?: :?==? | ≔ | \\coloneqq(?![A-Za-z]) )
+    )
+    """,
+    re.VERBOSE,
+)
+_EQUALS: Final = re.compile(r"=|≔|\\coloneqq(?![A-Za-z])|≈|≡|\\(?:approx|equiv)(?![A-Za-z])|[<>≤≥]")
+_WORD: Final = re.compile(r"[A-Za-z]+[0-9]*")
+# Names in brackets, which may be the factors of a product. The time is none.
+_OF_NAMES: Final = re.compile(r"[(\[{]\s*+(?!t\s*+\))[^0-9\s]")
+
+
+def right_side(source: str, vocabulary: Vocabulary) -> tuple[str, Note | None]:
+    """``source`` with blanks for the name before its equals sign, and a note on that."""
+    found = _LEFT.match(source)
+    if found is None or _EQUALS.search(source, found.end()):
+        return source, None
+    if not source[found.end() :].strip(" $") or not _is_name(found, vocabulary):
+        return source, None
+    start, end = span = found.span("side")
+    message = "Only the right side of the equation was read."
+    return f"{source[:start]}{' ' * (end - start)}{source[end:]}", Note("equation", message, span)
+
+
+def _is_name(found: re.Match[str], vocabulary: Vocabulary) -> bool:
+    """Whether the side is a name, and neither a function nor a product: cos, l1 (c1 + c2)."""
+    words = _WORD.findall(found["name"] or "")
+    pieces = split(words[-1], vocabulary) if words else None
+    if pieces is None:
+        return True
+    return pieces[0].kind != "function" and not _OF_NAMES.search(found["brackets"])

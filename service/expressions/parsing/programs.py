@@ -1,0 +1,45 @@
+"""Words as programs write them: np.cos, std::cos, M_PI_2, Subscript[θ, 1], 0.5f, %pi."""
+
+import re
+from typing import Final
+
+from service.expressions.characters import greek
+from service.expressions.tree import Binary, Call, Node, Number, Pi
+from service.expressions.vocabulary.functions import CONSTANTS
+
+MEMBER: Final = re.compile(r"(?:\.|::)(?=[^\W\d_])")
+_RADIANS: Final = re.compile(r"(?:radians|toRadians)(?=\()")
+_SUBSCRIPT: Final = re.compile(rf"\[\s*([A-Za-z{greek.CLASS}]+)\s*,\s*([A-Za-z0-9]{{1,12}})\s*\]")
+# Mathematica and Maxima count from 1, and write an index in square brackets.
+_COUNTS_FROM_ONE: Final = re.compile(
+    r"(?:Sin|Cos|Tan|Sqrt|ArcSin|ArcCos|ArcTan|Subscript)\s*\[|%pi"
+)
+
+
+def degrees_function_end(text: str, at: int) -> int | None:
+    """The end of ``radians`` or ``toRadians`` behind a module's name, else None."""
+    found = _RADIANS.match(text, at)
+    return found and found.end()
+
+
+def subscripted(text: str, at: int) -> tuple[str, int] | None:
+    """The name that ``Subscript`` makes of the brackets at ``text[at:]``, and where they end."""
+    found = _SUBSCRIPT.match(text, at)
+    return found and (f"{found[1]}{found[2]}", found.end())
+
+
+def counts_from_one(text: str) -> bool:
+    """Whether an index in square brackets counts from 1, by the program that wrote ``text``."""
+    return _COUNTS_FROM_ONE.search(text) is not None
+
+
+def constant(name: str, start: int, end: int) -> Node:
+    """One of C's constants: π/2 for M_PI_2."""
+    form, value = CONSTANTS[name]
+    number = Number(float(value), str(value), start, end)
+    if form == "pi":
+        return Binary("/", Pi(start, end), number, start, end)
+    root = Call("sqrt", (number,), start, end)
+    if form == "sqrt":
+        return root
+    return Binary("/", Number(1.0, "1", start, end), root, start, end)

@@ -1,0 +1,50 @@
+"""The quantity that a formula looks like: a length, an angle or a plain number."""
+
+from typing import Final, TypeAlias
+
+from service.expressions import Kind
+from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
+
+# None where a formula is neither, or nobody can say: l1 + theta1, l1*l2.
+Quantity: TypeAlias = Kind | None
+
+_ANGLE_OF: Final = frozenset({"asin", "acos", "atan", "atan2"})
+_NUMBER_OF: Final = frozenset({"sin", "cos", "tan"})
+# Students write no deeper; a longer run of sums has no quantity.
+_DEEPEST: Final = 60
+
+
+def quantity_of(tree: Node, depth: int = 0) -> Quantity:
+    """The quantity of a formula; a number beside an angle or a length is one, too.
+
+    ``90deg`` and ``pi/2`` are angles, ``2 l1`` and ``l1 cos(theta1)`` lengths.
+    """
+    if depth > _DEEPEST:
+        return None
+    match tree:
+        case Number():
+            return "number"
+        case Pi() | Unit():
+            return "angle"
+        case SymbolNode(symbol):
+            return symbol.kind
+        case Negation(operand):
+            return quantity_of(operand, depth + 1)
+        case Binary(operator, left, right):
+            return _combined(operator, quantity_of(left, depth + 1), quantity_of(right, depth + 1))
+        case Call(function, _):
+            if function in _ANGLE_OF:
+                return "angle"
+            return "number" if function in _NUMBER_OF else None
+
+
+def _combined(operator: str, left: Quantity, right: Quantity) -> Quantity:
+    if left is None or right is None:
+        return None
+    if right == "number":
+        return left if operator != "^" or left == "number" else None
+    if operator in "+-":
+        return right if left in (right, "number") else None
+    if operator == "*":
+        return right if left == "number" else None
+    return "number" if operator == "/" and left == right else None

@@ -1,0 +1,95 @@
+"""A slip that is made before an answer is written down: in the robot's table, joints or lengths.
+
+Unlike the other misconceptions it is no formula for the wrong answer: it changes what the answer is
+worked out from. So many slips are tried at once, by working the right answer out from the numbers
+that each of them leaves.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from service.expressions.evaluation.samples import SymbolValues
+from service.kinematics.chain import Table
+from service.kinematics.transforms import Numbers
+
+
+@dataclass(frozen=True, slots=True)
+class SymbolChange:
+    """A symbol that is taken to be ``factor · source + offset``; ``source`` is a symbol too."""
+
+    symbol: str
+    source: str
+    factor: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class CellChange:
+    """A cell of which the constant part counts ``factor`` times, and to which a number is added."""
+
+    row: int
+    column: int
+    factor: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Change:
+    """What the right answer is worked out again with: other symbols, another cell."""
+
+    symbols: tuple[SymbolChange, ...] = ()
+    cell: CellChange | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Slip(Change):
+    """A slip by its code, with what it changes.
+
+    ``clause`` says what is wrong, as a clause that can stand in a list of several, and ``advice``
+    what to look at; the ``correction`` is told apart. Symbols stand in braces in them, since the
+    student may have other names, with the words for one that would give an entry away: "nothing
+    moves with {d3:its variable}".
+    """
+
+    code: str
+    clause: str
+    advice: str
+    correction: str = ""
+
+
+def changed_values(changes: Sequence[Change], values: SymbolValues) -> dict[str, Numbers]:
+    """The values ``(K · samples,)`` that K changes leave each symbol, those of one in a row."""
+    names = list(values)
+    places = {name: i for i, name in enumerate(names)}
+    right = np.array([values[name] for name in names])
+    stacked = np.repeat(right[:, None], len(changes), axis=1)
+    changed = [(k, symbol) for k, change in enumerate(changes) for symbol in change.symbols]
+    if changed:
+        targets = [places[each.symbol] for _, each in changed]
+        sources = [places[each.source] for _, each in changed]
+        factors = np.array([[each.factor] for _, each in changed])
+        offsets = np.array([[each.offset] for _, each in changed])
+        stacked[targets, [k for k, _ in changed]] = factors * right[sources] + offsets
+    return dict(zip(names, stacked.reshape(len(names), -1), strict=True))
+
+
+def change_cells(
+    changes: Sequence[Change], tables: Table, constants: Table, first_row: int = 0
+) -> None:
+    """Change the cells of ``tables`` ``(rows, 4, K, count)``, one for each change, in place.
+
+    ``constants`` ``(rows, 4, count)`` is the right table with all joint variables 0. Both may begin
+    with another than the table's ``first_row``.
+    """
+    changed = [(k, change.cell) for k, change in enumerate(changes) if change.cell is not None]
+    if changed:
+        rows, columns = (
+            [cell.row - first_row for _, cell in changed],
+            [cell.column for _, cell in changed],
+        )
+        factors = np.array([[cell.factor - 1.0] for _, cell in changed])
+        offsets = np.array([[cell.offset] for _, cell in changed])
+        added = factors * constants[rows, columns] + offsets
+        tables[rows, columns, [k for k, _ in changed]] += added

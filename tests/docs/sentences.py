@@ -1,0 +1,349 @@
+"""The page of all sentences that a student can meet, each with an example: docs/sentences.md.
+
+``python -m tests.docs.sentences > docs/sentences.md`` writes it anew. Examples are those of
+docs/messages.md and of ``sentence_examples.toml``, the answers tried in the exercise files, and the
+corpus of formulas. Each is handed in; a sentence goes on the page with the first that draws it.
+"""
+
+import sys
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, Final
+
+from service.catalogue import Exercise, load_catalogue, shipped_folder
+from service.expressions import AngleUnit, ExpressionError, Vocabulary, read
+from service.grading import FeedbackLevel, Submission, grade
+from service.grading.reading.preview import preview_pasted
+from service.grading.report import Feedback, Place, messages_of
+from tests.docs import test_message_codes as messages_page
+from tests.docs.codes import sources
+from tests.docs.templates import Template, templates_in
+from tests.expressions.corpus_files import ROBOT, cases, repair_cases, repairs
+from tests.grading.support.robots import COLUMNS, EXACT, STANFORD
+from tests.grading.support.submitting import table
+
+ROOT: Final = Path(__file__).parents[2]
+EXAMPLES: Final = Path(__file__).with_name("sentence_examples.toml")
+_READING: Final = ("expressions/", "grids/", "grading/")
+# Strings of two words that are no part of a message.
+_NO_SENTENCES: Final = frozenset(
+    {
+        "CSV with semicolons", "rows with semicolons", "drawn matrix", "Judged | None",
+        "GivenMotion | None", "Reread | None", "end effector", "joint variable", "not applicable",
+        "see above", "turns in steps",
+        "exercise … has no part …; it has …", "exercise … has no part …", "exercise … has no robot",
+        "part … has no formulas",
+    }
+)  # fmt: skip
+# The end of a line in an answer.
+END: Final = " ↵ "
+_LONGEST: Final = 240
+
+
+@dataclass(frozen=True)
+class Said:
+    """A message that an example draws: its code and sentence, the correction, what is answered."""
+
+    code: str
+    sentence: str
+    correction: str
+    where: str
+    answer: str
+
+
+@dataclass(frozen=True)
+class Example:
+    """Answers to parts of an exercise."""
+
+    exercise: str
+    answers: Mapping[str, Any]
+    angle_unit: AngleUnit = "radians"
+
+
+# --- the examples
+
+
+def formulas() -> Iterator[str]:
+    """Formulas for the robot of docs/expressions.md."""
+    for line in messages_page.LINES:
+        if line.section in (messages_page.UNREAD, messages_page.NOTED) and line.example:
+            yield line.example[0]
+    yield from _written()["formulas"]
+    for name in repairs():
+        yield from (case.text for case in repair_cases(name) if isinstance(case.text, str))
+    yield from (case.text for case in cases("errors"))
+
+
+def pasted_texts() -> Iterator[str]:
+    """Tables and matrices pasted for the planar RR arm."""
+    sections = (messages_page.PASTED_UNREAD, messages_page.PASTED_NOTED)
+    for line in messages_page.LINES:
+        if line.section in sections and line.example:
+            yield line.example[0].replace(END, "\n")
+    for text in _written()["pasted"]:
+        yield text if isinstance(text, str) else text["text"] * text["times"]
+
+
+def answers(catalogue: Mapping[str, Exercise]) -> Iterator[Example]:
+    """Answers to parts of exercises."""
+    for line in messages_page.LINES:
+        if line.example and (found := _of_the_page(line)):
+            yield found
+    for each in _written()["answers"]:
+        unit = each.get("angle_unit", "radians")
+        yield Example(each["exercise"], {each["part"]: each["answer"]}, unit)
+    for exercise in catalogue.values():
+        for check in exercise.checks:
+            yield Example(exercise.id, check.answers, check.angle_unit)
+
+
+def _of_the_page(line: messages_page.Line) -> Example | None:
+    """The example of a line of docs/messages.md as an answer."""
+    match line.section, line.example:
+        case messages_page.IN_CELLS, (place, _, written):
+            row, column = place.removeprefix("row ").split(", ")
+            rows = [list(cells) for cells in EXACT.rows(STANFORD)]
+            rows[int(row) - 1][COLUMNS.index(column)] = written
+            return Example("stanford-arm", {"table": table(rows)})
+        case messages_page.SINGLE, (right, written):
+            matrix = [["c12", "-s12", "0", "a1 c1 + a2 c12"], ["s12", "c12", "0", "a1 s1 + a2 s12"]]
+            matrix += [["0", "0", "1", "0"], ["0", "0", "0", "1"]]
+            matrix[0][matrix[0].index(right)] = written
+            return Example("planar-rr", {"pose": matrix})
+        case "Slips behind a pose" | "Positions", (answer,):
+            return Example("planar-rr", {"position": answer})
+        case "Angles", (answer,):
+            return Example("spherical-wrist", {"zyz": answer})
+        case "Screws", (answer,):
+            part = "body-screws" if line.code == "space_for_body" else "space-screws"
+            middle = "L1 + L2" if part == "body-screws" else "0"
+            axes = [["0", "0", "1", "0", middle, "0"], ["0", "0", "0", "1", "0", "0"]]
+            axes.append(answer.strip("[]").split(", "))
+            return Example("planar-rpr-poe", {part: axes})
+    return None
+
+
+def _made() -> dict[str, Exercise]:
+    """The exercises that are made for some of the examples."""
+    with TemporaryDirectory() as folder:
+        for name, text in _written()["made"].items():
+            head = f'title = "{name}"\nsource = "made"\nstatement = "Made for this page."\n'
+            (Path(folder) / f"{name}.toml").write_text(head + text, encoding="utf-8")
+        return dict(load_catalogue(Path(folder)))
+
+
+def _written() -> dict[str, Any]:
+    written: dict[str, Any] = tomllib.loads(EXAMPLES.read_text("utf-8").replace(END, "\\n"))
+    return written
+
+
+# --- what they draw
+
+
+def said_of_formulas(texts: Iterable[str], vocabulary: Vocabulary = ROBOT) -> Iterator[Said]:
+    """The error or the notes on each formula."""
+    for text in texts:
+        try:
+            found = [(note.code, note.message, "") for note in read(text, vocabulary).notes]
+        except ExpressionError as error:
+            found = [(error.code, error.message, error.suggestion or "")]
+        for code, sentence, suggestion in found:
+            yield Said(code, sentence, suggestion, "", text)
+
+
+def said_of_pasted(texts: Iterable[str], exercise: Exercise) -> Iterator[Said]:
+    """The error or the notes on each pasted text, in the preview."""
+    for text in texts:
+        for part in ("table", "links", "pose"):
+            preview = preview_pasted(text, exercise, part)
+            found = [(note.code, note.message) for note in preview.notes]
+            if preview.problem:
+                found.append((preview.problem.code, preview.problem.message))
+            for code, sentence in found:
+                yield Said(code, sentence, "", f"{exercise.id}, {part}", text)
+
+
+def said_of_answers(
+    examples: Iterable[Example], catalogue: Mapping[str, Exercise]
+) -> Iterator[Said]:
+    """The messages on each answer."""
+    for example in examples:
+        submission = Submission(example.answers, example.angle_unit, FeedbackLevel.FULL)
+        unit = ", in degrees" if example.angle_unit == "degrees" else ""
+        for part in grade(catalogue[example.exercise], submission).parts:
+            for message, places, _ in messages_of(part):
+                yield Said(
+                    message.code,
+                    message.message,
+                    _correction(message),
+                    f"{example.exercise}, {part.part}{unit}{_place(places)}",
+                    shown(example.answers[part.part]),
+                )
+
+
+def _correction(message: Feedback) -> str:
+    given = [message.correction, *(place.correction for place in message.places or ())]
+    texts = [each.text for each in given if each]
+    return texts[0] if texts else message.suggestion or ""
+
+
+def _place(places: tuple[Place, ...]) -> str:
+    labels = [f"{each.row}/{each.cell}" if each.cell else f"row {each.row}" for each in places[:3]]
+    more = " …" if len(places) > 3 else ""
+    return f": {', '.join(labels)}{more}" if labels else ""
+
+
+def shown(answer: Any) -> str:
+    """An answer as short text: rows with semicolons, values with commas."""
+    match answer:
+        case {"rows": [*rows], **rest}:
+            head = "".join(f"{name}: {value}; " for name, value in rest.items())
+            return head + "; ".join(map(shown, rows))
+        case {"a": a, "alpha": alpha, "d": d, "theta": theta, **rest}:
+            row = ", ".join(map(shown, (a, alpha, d, theta)))
+            return f"{row}, {shown(rest)}" if rest else row
+        case dict():
+            return ", ".join(f"{name}: {shown(value)}" for name, value in answer.items())
+        case list() if any(isinstance(each, list | dict) for each in answer):
+            return "; ".join(map(shown, answer))
+        case list():
+            return ", ".join(map(shown, answer))
+        case bool():
+            return str(answer).lower()
+    return str(answer)
+
+
+# --- which go on the page
+
+# A template, and the codes that its file tells; none where the file has words for others.
+Known = tuple[Template, frozenset[str]]
+
+
+def known_templates() -> list[Known]:
+    """The templates of the files that read, judge and explain."""
+    codes: dict[str, set[str]] = {}
+    for use in messages_page.program():
+        codes.setdefault(use.file, set()).add(use.code)
+    files = sources(ROOT / "service")
+    telling = {file: text for file, text in files.items() if file.startswith(_READING)}
+    return [
+        (template, frozenset(codes.get(template.file, ())))
+        for template in templates_in(telling)
+        if template.text not in _NO_SENTENCES
+    ]
+
+
+def all_said() -> Iterator[Said]:
+    """All that the examples draw."""
+    catalogue = {**load_catalogue(shipped_folder()), **_made()}
+    yield from said_of_formulas(formulas())
+    yield from said_of_pasted(pasted_texts(), catalogue["planar-rr"])
+    yield from said_of_answers(answers(catalogue), catalogue)
+
+
+@dataclass(frozen=True)
+class Row:
+    """A line of the page, and the section of docs/messages.md that has its code."""
+
+    section: str
+    said: Said
+
+
+def chosen(said: Iterable[Said], known: Iterable[Known]) -> tuple[list[Row], list[Template]]:
+    """The first message with each template, and the templates that none has.
+
+    A short template may stand in many sentences; unless it begins one, it is met only by a message
+    of its own file.
+    """
+    unmet = list(known)
+    rows: list[Row] = []
+    for each in dict.fromkeys(said):
+        text = f"{each.sentence}\n{each.correction}"
+        met = [
+            (template, codes)
+            for template, codes in unmet
+            if template.is_met_by(text)
+            and (
+                template.is_telling
+                or not codes
+                or each.code in codes
+                or template.begins(each.sentence)
+            )
+        ]
+        if met:
+            rows.append(Row(_section([template for template, _ in met]), each))
+            unmet = [one for one in unmet if one not in met]
+    return rows, [template for template, _ in unmet]
+
+
+def _section(met: Iterable[Template]) -> str:
+    for template in met:
+        for sections, files in messages_page.PLACES:
+            if template.file.startswith(files):
+                return sections[0]
+    return _SHARED
+
+
+# --- the page
+
+_SHARED: Final = "Words of several messages"
+_HEAD: Final = """\
+# Sentences
+
+Every sentence that a student can meet, once, with an answer that draws it. [Messages](messages.md)
+says what each code means. Behind the arrow stands the repaired text of what cannot be read, or else
+the correction, which is told at the level `full` only. ↵ stands for the end of a line. Formulas
+without an exercise are for the robot of [What you may type](expressions.md).
+
+This page is generated: `python -m tests.docs.sentences > docs/sentences.md`."""
+_UNMET: Final = """\
+## Without an example
+
+These have none yet; … stands for what is put in."""
+
+
+def page() -> str:
+    """The whole page, in Markdown."""
+    rows, unmet = chosen(all_said(), known_templates())
+    sections = [sections[0] for sections, _ in messages_page.PLACES]
+    blocks = [_HEAD]
+    for section in [*sections, _SHARED]:
+        lines = [row.said for row in rows if row.section == section]
+        if lines:
+            order = list(dict.fromkeys(each.code for each in lines))
+            lines.sort(key=lambda each: order.index(each.code))
+            table = "\n".join(["| Code | Answer | Sentence |", "|---|---|---|", *map(_line, lines)])
+            blocks.append(f"## {section}\n\n{table}")
+    if unmet:
+        blocks.append(_UNMET)
+        blocks.append("\n".join(f"- {_cell(each.text)} ({each.file})" for each in unmet))
+    return "\n\n".join(blocks) + "\n"
+
+
+def _line(said: Said) -> str:
+    correction = f" → {_code(said.correction)}" if said.correction else ""
+    where = f"{said.where}: " if said.where else ""
+    return f"| `{said.code}` | {where}{_code(said.answer)} | {_cell(said.sentence)}{correction} |"
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|").replace("\n", "↵").replace("<", "&lt;")
+
+
+def _code(text: str) -> str:
+    """A text as code, whatever it holds; a long one without its middle."""
+    text = text.replace("\n", END)
+    if len(text) > _LONGEST:
+        text = f"{text[: _LONGEST // 2]} … {text[-_LONGEST // 4 :]}"
+    text = "".join(each if each.isprintable() else f"U+{ord(each):04X}" for each in text)
+    fence = "``" if "`" in text else "`"
+    blank = " " if "`" in text or not text.strip() else ""
+    text = text.replace("|", "\\|")
+    return f"{fence}{blank}{text}{blank}{fence}"
+
+
+if __name__ == "__main__":
+    sys.stdout.write(page())

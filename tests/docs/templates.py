@@ -1,0 +1,101 @@
+"""Finds the sentences of the messages that the program may give, by reading its source.
+
+A template is a string of two words or more in the code that reads, judges or explains; in an
+f-string each value that is put in is a gap. Texts for programmers (docstrings, patterns, the
+reasons of a ValueError) are none.
+"""
+
+import ast
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+GAP: Final = "…"
+# The exceptions whose texts no student reads.
+_FOR_PROGRAMMERS: Final = {"ValueError", "TypeError", "RuntimeError", "UnknownPartError"}
+_PATTERN: Final = re.compile(r"\\|\(\?|\[\^|\]\+|\)\*|\[A-Z|</?m|[\[(|].*\|")
+# What is put in later: {name}, or {…:in other words} where the first is put in at once.
+_FIELD: Final = re.compile(r"\{\w+\}|\{…(?::[^{}]*)?\}")
+_WORD: Final = re.compile(r"[^\W\d_]{2,}")
+
+
+@dataclass(frozen=True, slots=False)
+class Template:
+    """The constant pieces of a sentence, in order, and the file in which it stands."""
+
+    pieces: tuple[str, ...]
+    file: str
+
+    @property
+    def text(self) -> str:
+        """The sentence with a mark for each gap."""
+        return GAP.join(self.pieces).strip()
+
+    @property
+    def is_telling(self) -> bool:
+        """Whether it is long enough to be known by itself."""
+        return len(_WORD.findall(self.text)) > 4
+
+    def begins(self, sentence: str) -> bool:
+        """Whether the sentence begins with it, and not with what stands in a gap."""
+        return bool(self.pieces[0].strip()) and self._pattern.match(sentence) is not None
+
+    def is_met_by(self, text: str) -> bool:
+        """Whether the sentence stands somewhere in a text, with something in each gap."""
+        return self._longest in text and self._pattern.search(text) is not None
+
+    @cached_property
+    def _longest(self) -> str:
+        return max(self.pieces, key=len).strip()
+
+    @cached_property
+    def _pattern(self) -> re.Pattern[str]:
+        pieces = [re.escape(piece) for piece in GAP.join(self.pieces).strip().split(GAP)]
+        return re.compile(".*?".join(pieces), re.DOTALL)
+
+
+def templates_in(files: Mapping[str, str]) -> list[Template]:
+    """The templates of these files, by their names, in order and each once for a file."""
+    found = [
+        Template(pieces, file)
+        for file, text in files.items()
+        for pieces in _pieces(ast.parse(text))
+        if _is_prose(pieces)
+    ]
+    return list(dict.fromkeys(found))
+
+
+def _is_prose(pieces: tuple[str, ...]) -> bool:
+    text = " ".join(pieces)
+    return len(_WORD.findall(text)) > 1 and " " in text.strip() and not _PATTERN.search(text)
+
+
+def _pieces(tree: ast.AST) -> Iterator[tuple[str, ...]]:
+    """The strings below a node, each in the pieces between its gaps."""
+    for node in ast.iter_child_nodes(tree):
+        match node:
+            case ast.Expr(value=ast.Constant()):  # a docstring
+                continue
+            case ast.Raise(exc=ast.Call(func=ast.Name(name))) if name in _FOR_PROGRAMMERS:
+                continue
+            case ast.Assert():
+                continue
+            case ast.Constant(value=str(text)):
+                yield _with_gaps([text])
+            case ast.JoinedStr(values=values):
+                pieces = [""]
+                for value in values:
+                    if isinstance(value, ast.Constant):
+                        pieces[-1] += str(value.value)
+                    else:
+                        pieces.append("")
+                        yield from _pieces(value)
+                yield _with_gaps(pieces)
+                continue
+        yield from _pieces(node)
+
+
+def _with_gaps(pieces: Iterable[str]) -> tuple[str, ...]:
+    return tuple(_FIELD.sub(GAP, GAP.join(pieces)).split(GAP))

@@ -1,0 +1,120 @@
+"""A thousand spellings with their meaning beside each, written by hand.
+
+The meaning is plain arithmetic, evaluated by ``reference``, which shares nothing with the program.
+The files of ``corpus/spellings`` are sorted by the program or habit that a spelling comes from. The
+other files of ``corpus`` are read by ``test_corpus``.
+"""
+
+from collections.abc import Callable
+from random import Random
+
+import numpy as np
+import pytest
+
+from service.expressions import ExpressionError, Symbol, Vocabulary, read
+from tests.expressions.corpus_files import ROBOT, SpellingCase, cases, names, spelling_cases
+from tests.expressions.reference import worth
+
+CASES = spelling_cases()
+READ = [case for case in CASES if not case.refused]
+REFUSED = [case for case in CASES if case.refused]
+DRAWS = 3
+# Of the useful spellings, fewer than this share is refused.
+MOST_REFUSED = 0.03
+LEAST_SPELLINGS = 1000
+
+
+def _values(seed: int) -> dict[str, float]:
+    """A value for each symbol, by the names that meanings use; positive, so that roots exist."""
+    random = Random(seed)
+    return {
+        alias: random.uniform(0.2, 0.9)
+        for symbol in ROBOT.symbols
+        for alias in (symbol.aliases or (symbol.name,))
+    } | {"d3": random.uniform(0.2, 0.9)}
+
+
+def _means(text: str, meaning: str) -> None:
+    for seed in range(DRAWS):
+        known = _values(seed)
+        values = {
+            symbol.name: np.array([known.get(symbol.name) or known[symbol.aliases[0]]])
+            for symbol in ROBOT.symbols
+        }
+        found = np.ravel(read(text, ROBOT).evaluate(values))
+        assert found == pytest.approx([worth(meaning, known)], rel=1e-9, abs=1e-12), text
+
+
+def _ids(found: list[SpellingCase]) -> list[str]:
+    return [case.place for case in found]
+
+
+@pytest.mark.parametrize("case", READ, ids=_ids(READ))
+def test_a_spelling_is_read_as_it_is_meant(case: SpellingCase) -> None:
+    _means(case.text, case.meaning)
+
+
+@pytest.mark.parametrize("case", REFUSED, ids=_ids(REFUSED))
+def test_a_useful_spelling_that_is_refused_has_a_repair_that_keeps_its_meaning(
+    case: SpellingCase,
+) -> None:
+    with pytest.raises(ExpressionError) as caught:
+        read(case.text, ROBOT)
+    assert caught.value.suggestion is not None, caught.value.message
+    _means(caught.value.suggestion, case.meaning)
+
+
+def test_few_useful_spellings_are_refused(figure: Callable[[str], None]) -> None:
+    plain = [case.text for name in names() for case in cases(name)]
+    total = len({*plain, *(case.text for case in CASES)})
+    assert len({case.text for case in CASES}) == len(CASES)
+    share = len(REFUSED) / total
+    figure(f"{total} useful spellings, {len(REFUSED)} refused with a repair ({share:.1%})")
+    assert total >= LEAST_SPELLINGS
+    assert share < MOST_REFUSED
+
+
+# Names of one letter, of which a text may be a product by accident.
+LETTERS = Vocabulary(
+    [
+        *ROBOT.symbols,
+        *(Symbol(name, "length") for name in ("a", "b", "l", "h", "c", "s")),
+        Symbol("n", "number"),
+    ]
+)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("a_b", "l_h", "l1_h", "a_{b}", "l_{h}", "l_{1h}", "l_{h1}", "l₁ₕ", "h_beta", "l_{c1}"),
+        *("a_c1", "a_theta1", "l_{\\theta_1}", "theta1_theta2", "s_c", "c_beta", "a_pi", "a_deg"),
+        *("sgn(n)", "sign(n)", "acosh(n)", "cosh(n)", "sinh n", "max(a, b)", "log n", "abs_n_b"),
+        *("ArcTan(l1, l2)", "arctan(a, b)", "sin2a", "2^3^2", "sin^-1(n)", "lambda: 0"),
+    ],
+)
+def test_no_text_is_a_product_by_accident(text: str) -> None:
+    with pytest.raises(ExpressionError) as caught:
+        read(text, LETTERS)
+    if caught.value.suggestion is not None:
+        assert text in {"ArcTan(l1, l2)", "arctan(a, b)", "sin2a", "sin^-1(n)"}
+
+
+@pytest.mark.parametrize(
+    ("text", "meaning", "notes"),
+    [
+        ("ab", "a*b", []),
+        ("lh", "l*h", []),
+        ("a b", "a*b", []),
+        ("l_1h", "l1*h", []),
+        ("lc1", "l*cos(theta1)", []),
+        ("cbeta", "c*beta", ["shorthand"]),
+        ("sβ", "s*beta", ["shorthand"]),
+        ("a/bc", "a/b*c", ["division_then_product"]),
+        ("A b", "a*b", ["letter_case"]),
+    ],
+)
+def test_a_product_that_is_meant(text: str, meaning: str, notes: list[str]) -> None:
+    expression = read(text, LETTERS)
+    assert expression.text() == meaning
+    assert [note.code for note in expression.notes] == notes

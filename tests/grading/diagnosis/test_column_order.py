@@ -1,0 +1,105 @@
+"""Tables without headers with their columns in another order."""
+
+from collections.abc import Mapping, Sequence
+from itertools import permutations
+
+import pytest
+
+from service.catalogue import Exercise
+from service.grading import PartReport
+from service.grading.report import messages_of
+from tests.grading.support.submitting import handed_in, part
+
+SYMBOLS = ("a", "α", "d", "θ")
+SCARA = [
+    ("a1", "0", "0", "theta1"),
+    ("a2", "180deg", "0", "theta2"),
+    ("0", "0", "d3", "0"),
+    ("0", "0", "d4", "theta4"),
+]
+# In the other columns too little stands to tell them apart.
+RRRP = [
+    ("l2", "0", "l1", "q1"),
+    ("l3", "180deg", "0", "q2"),
+    ("0", "0", "l4", "q3"),
+    ("0", "0", "q4", "0"),
+]
+BAXTER = [
+    ("0.069", "-90deg", "0.27035", "theta1"),
+    ("0", "90deg", "0", "theta2 + 90deg"),
+    ("0.069", "-90deg", "0.36435", "theta3"),
+    ("0", "90deg", "0", "theta4"),
+    ("0.010", "-90deg", "0.37429", "theta5"),
+    ("0", "90deg", "0", "theta6"),
+    ("0", "0", "0.229525", "theta7"),
+]
+TOOLBOX, CRAIG = (3, 2, 0, 1), (1, 0, 2, 3)
+
+
+def in_order(rows: Sequence[Sequence[str]], order: Sequence[int]) -> list[list[str]]:
+    return [[row[column] for column in order] for row in rows]
+
+
+def graded(exercise: Exercise, answer: object) -> PartReport:
+    return part(handed_in(exercise, {"table": answer}), "table")
+
+
+def told(report: PartReport) -> list[str]:
+    return [message.code for message, _, _ in messages_of(report) if message.severity == "error"]
+
+
+@pytest.mark.parametrize("order", [TOOLBOX, CRAIG])
+@pytest.mark.parametrize(
+    ("name", "rows"), [("scara", SCARA), ("rrrp", RRRP), ("baxter-left-arm", BAXTER)]
+)
+def test_the_orders_of_other_books(
+    catalogue: Mapping[str, Exercise],
+    name: str,
+    rows: Sequence[Sequence[str]],
+    order: Sequence[int],
+) -> None:
+    written = in_order(rows, order)
+    pasted = "\n".join(", ".join(row) for row in written)
+    for answer in (
+        written,
+        {"rows": written},
+        pasted,
+        [[i + 1, *r] for i, r in enumerate(written)],
+    ):
+        report = graded(catalogue[name], answer)
+        assert told(report) == ["columns_permuted"]
+        assert report.points == 0.75 * report.max_points
+        [message] = [each for each in report.feedback if each.code == "columns_permuted"]
+        assert f"the order {', '.join(SYMBOLS[column] for column in order)}." in message.message
+        # The note that they were read as a, α, d, θ would contradict it.
+        assert [each.code for each in report.feedback].count("column_order") == 0
+
+
+@pytest.mark.parametrize("order", [order for order in permutations(range(4)) if order[3] != 3])
+def test_every_order_that_moves_the_angles_is_told(
+    catalogue: Mapping[str, Exercise], order: tuple[int, ...]
+) -> None:
+    report = graded(catalogue["rrrp"], in_order(RRRP, order))
+    assert told(report) in (["columns_permuted"], ["columns_swapped"])
+    assert report.points == 0.75 * report.max_points
+
+
+def test_one_more_slip_is_told_in_its_own_column(catalogue: Mapping[str, Exercise]) -> None:
+    rows = [list(row) for row in BAXTER]
+    rows[2][1] = "90deg"
+    report = graded(catalogue["baxter-left-arm"], in_order(rows, TOOLBOX))
+    assert sorted(told(report)) == ["columns_permuted", "sign"]
+    assert report.points < 0.75 * report.max_points
+
+
+def test_columns_with_names_are_taken_by_their_names(catalogue: Mapping[str, Exercise]) -> None:
+    names = ("a", "alpha", "d", "theta")
+    rows = [dict(zip(names, row, strict=True)) for row in in_order(SCARA, TOOLBOX)]
+    assert "columns_permuted" not in told(graded(catalogue["scara"], rows))
+
+
+def test_a_right_table_and_one_wrong_cell_are_left_alone(catalogue: Mapping[str, Exercise]) -> None:
+    assert told(graded(catalogue["scara"], in_order(SCARA, range(4)))) == []
+    rows = [list(row) for row in SCARA]
+    rows[1][1] = "0"
+    assert "columns_permuted" not in told(graded(catalogue["scara"], rows))

@@ -1,0 +1,123 @@
+"""All link transforms of an arm in one text: which is which, and what cannot be read."""
+
+from collections.abc import Mapping
+
+import pytest
+
+from service.catalogue import Exercise
+from service.grading import PartReport, Verdict
+from service.grading.reading.preview import preview_pasted
+from tests.grading.support.exercise_texts import all_codes
+from tests.grading.support.submitting import cell, codes, full_marks, handed_in, part
+
+A1 = "[c1 -s1 0 a1*c1; s1 c1 0 a1*s1; 0 0 1 0; 0 0 0 1]"
+A2 = "[c2 -s2 0 a2*c2; s2 c2 0 a2*s2; 0 0 1 0; 0 0 0 1]"
+
+
+@pytest.fixture
+def arm(catalogue: Mapping[str, Exercise]) -> Exercise:
+    """Two turning joints, and the tool in the frame of the second link."""
+    return catalogue["planar-rr"]
+
+
+def pasted(arm: Exercise, answer: object) -> PartReport:
+    return part(handed_in(arm, {"links": answer}), "links")
+
+
+@pytest.mark.parametrize(
+    ("text", "notes"),
+    [
+        (f"A1 = {A1}\nA2 = {A2}", set()),
+        (f"{A1}\n{A2}", set()),
+        (f"A2 = {A2}; A1 = {A1};", {"matrix_order"}),
+        (f"A0 = {A1}\nA1 = {A2}", {"matrix_names"}),
+        (f"A1 = {A1}\nA2 = {A2}\nT = {A1}", {"matrix_left_aside"}),
+        (f"T01 = {A1}\nT12 = {A2}\nT02 = {A1}", {"matrix_left_aside"}),
+        (f"A1 = {A1}\n{A2}", set()),
+        (f"T = {A1}\nR = {A2}", set()),
+    ],
+)
+def test_full_marks_with_a_note_where_the_order_is_another(
+    text: str, notes: set[str], arm: Exercise
+) -> None:
+    report = pasted(arm, text)
+    assert full_marks(report), report
+    assert all_codes(report) == notes | {"blank_before_sign"}
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "marked"),
+    [
+        (f"A1 = {A1}\nA1 = {A2}", "duplicate_matrix", "A1"),
+        (f"A1 = {A1}\nA7 = {A2}", "unknown_matrix", "A7"),
+        (f"A1 = {A1}\nT = {A2}\nB = {A2}", "unknown_matrix", "B"),
+        (f"{A1}\n{A2}\n{A1}", "wrong_shape", A1[1:-1]),
+        ("see the attached file", "wrong_shape", "see the attached file"),
+        (f"A1 = {A1[:-1]}\nA2 = {A2}", "unbalanced_bracket", "["),
+    ],
+)
+def test_what_cannot_be_told_is_refused(text: str, code: str, marked: str, arm: Exercise) -> None:
+    report = pasted(arm, text)
+    [feedback] = report.feedback
+    assert (report.verdict, feedback.code) == (Verdict.UNREADABLE, code)
+    assert feedback.span is not None
+    assert text[slice(*feedback.span)] == marked
+
+
+def test_one_matrix_that_cannot_be_read_costs_itself(arm: Exercise) -> None:
+    for answer in (f"A1 = {A1}\nA2 = {A2}'", [A1, f"{A2}'"]):
+        report = pasted(arm, answer)
+        assert [row.verdict for row in report.rows] == (
+            [Verdict.CORRECT] * 4 + [Verdict.UNREADABLE] * 4
+        )
+        assert codes(cell(report, "A2.1", "1")) == ["text_around"]
+        assert codes(cell(report, "A2.1", "2")) == []
+        assert 0 < report.points < report.max_points
+
+
+def test_a_matrix_of_another_size_costs_itself(arm: Exercise) -> None:
+    report = pasted(arm, f"A1 = {A1}\nA2 = [1 2; 3 4]")
+    assert codes(cell(report, "A2.1", "1")) == ["wrong_shape"]
+    assert report.rows[0].verdict is Verdict.CORRECT
+
+
+def test_a_matrix_that_is_not_there_is_missing(arm: Exercise) -> None:
+    report = pasted(arm, f"A2 = {A2}")
+    assert [row.verdict for row in report.rows] == [Verdict.MISSING] * 4 + [Verdict.CORRECT] * 4
+
+
+def test_nothing_pasted_is_missing(arm: Exercise) -> None:
+    assert pasted(arm, " \n").verdict is Verdict.MISSING
+
+
+def test_a_span_is_a_place_in_the_whole_text(arm: Exercise) -> None:
+    text = f"A1 = {A1}\nA2 = {A2.replace('a2*s2', 'foo')}"
+    [feedback] = cell(pasted(arm, text), "A2.2", "4").feedback
+    assert feedback.span is not None
+    assert text[slice(*feedback.span)] == "foo"
+
+
+def test_the_preview_has_the_rows_of_the_report(arm: Exercise) -> None:
+    text = f"A2 = {A2}\nA1 = {A1}"
+    shown = preview_pasted(text, arm, "links")
+    assert shown.ok
+    assert [row[0].row for row in shown.rows] == [row.label for row in pasted(arm, text).rows]
+    assert [row[0].typed for row in shown.rows] == ["c1", "s1", "0", "0", "c2", "s2", "0", "0"]
+    assert "matrix_order" in {note.code for note in shown.notes}
+
+
+def test_the_preview_tells_what_cannot_be_read(arm: Exercise) -> None:
+    [*rows, last] = preview_pasted(f"A1 = {A1}\nA2 = {A2}'", arm, "links").rows
+    assert len(rows) == 4
+    assert [(each.row, each.problem.code) for each in last if each.problem] == [
+        ("A2", "text_around")
+    ]
+    problem = preview_pasted(f"A1 = {A1}\nA1 = {A2}", arm, "links").problem
+    assert problem is not None
+    assert problem.code == "duplicate_matrix"
+
+
+def test_a_note_on_the_reading_is_told_once(arm: Exercise) -> None:
+    report = pasted(arm, f"A1 = {A1}\nA2 = {A2}")
+    told = [code for row in report.rows for each in row.cells for code in codes(each)]
+    assert told == ["blank_before_sign"]
