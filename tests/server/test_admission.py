@@ -193,6 +193,18 @@ def test_costly_requests_wait_for_many_small_ones() -> None:
     run(story())
 
 
+def test_whoever_owes_waits_until_others_are_heard_even_where_nobody_waits() -> None:
+    async def story() -> None:
+        inner = Application(lambda scope: busy(0.02 if scope["client"][0] == "attacker" else 0.0))
+        app = FairAdmission(inner)
+        await asyncio.gather(*begin(app, Client("attacker")))
+        await passes(5)
+        await asyncio.gather(*begin(app, Client("attacker"), Client("honest")))
+        assert inner.served == ["attacker", "honest", "attacker"]
+
+    run(story())
+
+
 @pytest.mark.usefixtures("alike")
 def test_beyond_its_queue_a_client_is_told_to_come_again() -> None:
     async def story() -> None:

@@ -46,7 +46,7 @@ def test_those_of_whom_there_are_most_make_room_the_longest_waiting_first(
     loop: asyncio.AbstractEventLoop,
 ) -> None:
     crowd = Crowd(Room(connections=16))
-    honest = [Line("a", 0.0), Line("b", 1.0)]
+    honest = [Line("a", 0.0), Line("b", 25.0)]
     many = [Line("c", float(20 - i)) for i in range(14)]
     for line in [*honest, *many]:
         assert crowd.enter(line, loop)
