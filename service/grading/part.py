@@ -13,6 +13,9 @@ from service.grading.report import Feedback, Place, RowReport, Verdict
 from service.grading.samples import Samples
 from service.kinematics.transforms import Matrices, inverse
 
+# So many entries show how a student names symbols.
+NAMING_ENTRIES = 4
+
 
 @dataclass(frozen=True, slots=True)
 class StudentChain:
@@ -69,14 +72,26 @@ class Grading:
         return spelling_of(typed, self.exercise.vocabulary, degrees=degrees)
 
     def symbol_names(self, entries: Iterable[Entry]) -> Callable[[str], str]:
-        """The names of symbols as the entries of a part have them, found when one is asked for."""
-        spelling = cache(lambda: self.spelling(entries))
+        """The names of symbols as the entries of a part have them, found when one is asked for.
+
+        The shortest entries show them as well as the longest, for less work.
+        """
+
+        @cache
+        def spelling() -> Spelling:
+            read = [each for each in entries if each.expression and each.expression.symbols]
+            return self.spelling(sorted(read, key=_length)[:NAMING_ENTRIES])
+
         return lambda symbol: spelling().names.get(symbol, symbol)
 
     @property
     def corrects(self) -> bool:
         """Whether corrections are told, so that they need to be worked out."""
         return self.level is FeedbackLevel.FULL
+
+
+def _length(entry: Entry) -> int:
+    return len(entry.expression.source) if entry.expression else 0
 
 
 def _no_chain() -> StudentChain | None:

@@ -13,7 +13,7 @@ class GridLimits:
     The reader of expressions bounds the length of a cell, for a long cell costs only itself.
     """
 
-    characters: int = 24 * 1024
+    characters: int = 26 * 1024
     rows: int = 13
     columns: int = 12
     separators: int = 1024

@@ -217,8 +217,7 @@ def _unwrap_call(source: SourceText, call: re.Match[str], calls: int) -> Written
     if name not in MAKERS or not calls:
         raise GridError(
             "unknown_call",
-            f"What {call[1]}(…) makes of this matrix is not worked out here; "
-            "paste the finished matrix itself.",
+            f"`{call[1]}(…)` of a matrix is not worked out here. Paste the result.",
             source.span(0, len(call[1])),
         )
     opened = source.text.index("(")
@@ -246,10 +245,9 @@ def text_around(piece: SourceText) -> GridError:
     """The error for text around the matrix that may change its meaning."""
     piece = piece.strip()
     first = piece.text.split("\n", 1)[0][:30]
-    text = first if first.isprintable() else "what stands here"
+    text = f"`{first}`" if first.isprintable() else "An invisible character"
     return GridError(
         "text_around",
-        f"Only one matrix or table is read; {text!r} next to it was not understood. "
-        "Paste the matrix alone, worked out.",
+        f"{text} stands next to the matrix and may change it. Paste the matrix alone, worked out.",
         piece.span(0, len(piece.text)),
     )

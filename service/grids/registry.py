@@ -19,6 +19,9 @@ FORMATS: Final[tuple[GridFormat, ...]] = (
 
 _SEPARATORS: Final = (*",;&|│┃║\t\n\r\x85\u2028\u2029", "<t", "<T", "\\\\")
 
+# LaTeX's thin space, by which factors are parted.
+_THIN_SPACE: Final = "\\,"
+
 
 def read_grid(text: str) -> Grid:
     """The grid in a pasted text. Raises GridError, and nothing else, whatever the text.
@@ -42,7 +45,7 @@ def pasted_source(text: str, *, named: bool = False) -> SourceText:
     source = SourceText.of(text).strip("\ufeff")
     if not source.text.strip():
         raise GridError("empty", "Nothing is written here.", (0, len(text)))
-    if sum(map(text.count, _SEPARATORS)) > GRID_LIMITS.separators:
+    if sum(map(text.count, _SEPARATORS)) - text.count(_THIN_SPACE) > GRID_LIMITS.separators:
         raise GridError(
             "too_many_cells",
             f"This has more than {GRID_LIMITS.separators} commas, tabs, bars and line ends; "

@@ -77,6 +77,17 @@ def in_process() -> list[tuple[str, float, float | None]]:
             * 1e3,
             2.0,
         ),
+        (
+            "wrong pose of a 6-joint arm, explained by slips of its table",
+            median_of_each(
+                lambda i: grade(
+                    exercise,
+                    Submission({"pose": answers.distinct(answers.standing_still(), i, point="")}),
+                )
+            )
+            * 1e3,
+            4.0,
+        ),
         ("6-row table, the reference's frames", graded_table(answers.STANFORD), 0.4),
         ("6-row table, own frames", graded_table(answers.turned_over()), 0.4),
         ("6-row table, one slip, diagnosed", graded_table(answers.with_one_slip()), 4.0),

@@ -1,6 +1,7 @@
 """What is graded in the measurements: the Stanford arm, written as a student would."""
 
 import random
+import re
 from typing import Any
 
 Rows = list[tuple[str, str, str, str]]
@@ -74,10 +75,18 @@ def in_other_convention() -> Rows:
     ]
 
 
-def distinct(texts: list[list[str]], i: int) -> list[list[str]]:
-    """The same matrix with every text new, as no two students write alike: another zero added."""
+def standing_still() -> list[list[str]]:
+    """T_06 of an arm whose joint 2 stands still at 0."""
+    return [[re.sub(r"\bs2\b", "0", re.sub(r"\bc2\b", "1", text)) for text in row] for row in T06]
+
+
+def distinct(texts: list[list[str]], i: int, point: str = ".") -> list[list[str]]:
+    """The same matrix with every text new, as no two students write alike: another zero added.
+
+    Without a ``point`` it is a whole number, of which a wrong entry cannot be rounded.
+    """
     return [
-        [f"{text} + 0*{abs(i) + 2}.{j}{k}" for k, text in enumerate(row)]
+        [f"{text} + 0*{abs(i) + 2}{point}{j}{k}" for k, text in enumerate(row)]
         for j, row in enumerate(texts)
     ]
 

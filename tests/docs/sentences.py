@@ -31,8 +31,9 @@ _READING: Final = ("expressions/", "grids/", "grading/")
 # Strings of two words that are no part of a message.
 _NO_SENTENCES: Final = frozenset(
     {
-        "CSV with semicolons", "rows with semicolons", "Judged | None", "end effector",
-        "joint variable", "not applicable", "see above", "turns in steps",
+        "CSV with semicolons", "rows with semicolons", "drawn matrix", "Judged | None",
+        "GivenMotion | None", "Reread | None", "end effector", "joint variable", "not applicable",
+        "see above", "turns in steps",
         "exercise … has no part …; it has …", "exercise … has no part …", "exercise … has no robot",
         "part … has no formulas",
     }
@@ -112,7 +113,7 @@ def _of_the_page(line: messages_page.Line) -> Example | None:
             matrix += [["0", "0", "1", "0"], ["0", "0", "0", "1"]]
             matrix[0][matrix[0].index(right)] = written
             return Example("planar-rr", {"pose": matrix})
-        case "Positions", (answer,):
+        case "Slips behind a pose" | "Positions", (answer,):
             return Example("planar-rr", {"position": answer})
         case "Angles", (answer,):
             return Example("spherical-wrist", {"zyz": answer})
@@ -156,7 +157,7 @@ def said_of_formulas(texts: Iterable[str], vocabulary: Vocabulary = ROBOT) -> It
 def said_of_pasted(texts: Iterable[str], exercise: Exercise) -> Iterator[Said]:
     """The error or the notes on each pasted text, in the preview."""
     for text in texts:
-        for part in ("table", "pose"):
+        for part in ("table", "links", "pose"):
             preview = preview_pasted(text, exercise, part)
             found = [(note.code, note.message) for note in preview.notes]
             if preview.problem:

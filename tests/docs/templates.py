@@ -7,7 +7,7 @@ reasons of a ValueError) are none.
 
 import ast
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -16,7 +16,8 @@ GAP: Final = "…"
 # The exceptions whose texts no student reads.
 _FOR_PROGRAMMERS: Final = {"ValueError", "TypeError", "RuntimeError", "UnknownPartError"}
 _PATTERN: Final = re.compile(r"\\|\(\?|\[\^|\]\+|\)\*|\[A-Z|</?m|[\[(|].*\|")
-_FIELD: Final = re.compile(r"\{\w+\}")
+# What is put in later: {name}, or {…:in other words} where the first is put in at once.
+_FIELD: Final = re.compile(r"\{\w+\}|\{…(?::[^{}]*)?\}")
 _WORD: Final = re.compile(r"[^\W\d_]{2,}")
 
 
@@ -51,7 +52,8 @@ class Template:
 
     @cached_property
     def _pattern(self) -> re.Pattern[str]:
-        return re.compile(".*?".join(map(re.escape, self.pieces)).strip(), re.DOTALL)
+        pieces = [re.escape(piece) for piece in GAP.join(self.pieces).strip().split(GAP)]
+        return re.compile(".*?".join(pieces), re.DOTALL)
 
 
 def templates_in(files: Mapping[str, str]) -> list[Template]:
@@ -81,7 +83,7 @@ def _pieces(tree: ast.AST) -> Iterator[tuple[str, ...]]:
             case ast.Assert():
                 continue
             case ast.Constant(value=str(text)):
-                yield tuple(_FIELD.split(text))
+                yield _with_gaps([text])
             case ast.JoinedStr(values=values):
                 pieces = [""]
                 for value in values:
@@ -90,6 +92,10 @@ def _pieces(tree: ast.AST) -> Iterator[tuple[str, ...]]:
                     else:
                         pieces.append("")
                         yield from _pieces(value)
-                yield tuple(pieces)
+                yield _with_gaps(pieces)
                 continue
         yield from _pieces(node)
+
+
+def _with_gaps(pieces: Iterable[str]) -> tuple[str, ...]:
+    return tuple(_FIELD.sub(GAP, GAP.join(pieces)).split(GAP))

@@ -19,13 +19,17 @@ _INDEX: Final = re.compile(rf"[A-Za-z0-9{greek.CLASS} _*]*")
 # An index as Word writes it in one line: θ_(1).
 _BRACKETED_INDEX: Final = re.compile(r"\(\s*([A-Za-z0-9]+)\s*\)")
 _PLAIN_INDEX: Final = re.compile(r"_[A-Za-z0-9]+")
-# Plain characters that are read otherwise than one by one.
-_NOT_AS_TYPED: Final = ("^*", " _", "_(")
+# An index that is not joined to its name by the underscore alone.
+_SPACED_INDEX: Final = re.compile(r" _|_\(")
 
 
 def normalise(source: str) -> Characters:
     """``source`` in plain characters. Raises UnreadableError for a character that is not read."""
-    if _PLAIN.fullmatch(source) and not any(part in source for part in _NOT_AS_TYPED):
+    if (
+        _PLAIN.fullmatch(source)
+        and "^*" not in source
+        and ("_" not in source or not _SPACED_INDEX.search(source))
+    ):
         return Characters(source)
     return _Normaliser(source).run()
 

@@ -2,7 +2,6 @@
 
 import re
 from dataclasses import replace
-from itertools import pairwise
 from typing import Final
 
 from service.expressions.errors import UnreadableError
@@ -41,43 +40,44 @@ class WordLexer(TokenWriter):
             if self._is_float_suffix(run, start):
                 return end
             pieces, end = self._unsplit(run, start, end)
-        if len(pieces) > 1:
-            self._note_products(run, pieces, start)
         for piece in pieces:
-            if piece.kind == "symbol":
-                a, b = self._span(start + piece.start, start + piece.end)
-                self._operand("NAME", SymbolNode(piece.symbols[0], a, b), a, b)
+            kind, stop = piece.kind, start + piece.end
+            a, b = self._span(start + piece.start, stop)
+            if kind == "symbol":
+                symbol = piece.symbols[0]
+                self._operand("NAME", SymbolNode(symbol, a, b), a, b)
                 if piece.word:
                     self.notes.other_capitals(piece.word, a, b)
+                if symbol.kind == "angle" and piece.start:
+                    self._note_product(run, pieces, piece, start)
+            elif kind == "function":
+                end = self._function(piece.word, stop, end, a, b)
+            elif kind == "shorthand":
+                self._shorthand(piece, piece is pieces[-1], stop, a, b)
             else:
-                end = self._piece(piece, start, end, last=piece is pieces[-1])
+                end = self._piece(piece, start, end)
         return end
 
-    def _note_products(self, run: str, pieces: tuple[Piece, ...], start: int) -> None:
+    def _note_product(self, run: str, pieces: tuple[Piece, ...], angle: Piece, start: int) -> None:
         """Note cβ where c is a symbol: the product, and not the cosine."""
-        for letter, angle in pairwise(pieces):
-            name = run[letter.start : letter.end]
-            if letter.kind == angle.kind == "symbol" and angle.symbols[0].kind == "angle":
-                a, b = self._span(start + letter.start, start + angle.end)
-                self.notes.product(name, angle.symbols[0], a, b)
+        before = pieces[pieces.index(angle) - 1]
+        if before.kind == "symbol":
+            a, b = self._span(start + before.start, start + angle.end)
+            self.notes.product(run[before.start : before.end], angle.symbols[0], a, b)
 
-    def _piece(self, piece: Piece, start: int, end: int, *, last: bool) -> int:
-        """Emit a piece that is no symbol, of a run that begins at ``start``.
+    def _piece(self, piece: Piece, start: int, end: int) -> int:
+        """Emit a constant, a number or a unit of a run that begins at ``start``.
 
         Return where to go on, which is at ``end`` unless more was read than the run.
         """
         kind, word, stop = piece.kind, piece.word, start + piece.end
         a, b = self._span(start + piece.start, stop)
-        if kind == "shorthand":
-            self._shorthand(piece, last, stop, a, b)
-        elif kind == "function":
-            return self._function(word, stop, end, a, b)
-        elif kind == "pi":
+        if kind == "pi":
             self.notes.pi(a, b)
             self._operand("NAME", Pi(a, b), a, b)
             # A spreadsheet's pi is a function of nothing: PI().
             return end + 2 * self.text.startswith("()", end)
-        elif kind == "constant":
+        if kind == "constant":
             self._operand("NAME", constant(word, a, b), a, b)
         elif kind == "number":
             self._operand("NUMBER", Number(float(word), word, a, b), a, b)
@@ -169,7 +169,8 @@ class WordLexer(TokenWriter):
         self.notes.function(name, a, b)
         name = IN_DEGREES.get(name, name)
         power: int | None = None
-        if at == end:
+        # As most are called with a bracket, look at one character first.
+        if at == end and self.text[at : at + 1] != "(":
             power, end = self._function_power(name, at, a, b)
             # Julia writes cos.(q).
             end += self.text.startswith(".(", end)

@@ -18,8 +18,9 @@ def repair(failure: Failure) -> Repair:
     """Say which functions there are; offer the known name for another one of the same function."""
     name = failure.details["run"].replace("_", "")
     if name in REFUSED:
-        message = f"{quoted(failure.written)} is not needed here. The functions are "
-        return error(failure, "unknown_function", f"{message}{_listed()}.")
+        written = quoted(failure.written)
+        message = f"{written} is not needed here. The functions are {_listed()}."
+        return error(failure, "unknown_function", message)
     renamed = _RENAMED.get(failure.details["run"])
     if renamed is None or not failure.details["called"]:
         return None

@@ -38,12 +38,12 @@ def exchanged_parameters(case: WrongRow) -> Hypotheses:
     for names, order in (
         ("a and d", [2, 1, 0, 3]),
         ("α and θ", [0, 3, 2, 1]),
-        ("a and d, and α and θ,", [2, 3, 0, 1]),
+        ("a and d, and α and θ", [2, 3, 0, 1]),
     ):
         finding = Finding(
             "exchanged_parameters",
-            f"{names} stand in each other's places: a and α belong to the x axis, d and θ to "
-            f"the z axis.",
+            f"{names} are exchanged: a and α are measured along and about x, d and θ along and "
+            f"about z.",
         )
         yield Written(case.expected[order], finding)
 
@@ -86,11 +86,11 @@ def axes_named(convention: Convention) -> tuple[str, str]:
 def violated(transform: Matrices, convention: Convention, length_scale: float) -> list[Finding]:
     """The findings on the conditions that a transform does not meet; none where it has a row."""
     x, z = axes_named(convention)
-    entry = "third row, first column" if convention is Convention.STANDARD else "first row, third"
+    row_of_entry, column = (3, 1) if convention is Convention.STANDARD else (1, 3)
     perpendicular = Finding(
         "dh_not_perpendicular",
-        f"Check the first DH condition: is {x} perpendicular to {z}? The entry in the {entry} "
-        f"tells.",
+        f"Check the first DH condition: is {x} perpendicular to {z}? Look at the entry in row "
+        f"{row_of_entry}, column {column}.",
         f"It is not 0, so that {x} is not perpendicular to {z} and there is no row.",
     )
     intersecting = Finding(

@@ -113,7 +113,7 @@ class GivenMotion:
     @cached_property
     def order(self) -> tuple[str, ...] | None:
         """The angles in the order of their turns; None where the rotation is no such product."""
-        if not _is_zero(self.rotation(self.angles) - np.eye(3)[..., None]):
+        if not self.angles or not _is_zero(self.rotation(self.angles) - np.eye(3)[..., None]):
             return None
         right = self.rotation()
         fits = (each for each in permutations(self.angles) if _is_zero(self.turned(each) - right))

@@ -12,8 +12,7 @@ from service.grading.reading.entry import Entry
 
 NOT_AT_HOME = Finding(
     "not_at_home",
-    "This is asked for in the home position, where every joint variable is 0: no joint variable "
-    "stands in it.",
+    "In the home position every joint variable is 0: no joint variable belongs here.",
     "Put 0 for each joint variable.",
 )
 

@@ -1,19 +1,22 @@
 """Slips in the joint variables and the lengths of a robot, however the robot is described."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import cache
 from itertools import combinations
+from typing import Final
 
 import numpy as np
 
 from service.catalogue import Exercise, Joint
-from service.catalogue.screw_robot import Reference
 from service.grading.diagnosis.slip import CellChange, Slip, SymbolChange
 from service.grading.samples import Samples
 from service.grading.tolerances import SAME_MOTION
+from service.kinematics.transforms import Numbers
 
 Axis = Callable[[Joint], str]
 # The longest robots have a handful of lengths; the pairs of more are not tried.
 MAX_LENGTHS = 12
+HOME_POSITION: Final = "home_position"
 
 
 def joint_slips(moved: Sequence[Joint], joints: Sequence[Joint], axis: Axis) -> Iterator[Slip]:
@@ -104,7 +107,7 @@ def home_slip(joints: Sequence[Joint]) -> Iterator[Slip]:
     """The answer was worked out for the home configuration."""
     if len(joints) > 1:
         yield Slip(
-            "home_position",
+            HOME_POSITION,
             "all joints stand in their home position",
             "the answer must change with the joints.",
             symbols=tuple(SymbolChange(each.variable, each.variable, 0.0) for each in joints),
@@ -128,7 +131,7 @@ def length_slips(lengths: Sequence[str], alone: Iterable[str] = ()) -> Iterator[
 def _length_sign(length: str) -> Slip:
     return Slip(
         "sign",
-        f"{{{length}:a length}} has the wrong sign",
+        f"the length {{{length}:of one link}} has the wrong sign",
         "look along which axis it is measured, and which way.",
         f"Change the sign of {{{length}}} throughout.",
         symbols=(SymbolChange(length, length, -1.0),),
@@ -138,7 +141,7 @@ def _length_sign(length: str) -> Slip:
 def _length_left_out(length: str) -> Slip:
     return Slip(
         "distance_left_out",
-        f"{{{length}:a length}} is left out",
+        f"the length {{{length}:of one link}} is left out",
         "look in the drawing which frames it lies between.",
         symbols=(SymbolChange(length, length, 0.0),),
     )
@@ -147,7 +150,8 @@ def _length_left_out(length: str) -> Slip:
 def _exchanged(one: str, other: str) -> Slip:
     return Slip(
         "lengths_exchanged",
-        f"{{{one}:one length}} and {{{other}:another}} stand in each other's places",
+        f"the lengths {{{one}:of one link}} and {{{other}:of another}} stand in each other's "
+        "places",
         "look in the drawing which link each of them belongs to.",
         f"Write {{{one}}} for {{{other}}}, and {{{other}}} for {{{one}}}.",
         symbols=(SymbolChange(one, other), SymbolChange(other, one)),
@@ -157,7 +161,7 @@ def _exchanged(one: str, other: str) -> Slip:
 def _other_length(right: str, written: str) -> Slip:
     return Slip(
         "other_length",
-        f"{{{written}:a length}} stands where another length belongs",
+        f"the length {{{written}:of one link}} stands where another length belongs",
         "look in the drawing which link it belongs to.",
         f"It is {{{right}}}.",
         symbols=(SymbolChange(right, written),),
@@ -165,13 +169,17 @@ def _other_length(right: str, written: str) -> Slip:
 
 
 def axis_direction(exercise: Exercise, samples: Samples) -> Axis:
-    """How the axis of a joint points at home, as advice; worked out when it is asked for."""
+    """How the axis of a joint points at home, as advice; worked out when it is first asked for."""
+
+    @cache
+    def screws() -> Numbers:
+        assert exercise.reference is not None
+        return exercise.reference.screws(samples.values, samples.count)[:, 0]
 
     def direction(joint: Joint) -> str:
-        robot = exercise.reference
-        assert robot is not None
-        first = robot.joints[0].index - 1
-        cosine = _cosine_with_base(robot, joint, samples)
+        first = exercise.joints[0].index - 1
+        screw = screws()[exercise.joints.index(joint)]
+        cosine = screw[5] if joint.prismatic else screw[2]
         verb = "slide along" if joint.prismatic else "turn about"
         if cosine < -1 + SAME_MOTION:
             return f"its axis points opposite to z{first}."
@@ -180,9 +188,3 @@ def axis_direction(exercise: Exercise, samples: Samples) -> Axis:
         return f"look which way the axis points that it must {verb}."
 
     return direction
-
-
-def _cosine_with_base(robot: Reference, joint: Joint, samples: Samples) -> float:
-    screw = robot.screws(samples.values, samples.count)[robot.joints.index(joint), 0]
-    axis = screw[3:] if joint.prismatic else screw[:3]
-    return float(axis[2])

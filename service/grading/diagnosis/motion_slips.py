@@ -144,7 +144,7 @@ def _in_matrix(
     """The misconceptions about one block of a matrix."""
 
     def of_case(case: MatrixCase) -> Hypotheses:
-        motion = case.motion
+        motion = None if block != ROTATION_BLOCK and not case.is_transform else case.motion
         for hypothesis in hypotheses_of(motion, misconceptions) if motion else ():
             answer = hypothesis.answer.reshape(case.expected[block].shape)
             yield replace(hypothesis, answer=answer, entries=block)

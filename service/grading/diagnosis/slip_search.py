@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from service.grading.comparison import nearly_equal
+from service.grading.diagnosis.joint_slips import HOME_POSITION
 from service.grading.diagnosis.slip import Slip
 from service.grading.diagnosis.slipped_answers import SlippedAnswers
 from service.grading.diagnosis.wrong_value import Mask
@@ -18,7 +19,7 @@ from service.kinematics.transforms import Numbers
 # Of slips that lead to the same answer, the likelier first.
 LIKELIEST = (
     "joint_variable_sign",
-    "home_position",
+    HOME_POSITION,
     "joint_variable_missing",
     "sign",
     "distance_left_out",
@@ -84,7 +85,9 @@ class SlipSearch:
             return []
         fits, changes = self._compared(slips, self.actual.shape[-1] // 2)
         sure = np.flatnonzero(fits[:, read].all(axis=1) & changes[:, read].any(axis=1))
-        return sorted((slips[k] for k in sure), key=lambda slip: LIKELIEST.index(slip.code))
+        found_slips = sorted((slips[k] for k in sure), key=lambda slip: LIKELIEST.index(slip.code))
+        # Where all joints stand still, no single one of them is to blame.
+        return [slip for slip in found_slips if slip.code == HOME_POSITION] or found_slips
 
     @cached_property
     def _at_first(self) -> tuple[Mask, Mask]:

@@ -8,7 +8,7 @@ from service.catalogue import Joint
 from service.expressions.printing.spelling import PLAIN, spelling_for
 from service.grading.comparison import Match
 from service.grading.diagnosis.quantity import quantity_of
-from service.grading.diagnosis.wording import listed
+from service.grading.diagnosis.wording import POSITIVE, listed
 from service.grading.diagnosis.wrong_value import (
     Hypotheses,
     WrongCell,
@@ -28,7 +28,7 @@ from service.grading.tolerances import ROUNDED_VALUE
 from service.kinematics.chain import D
 
 SUM_COUNTS = (
-    "The axis is parallel to its neighbour, so it is the sum of the offsets along it that counts."
+    "A neighbouring joint has a parallel axis, so only the sum of the offsets along both counts."
 )
 
 # The turn that an angle is off by may itself have been rounded.
@@ -73,8 +73,8 @@ def joint_variable_sign(case: WrongCell) -> Finding | None:
     return finding_on(
         case,
         "joint_variable_sign",
-        f"The joint variable has the wrong sign: look which way z points on this joint's axis, and "
-        f"in which sense the joint {_motion(case.joint)}.",
+        f"The sign of the joint variable is wrong: check which way z points along this joint's "
+        f"axis, and in which sense the joint {_motion(case.joint)}.",
     )
 
 
@@ -99,8 +99,8 @@ def joint_variable_doubled(case: WrongCell) -> Finding | None:
     return finding_on(
         case,
         "joint_variable_doubled",
-        f"The joint variable is contained more than once: the joint {_motion(joint)} by its "
-        f"variable, neither more nor less.",
+        f"The cell contains the joint variable more than once: the joint {_motion(joint)} by that "
+        f"variable itself.",
     )
 
 
@@ -109,11 +109,12 @@ def joint_variable_column(case: WrongCell) -> Finding | None:
     joint, _ = case.contained_alone
     if joint is None or joint != case.joint or case.required:
         return None
-    kind = "slides, so its variable is d" if joint.prismatic else "turns, so its variable is θ"
+    moves, column = ("slides", "d") if joint.prismatic else ("turns", "θ")
     return finding_on(
         case,
         "joint_variable_column",
-        f"Joint {joint.index} {kind}; {case.symbol} is constant here.",
+        f"Joint {joint.index} {moves}, so its variable belongs in {column}; {case.symbol} is "
+        f"constant here.",
     )
 
 
@@ -125,7 +126,8 @@ def joint_variable_extra(case: WrongCell) -> Finding | None:
     return finding_on(
         case,
         "joint_variable_extra",
-        f"The cell contains {listed(extra)}: check which cells of a table change with the joints.",
+        f"The cell contains {listed(extra)}: check whether {case.symbol} changes with "
+        f"{'it' if len(extra) == 1 else 'them'}.",
     )
 
 
@@ -149,7 +151,7 @@ def sign(case: WrongCell) -> Hypotheses:
         case,
         "sign",
         f"The sign of {case.symbol} is wrong: measure the {'turn' if case.angle else 'distance'} "
-        f"{case.measured}, positive in the direction of that axis.",
+        f"{case.measured}, positive {POSITIVE[case.column]}.",
     )
     yield Written(-case.constants[1], finding)
 
@@ -159,7 +161,7 @@ def distance_left_out(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         "distance_left_out",
-        f"A distance is left out of {case.symbol}{_beside(case)}: these two frames are apart "
+        f"A distance is left out of {case.symbol}{_beside(case)}: the two frames are apart "
         f"{case.measured}.",
     )
     yield Written(0 * case.actual, finding)
@@ -170,8 +172,7 @@ def distance_extra(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         "distance_extra",
-        f"Check the distance in {case.symbol}{_beside(case)}: look along which axis of which frame "
-        f"it is measured.",
+        f"Check the distance in {case.symbol}{_beside(case)}: along which axis does it lie?",
     )
     yield Repaired(0 * case.actual, finding)
 

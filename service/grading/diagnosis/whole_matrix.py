@@ -148,7 +148,7 @@ def _line_sign(code: str, indices: list[int], frame: str) -> Finding:
 
 # In front of the slips of tables stand misconceptions that are likelier than any of them, behind
 # them those that are less so.
-OF_UPPER_ROWS = ((inverse_transform,), (other_pose, inverse_of_other_pose))
+OF_UPPER_ROWS = ((), (inverse_transform, other_pose, inverse_of_other_pose))
 OF_ROTATION = ((transposed_rotation,), (columns_exchanged, other_rotation))
 OF_POSITION = ((), (other_position,))
 # The same of transforms and rotations that the exercise gives in formulas.

@@ -191,8 +191,8 @@ def _judged_as_read(
 
 _UNREACHED = Finding(
     "tool_not_reached",
-    "Every row could stand in some table of this robot, but together they do not lead to the given "
-    "end-effector frame: compare the last frame with it.",
+    "Each row fits this robot, but together the rows do not lead to the given end-effector frame: "
+    "compare your last frame with it.",
 )
 
 

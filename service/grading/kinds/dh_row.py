@@ -172,6 +172,8 @@ def _read_row(answer: object, grading: Grading) -> StudentRow:
     """The one row that was handed in. Raises UnreadableAnswerError."""
     if isinstance(answer, str):
         if (named := named_cells(answer)) is not None:
+            if not named:
+                raise UnreadableAnswerError(_WRONG_TEXT)
             return _row_of(named, grading)
         answer = in_one_line(answer)
     else:

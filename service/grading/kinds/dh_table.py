@@ -282,8 +282,8 @@ def _missing(judged: JudgedRow) -> Finding:
 def _row_too_many(i: int) -> Finding:
     return Finding(
         "row_too_many",
-        f"Row {i + 1} of what was handed in stands for no joint and is not the end effector's. "
-        f"Such a row is allowed in a right table, but it costs points in a wrong one.",
+        f"Row {i + 1} of your table belongs to no joint and not to the end effector. A right table "
+        f"may have such a row, but in a wrong one it costs points.",
         severity=Severity.WARNING,
     )
 
@@ -291,5 +291,5 @@ def _row_too_many(i: int) -> Finding:
 def _extra_row(i: int) -> Finding:
     return Finding(
         "extra_row",
-        f"Row {i + 1} of what was handed in answers to no joint of this robot; it was left out.",
+        f"Row {i + 1} of your table belongs to no joint of this robot, so it is left out.",
     )

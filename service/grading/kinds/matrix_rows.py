@@ -6,6 +6,7 @@ from itertools import chain
 
 import numpy as np
 
+from service.expressions.printing.spelling import PLAIN
 from service.grading.comparison import Match
 from service.grading.diagnosis.formula_repair import WrongEntry
 from service.grading.diagnosis.given_motion import GivenMotion
@@ -97,7 +98,8 @@ def matrix_rows(
         motion=motion(grading.samples.subset(SUBSET)),
     )
     explained = explanations(case) or explain(case)
-    spelling = grading.spelling(chain(*student.entries))
+    left = unexplained(case, explained) | (found == Match.UNDEFINED)
+    spelling = grading.spelling(chain(*student.entries)) if left.any() else PLAIN
     entries = {
         (int(i), int(j)): WrongEntry(
             expression=expression,
@@ -111,7 +113,7 @@ def matrix_rows(
             turning=grading.exercise.vocabulary.turning,
             corrects=grading.corrects,
         )
-        for i, j in np.argwhere(unexplained(case, explained) | (found == Match.UNDEFINED))
+        for i, j in np.argwhere(left)
         if (expression := student.entries[i][j].expression) is not None
     }
     requirements = (

@@ -50,7 +50,20 @@ def grids_in_order(
         raise UnreadableAnswerError(_no_matrices(errors[0], labels))
     places, notes = _places(grids, labels)
     by_place = {place: each.grid for place, each in zip(places, grids, strict=True)}
-    return [by_place.get(place) for place in range(len(labels))], notes
+    return _noted_once([by_place.get(place) for place in range(len(labels))]), notes
+
+
+def _noted_once(grids: list[Grid | GridError | None]) -> list[Grid | GridError | None]:
+    """The grids, of which only the first with a note has it."""
+    told: set[str] = set()
+    found: list[Grid | GridError | None] = []
+    for each in grids:
+        grid = each
+        if isinstance(grid, Grid):
+            grid = replace(grid, notes=tuple(n for n in grid.notes if n.code not in told))
+            told |= {note.code for note in grid.notes}
+        found.append(grid)
+    return found
 
 
 def _matrix(grid: Grid | GridError | None, quantities: Quantities, reader: Reader) -> StudentMatrix:

@@ -21,12 +21,9 @@ _FOUR_VALUES: Final = re.compile(
 )
 _BLANK: Final = re.compile(r"[ \t](?=[^ \t])")
 _STYLE: Final = re.compile(r"\\(?:text|textrm|textit|mathrm|mathit|operatorname)\s?\{([^{}]*)\}")
-_NONE: Final = frozenset(
-    {
-        "none", "n/a", "no row", "no dh row", "there is none", "there is no row", "does not exist",
-        "doesn't exist", "{none:true}", "{none: true}",
-    }
-)  # fmt: skip
+_NONE: Final = re.compile(
+    r"none|n/a|no (?:dh )?row|there is (?:none|no row)|does(?: not|n't) exist|\{none: ?true\}"
+)
 
 
 class NamedCell(NamedTuple):
@@ -40,7 +37,7 @@ def named_cells(text: str) -> Mapping[str, NamedCell] | None:
     """The cells of ``a=3, d=2, theta=90deg, alpha=0`` by column, in whatever order.
 
     Between them may stand commas, semicolons, blanks or the ends of lines; colons do for ``=``.
-    None where the text is anything else, or names a parameter twice.
+    None where the text is anything else. Nothing is in it where a parameter is named twice.
     """
     if len(text) > _LONGEST:
         return None
@@ -51,8 +48,10 @@ def named_cells(text: str) -> Mapping[str, NamedCell] | None:
     ends = [name.start() for name in names[1:]] + [len(text)]
     for name, end in zip(names, ends, strict=True):
         named = named_parameter(name[1])
-        if named is None or named.column in cells:
+        if named is None:
             return None
+        if named.column in cells:
+            return {}
         cells[named.column] = _trimmed(text, name.end(), end)
     return cells
 
@@ -100,4 +99,4 @@ def says_none(text: str) -> bool:
         return False
     plain = _STYLE.sub(r"\1", text)
     plain = "".join(sign for sign in plain if sign not in "$\"'“”").strip().rstrip(".!").lower()
-    return " ".join(plain.split()) in _NONE
+    return _NONE.fullmatch(" ".join(plain.split())) is not None

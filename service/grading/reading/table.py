@@ -242,8 +242,8 @@ def _convention(stated: object) -> tuple[Convention | None, tuple[Finding, ...]]
         return CONVENTION_NAMES[name], ()
     unknown = Finding(
         "unknown_convention",
-        'The convention is "standard" (distal) or "modified" (proximal); what is written was not '
-        "understood and is left aside.",
+        'The convention is "standard" (distal) or "modified" (proximal): this name is neither, and '
+        "is left aside.",
         severity=Severity.WARNING,
         reading=True,
     )

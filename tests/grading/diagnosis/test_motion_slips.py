@@ -207,3 +207,35 @@ def test_the_lectures_displacements_added_up(catalogue: Mapping[str, Exercise]) 
     [message] = report.feedback
     assert message.code == "displacement_not_turned"
     assert "l2 is not turned by phi" in message.message
+
+
+AS_ROTATION = one_part("rotation", f"expected = {[row[:3] for row in TRANSFORM[:3]]}", SYMBOLS)
+CONSTANT = one_part(
+    "transform",
+    'expected = [["1", "0", "0", "a"], '
+    + repr(
+        [
+            ["0", "1", "0", "0"],
+            ["0", "0", "1", "0"],
+            ["0", "0", "0", "1"],
+        ]
+    )[1:],
+    SYMBOLS,
+)
+
+
+def test_a_rotation_alone_and_a_shift_alone(make_exercise: Make) -> None:
+    """Neither a position nor a turn is looked for where there is none."""
+    exercise = make_exercise(AS_ROTATION)
+    turned = [["cφ", "-sφ", "0"], ["sφ", "cφ", "0"], ["0", "0", "1"]]
+    assert all_codes(graded(exercise, turned)) == {"missing_turn"}
+    assert "value" in all_codes(graded(exercise, [["2 cφ", *row[1:3]] for row in TRANSFORM[:3]]))
+    wrong = [["1", "0", "0", "2 a"], *([str(int(i == j)) for j in range(4)] for i in (1, 2, 3))]
+    assert all_codes(graded(make_exercise(CONSTANT), wrong)) == {"value"}
+    turned = [
+        ["0", "1", "0", "a"],
+        ["1", "1", "0", "0"],
+        ["0", "0", "1", "0"],
+        ["0", "0", "0", "1"],
+    ]
+    assert "value" in all_codes(graded(make_exercise(CONSTANT), turned))

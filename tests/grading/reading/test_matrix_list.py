@@ -115,3 +115,9 @@ def test_the_preview_tells_what_cannot_be_read(arm: Exercise) -> None:
     problem = preview_pasted(f"A1 = {A1}\nA1 = {A2}", arm, "links").problem
     assert problem is not None
     assert problem.code == "duplicate_matrix"
+
+
+def test_a_note_on_the_reading_is_told_once(arm: Exercise) -> None:
+    report = pasted(arm, f"A1 = {A1}\nA2 = {A2}")
+    told = [code for row in report.rows for each in row.cells for code in codes(each)]
+    assert told == ["blank_before_sign"]

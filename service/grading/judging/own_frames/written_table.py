@@ -77,8 +77,8 @@ def other_convention(table: WrittenTable) -> Iterator[RepairedTable]:
     used, asked = names[table.convention.other], names[table.convention]
     finding = Finding(
         "other_convention",
-        f"This is a right table in the {used} convention, but it was read in the {asked} "
-        f"one: look which link's a and α belong in row i.",
+        f"The table is right in the {used} convention, but not in the {asked} one, which "
+        f"counts here: check which link's a and α belong in row i.",
         f"In the {asked} convention a and α move by one row.",
     )
     yield Repaired(replace(table, convention=table.convention.other), finding)

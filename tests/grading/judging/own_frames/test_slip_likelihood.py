@@ -38,7 +38,7 @@ def test_the_likeliest_cell_is_blamed(
     )
     assert list(not_correct(report)) == [(row, "d")]
     [message] = cell(report, row, "d").feedback
-    assert "it is the sum of the offsets along it that counts" in message.message
+    assert "only the sum of the offsets along both counts" in message.message
     assert message.correction is not None
     assert message.correction.text == right
 

@@ -1,0 +1,1 @@
+"""Single slips of tables in poses, orientations, positions and link transforms: are they named?"""

@@ -1,0 +1,98 @@
+"""A sample of the campaign: ``make slips`` tries all slips of all robots."""
+
+from collections.abc import Callable, Mapping
+
+import pytest
+
+from service.catalogue import Exercise
+from service.grading import Verdict
+from tests.grading.support.submitting import handed_in, part
+from tests.pose_slips.campaign import KINDS, answer_to, exercise_of, spoilt, trials
+from tests.pose_slips.robots import robots
+
+ROBOTS = {robot.name: robot for robot in robots()}
+# Some slips of some robots: enough to see each code.
+SAMPLE = {"scara": 5, "stanford-arm": 11, "planar-rrr": 7, "skew": 9, "sliding": 7}
+
+
+@pytest.mark.parametrize(("name", "every"), SAMPLE.items())
+def test_slips_are_named(name: str, every: int, figure: Callable[[str], None]) -> None:
+    found = list(trials(ROBOTS[name], lambda k: k % every == 0))
+    named = [trial for trial in found if trial.outcome == "named"]
+    figure(f"{name}: {len(named)} of {len(found)} slips behind poses named")
+    assert len(found) > 8
+    assert len(named) >= 0.9 * len(found)
+    assert not [trial for trial in found if trial.outcome.startswith("several")]
+
+
+@pytest.mark.parametrize("name", ["scara", "stanford-arm", "puma", "polar"])
+def test_a_right_answer_draws_none(name: str) -> None:
+    robot = ROBOTS[name]
+    answers = {kind: answer_to(kind, robot, spoilt(robot, None)) for kind in KINDS}
+    report = handed_in(exercise_of(robot), answers)
+    for each in report.parts:
+        assert each.verdict is Verdict.CORRECT
+        assert each.feedback == ()
+
+
+# The answers that a course's students handed in, and what each of them must be told.
+SAID = [
+    ("spherical-wrist", "position", ["0", "0", "d6"], "home_position", "home position"),
+    ("spherical-wrist", "position", ["c4 s5", "s4 s5", "c5"], "quantity", "this has none"),
+    (
+        "spatial-rrr",
+        "position",
+        ["R + L1 c2 + L2 c23", "0", "L1 s2 + L2 s23"],
+        "joint_variable_missing",
+        "Joint 1 stands still: nothing turns with theta1",
+    ),
+    (
+        "planar-rrr-standard",
+        "position",
+        ["l1 c1 + l2 c12", "l1 s1 + l2 s12 + l3 s123"],
+        "independent_of",
+        "Nothing here depends on q3",
+    ),
+    (
+        "scara",
+        "pose",
+        [
+            ["c124", "s124", "0", "a1 c1 + a2 c12"],
+            ["s124", "-c124", "0", "a1 s1 + a2 s12"],
+            ["0", "0", "-1", "-d3 - d4"],
+            ["0", "0", "0", "1"],
+        ],
+        "joint_variable_sign",
+        "Joint 4 counts the wrong way: its axis points opposite to z0",
+    ),
+]
+
+
+@pytest.mark.parametrize(("exercise", "part_id", "answer", "code", "words"), SAID)
+def test_what_students_handed_in(
+    exercise: str,
+    part_id: str,
+    answer: object,
+    code: str,
+    words: str,
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    report = part(handed_in(catalogue[exercise], {part_id: answer}), part_id)
+    in_cells = [m for row in report.rows for cell in row.cells for m in cell.feedback]
+    [message] = [*report.feedback, *in_cells]
+    assert message.code == code
+    assert words in message.message
+
+
+def test_an_unread_entry_leaves_the_slip_in_sight(catalogue: Mapping[str, Exercise]) -> None:
+    _, _, pose, code, words = SAID[-1]
+    assert isinstance(pose, list)
+    spoiled = [["(", *pose[0][1:]], *pose[1:]]
+    report = part(handed_in(catalogue["scara"], {"pose": spoiled}), "pose")
+    [message] = report.feedback
+    assert (message.code, words in message.message) == (code, True)
+    assert {(place.row, place.cell) for place in message.places or ()} == {
+        ("1", "2"),
+        ("2", "1"),
+        ("2", "2"),
+    }
