@@ -38,7 +38,7 @@ _OF_NAMES: Final = re.compile(r"[(\[{]\s*+(?!t\s*+\))[^0-9\s]")
 
 
 class LeftSide(NamedTuple):
-    """The name in front of an equals sign; ``span`` is its [from, to) with that sign."""
+    """The name in front of an equals sign, with single blanks; ``span`` holds both, [from, to)."""
 
     name: str
     span: Span
@@ -53,7 +53,7 @@ def left_side(source: str, vocabulary: Vocabulary) -> LeftSide | None:
         return None
     if not source[found.end() :].strip(" $") or not _is_name(found, vocabulary):
         return None
-    return LeftSide(found["left"].strip(), found.span("side"))
+    return LeftSide(" ".join(found["left"].split()), found.span("side"))
 
 
 def right_side(source: str, vocabulary: Vocabulary) -> tuple[str, Note | None]:

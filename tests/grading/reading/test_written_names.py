@@ -1,5 +1,6 @@
 """Values with names in front: put in the order of these, or unreadable where they contradict."""
 
+import time
 from collections.abc import Mapping
 
 import pytest
@@ -353,6 +354,15 @@ def test_a_declared_name_is_no_index(make_exercise: Make) -> None:
     setting = '[symbols]\na21 = { kind = "length", description = "a length" }\n'
     exercise = one_part("matrix", 'quantity = "number"\nexpected = [["1", "2"]]', setting)
     assert full_marks(graded(make_exercise(exercise), [["1", "a21 = 2"]]))
+
+
+@pytest.mark.parametrize("gap", [" " * 7900, "\n" * 7900, " \t" * 3950])
+def test_a_name_full_of_blanks_is_read_at_once(gap: str, make_exercise: Make) -> None:
+    """A pattern that tried every way to share out the blanks would take seconds."""
+    answer = matrix_with(f"r_1{gap}_2 = 2")
+    start = time.perf_counter()
+    graded(make_exercise(MATRIX), answer)
+    assert time.perf_counter() - start < 0.5
 
 
 # --- notes that are told once
