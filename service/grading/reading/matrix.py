@@ -84,12 +84,7 @@ def _entries(answer: object, quantities: Quantities, reader: Reader) -> list[lis
     if isinstance(answer, str):
         return _pasted(answer, quantities, reader) if answer.strip() else []
     if not isinstance(answer, list) or not answer or len(answer) > len(quantities):
-        rows, columns = len(quantities), len(quantities[0])
-        message = (
-            f"This answer is a matrix of {rows} rows with {columns} entries each, written as a "
-            f"list of lists."
-        )
-        raise UnreadableAnswerError(reading_error("wrong_shape", message))
+        raise UnreadableAnswerError(_of_wrong_size("", quantities))
     return [_row(row, kinds, reader) for row, kinds in zip(answer, quantities, strict=False)]
 
 
@@ -97,13 +92,25 @@ def _row(row: object, kinds: Sequence[Kind], reader: Reader) -> list[Entry]:
     if row is None:
         return [MISSING] * len(kinds)
     if not isinstance(row, list) or len(row) != len(kinds):
-        found = f"{len(row)} entries" if isinstance(row, list) else "no list"
-        return _of_wrong_length(found, len(kinds))
+        return _of_wrong_length(len(row) if isinstance(row, list) else None, len(kinds))
     return [reader.read(raw, kind) for raw, kind in zip(row, kinds, strict=True)]
 
 
-def _of_wrong_length(found: str, wanted: int, span: tuple[int, int] | None = None) -> list[Entry]:
-    message = f"A row has {wanted} entries; this is {found}."
+def _of_wrong_size(
+    found: str, quantities: Quantities, span: tuple[int, int] | None = None
+) -> Finding:
+    """The finding on a matrix of the size ``found``, "" where there is none."""
+    size = f"; yours is {found}" if found else ""
+    message = f"Write {len(quantities)} rows with {len(quantities[0])} entries each{size}."
+    return reading_error("wrong_shape", message, span)
+
+
+def _of_wrong_length(
+    found: int | None, wanted: int, span: tuple[int, int] | None = None
+) -> list[Entry]:
+    """The row of ``found`` entries, None where it is no list."""
+    counted = "" if found is None else f"; it has {found}"
+    message = f"Write {wanted} entries in this row{counted}."
     return _unreadable_row(reading_error("row_length", message, span), [""] * wanted)
 
 
@@ -124,12 +131,8 @@ def _pasted(text: str, quantities: Quantities, reader: Reader) -> list[list[Entr
 def _of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
     height, width = len(quantities), len(quantities[0])
     if len(grid.rows) > height or all(len(row) != width for row in grid.rows):
-        message = (
-            f"This answer is a matrix of {height} rows with {width} entries each; what was pasted "
-            f"is {grid.size}."
-        )
         span = grid.rows[0][0].whole[0], grid.rows[-1][-1].whole[1]
-        raise UnreadableAnswerError(reading_error("wrong_shape", message, span))
+        raise UnreadableAnswerError(_of_wrong_size(grid.size, quantities, span))
     entries = [
         _pasted_row(row, kinds, reader) for row, kinds in zip(grid.rows, quantities, strict=False)
     ]
@@ -141,7 +144,7 @@ def _of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> list[list[En
 
 def _pasted_row(row: Sequence[GridCell], kinds: Sequence[Kind], reader: Reader) -> list[Entry]:
     if len(row) != len(kinds):
-        return _of_wrong_length(f"{len(row)} entries", len(kinds), place_of(row))
+        return _of_wrong_length(len(row), len(kinds), place_of(row))
     return [
         placed(reader.read(cell.text, kind), cell) for cell, kind in zip(row, kinds, strict=True)
     ]

@@ -133,12 +133,7 @@ def read_table(
         table = _table(rows, convention, (*findings, *pasted.findings), reader)
         return table if pasted.is_named else replace(table, reread=reread)
     if not isinstance(answer, Mapping) or not isinstance(answer.get("rows"), list):
-        raise UnreadableAnswerError(
-            reading_error(
-                "wrong_shape",
-                'A DH table is written {"rows": [{"a": …, "alpha": …, "d": …, "theta": …}, …]}.',
-            )
-        )
+        raise UnreadableAnswerError(_NO_TABLE if isinstance(answer, Mapping) else _NOT_ROWS)
     rows = answer["rows"]
     if len(rows) > MAX_ROWS:
         raise UnreadableAnswerError(_too_many_rows(len(rows)))
@@ -229,7 +224,7 @@ def _values(rows: Sequence[tuple[Entry, ...]], samples: Samples) -> Table:
 
 
 def _too_many_rows(found: int) -> Finding:
-    message = f"A table has at most {MAX_ROWS} rows; this one has {found}."
+    message = f"A table has at most {MAX_ROWS} rows; yours has {found}."
     return reading_error("too_many_rows", message)
 
 
@@ -241,8 +236,7 @@ def _convention(stated: object) -> tuple[Convention | None, tuple[Finding, ...]]
         return CONVENTION_NAMES[name], ()
     unknown = Finding(
         "unknown_convention",
-        'The convention is "standard" (distal) or "modified" (proximal): this name is neither, and '
-        "is left aside.",
+        'This convention is not known, so it was ignored. Write "standard" or "modified".',
         severity=Severity.WARNING,
         reading=True,
     )
@@ -253,7 +247,7 @@ def _entries(row: object, reader: Reader) -> tuple[Entry, ...]:
     if row is None:
         return (EMPTY,) * len(COLUMNS)
     if not isinstance(row, Mapping):
-        return (unreadable(_NO_ROW),) * len(COLUMNS)
+        return (unreadable(_NOT_VALUES),) * len(COLUMNS)
     # A value under an unknown name must not pass for a missing one.
     stray = not row.keys() <= QUANTITIES.keys()
     return tuple(
@@ -264,7 +258,15 @@ def _entries(row: object, reader: Reader) -> tuple[Entry, ...]:
     )
 
 
+# An object is answered with the one that is asked for, a list or a single value in words.
+_NO_TABLE = reading_error(
+    "wrong_shape", 'A DH table is written {"rows": [{"a": …, "alpha": …, "d": …, "theta": …}, …]}.'
+)
+_NOT_ROWS = reading_error(
+    "wrong_shape", "Write the rows of the table, each with its four values a, α, d, θ."
+)
 _NO_ROW = reading_error("wrong_shape", 'A row is written {"a": …, "alpha": …, "d": …, "theta": …}.')
+_NOT_VALUES = reading_error("wrong_shape", "Write the four values a, α, d, θ in this row.")
 
 
 def table_values(rows: Sequence[StudentRow], samples: Samples) -> Table:
