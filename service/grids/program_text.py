@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 from typing import Final
 
-from service.grids.grid import GridError
+from service.grids.grid import GridError, too_many_rows
 from service.grids.limits import GRID_LIMITS
 from service.grids.pairs import CLOSES, split, strict_pairs
 from service.grids.source_text import SourceText, joined
@@ -201,8 +201,7 @@ def _groups(source: SourceText) -> list[SourceText]:
     while i < len(source.text):
         if source.text[i] in CLOSES:
             if len(groups) > GRID_LIMITS.rows:
-                message = f"There are too many rows here; at most {GRID_LIMITS.rows} are read."
-                raise GridError("too_many_rows", message, source.whole)
+                raise too_many_rows("more", source.whole)
             groups.append(source.cut(i + 1, ends[i] - 1))
             i = ends[i]
         elif source.text[i] in TAIL:
@@ -248,6 +247,6 @@ def text_around(piece: SourceText) -> GridError:
     text = f"`{first}`" if first.isprintable() else "An invisible character"
     return GridError(
         "text_around",
-        f"{text} stands next to the matrix and may change it. Paste the matrix alone, worked out.",
+        f"{text} stands next to the matrix and may change it. Work it out, and paste the result.",
         piece.span(0, len(piece.text)),
     )

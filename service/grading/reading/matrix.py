@@ -85,12 +85,7 @@ def _entries(answer: object, quantities: Quantities, reader: Reader) -> list[lis
     if isinstance(answer, str):
         return _pasted(answer, quantities, reader) if answer.strip() else []
     if not isinstance(answer, list) or not answer or len(answer) > len(quantities):
-        rows, columns = len(quantities), len(quantities[0])
-        message = (
-            f"This answer is a matrix of {rows} rows with {columns} entries each, written as a "
-            f"list of lists."
-        )
-        raise UnreadableAnswerError(reading_error("wrong_shape", message))
+        raise UnreadableAnswerError(_of_wrong_size("", quantities))
     return [_row(row, i, quantities, reader) for i, row in enumerate(answer)]
 
 
@@ -99,8 +94,7 @@ def _row(row: object, i: int, quantities: Quantities, reader: Reader) -> list[En
     if row is None:
         return [MISSING] * len(kinds)
     if not isinstance(row, list) or len(row) != len(kinds):
-        found = f"{len(row)} entries" if isinstance(row, list) else "no list"
-        return _of_wrong_length(found, len(kinds))
+        return _of_wrong_length(len(row) if isinstance(row, list) else None, len(kinds))
     return [_entry(raw, (i, j), quantities, reader) for j, raw in enumerate(row)]
 
 
@@ -115,8 +109,21 @@ def _entry(raw: object, place: tuple[int, int], quantities: Quantities, reader: 
     return entry
 
 
-def _of_wrong_length(found: str, wanted: int, span: tuple[int, int] | None = None) -> list[Entry]:
-    message = f"A row has {wanted} entries; this is {found}."
+def _of_wrong_size(
+    found: str, quantities: Quantities, span: tuple[int, int] | None = None
+) -> Finding:
+    """The finding on a matrix of the size ``found``, "" where there is none."""
+    size = f"; yours is {found}" if found else ""
+    message = f"Write {len(quantities)} rows with {len(quantities[0])} entries each{size}."
+    return reading_error("wrong_shape", message, span)
+
+
+def _of_wrong_length(
+    found: int | None, wanted: int, span: tuple[int, int] | None = None
+) -> list[Entry]:
+    """The row of ``found`` entries, None where it is no list."""
+    counted = "" if found is None else f"; it has {found}"
+    message = f"Write {wanted} entries in this row{counted}."
     return _unreadable_row(reading_error("row_length", message, span), [""] * wanted)
 
 
@@ -137,12 +144,8 @@ def _pasted(text: str, quantities: Quantities, reader: Reader) -> list[list[Entr
 def _of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
     height, width = len(quantities), len(quantities[0])
     if len(grid.rows) > height or all(len(row) != width for row in grid.rows):
-        message = (
-            f"This answer is a matrix of {height} rows with {width} entries each; what was pasted "
-            f"is {grid.size}."
-        )
         span = grid.rows[0][0].whole[0], grid.rows[-1][-1].whole[1]
-        raise UnreadableAnswerError(reading_error("wrong_shape", message, span))
+        raise UnreadableAnswerError(_of_wrong_size(grid.size, quantities, span))
     entries = [_pasted_row(row, i, quantities, reader) for i, row in enumerate(grid.rows)]
     first = entries[0][0]
     notes = tuple(map(from_note, grid.notes))
@@ -155,7 +158,7 @@ def _pasted_row(
 ) -> list[Entry]:
     width = len(quantities[i])
     if len(row) != width:
-        return _of_wrong_length(f"{len(row)} entries", width, place_of(row))
+        return _of_wrong_length(len(row), width, place_of(row))
     return [
         placed(_entry(cell.text, (i, j), quantities, reader), cell) for j, cell in enumerate(row)
     ]

@@ -94,7 +94,7 @@ def _places(
     for i, place in enumerate(found):
         if place is not None and place in found[:i]:
             raise UnreadableAnswerError(_same_name(grids[i], f"A{labels[place]}"))
-    asked_for = f"A{labels[0]} to A{labels[-1]}"
+    asked_for = _names(labels)
     complete = len(set(found) - {None}) == count
     notes: list[Finding] = []
     for i, place in enumerate(found):
@@ -106,19 +106,27 @@ def _places(
             found[i] = i
     placed = [place for place in found if place is not None]
     if any(a > b for a, b in pairwise(placed)):
-        notes.append(_note("matrix_order", "The matrices are read by their names.", grids[0]))
+        notes.append(
+            _note("matrix_order", "The matrices were put in the order of their names.", grids[0])
+        )
     if from_zero:
-        message = f"The names count from 0; the matrices are read as {asked_for}."
+        message = f"The names count from 0; the matrices were read as {asked_for}."
         notes.append(_note("matrix_names", message, grids[0]))
     return found, notes
+
+
+def _names(labels: Sequence[str]) -> str:
+    """The matrices that are asked for: "A1 and A2", "A1 to A6"."""
+    between = "and" if len(labels) == 2 else "to"
+    return f"A{labels[0]} {between} A{labels[-1]}"
 
 
 def _no_matrices(error: GridError, labels: Sequence[str]) -> Finding:
     if error.code != "no_grid":
         return from_grid_error(error)
     message = (
-        f"This answer is the matrices A{labels[0]} to A{labels[-1]}, each with its name in front, "
-        f"such as A{labels[0]} = […], as MATLAB, Python, Mathematica, Maxima or LaTeX write them."
+        f"Write {_names(labels)}, each with its name before it, such as A{labels[0]} = […], as "
+        "MATLAB, Python, Mathematica, Maxima or LaTeX write them."
     )
     return reading_error("wrong_shape", message, error.span)
 
@@ -129,7 +137,7 @@ def _note(code: str, message: str, named: NamedGrid) -> Finding:
 
 def _left_aside(named: NamedGrid, asked_for: str) -> Finding:
     name = quoted(named.name.text) if named.name.text else "A matrix without a name"
-    return _note("matrix_left_aside", f"{name} was left aside: {asked_for} are asked for.", named)
+    return _note("matrix_left_aside", f"{name} was ignored: {asked_for} are asked for.", named)
 
 
 def _same_name(named: NamedGrid, label: str) -> Finding:
@@ -139,7 +147,7 @@ def _same_name(named: NamedGrid, label: str) -> Finding:
 
 def _unknown(named: NamedGrid, count: int, asked_for: str) -> Finding:
     if not named.name.text:
-        message = f"These are {count} matrices; {asked_for} are asked for."
+        message = f"{count} matrices stand here. Give {asked_for} their names."
         return reading_error("wrong_shape", message, _place(named))
     message = f"Which link is {quoted(named.name.text)}? Call the matrices {asked_for}."
     return reading_error("unknown_matrix", message, _place(named))

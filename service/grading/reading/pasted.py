@@ -36,7 +36,7 @@ def _charge(text: str, reader: Reader) -> None:
     if len(text) <= GRID_LIMITS.characters:
         reader.budget.pasted -= len(text)
     if reader.budget.pasted < 0:
-        message = f"The pasted texts have more than {MAX_PASTED} characters together."
+        message = f"The pasted texts have more than {MAX_PASTED:,} characters together."
         raise GridError("too_long", message, (0, len(text)))
 
 

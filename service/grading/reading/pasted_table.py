@@ -179,7 +179,7 @@ def _columns_by_headers(
         if header.column in places:
             raise GridError(
                 "two_headers",
-                f"Two columns are {SHOWN[header.column]}: "
+                f"Two headers mean {SHOWN[header.column]}: "
                 f"{quoted(row[places[header.column]].text)} and {quoted(row[i].text)}.",
                 row[i].whole,
             )
@@ -188,7 +188,7 @@ def _columns_by_headers(
     if missing:
         raise GridError(
             "missing_header",
-            f"No column is {' or '.join(missing)}; a DH table has a, α, d and θ.",
+            f"No header is {' or '.join(missing)}. A DH table has the columns a, α, d and θ.",
             place_of(row),
         )
     columns = tuple((places[column], _header(found, places[column])) for column in COLUMNS)
@@ -221,7 +221,7 @@ def _check_unit(header: Header, column: str, cell: GridCell) -> None:
 
 def _left_aside(row: Sequence[GridCell], found: Sequence[Header | None]) -> tuple[Finding, ...]:
     return tuple(
-        _note("column_left_aside", f"The column {quoted(cell.text)} was left aside.", cell)
+        _note("column_left_aside", f"The column {quoted(cell.text)} was ignored.", cell)
         for cell, header in zip(row, found, strict=True)
         if header and header.column == column_headers.ASIDE
     )
@@ -235,8 +235,8 @@ def _convention_hint(
         return ()
     names = " and ".join(quoted(cell.text) for cell in shifted)
     message = (
-        f"Headers such as {names} belong to the modified (proximal) convention. Headers do not "
-        "decide in which convention the table is read."
+        f"Headers such as {names} belong to the modified convention, but they do not decide how "
+        "the table is read. Check which convention the exercise asks for."
     )
     return (_note("convention_hint", message, shifted[0]),)
 
@@ -250,15 +250,14 @@ def _columns_in_order(
     if width != len(COLUMNS) and not has_labels:
         raise GridError(
             "wrong_shape",
-            f"This is {grid.size}; a DH table without headers has the 4 columns a, α, d, θ, or 5 "
-            "with the numbers of the rows in front. With headers the columns may stand in any "
-            "order.",
+            "Without headers, a DH table has the columns a, α, d, θ in this order, with or "
+            f"without row numbers before them; yours is {grid.size}.",
             place_of(grid.rows[0]),
         )
     first = 1 if has_labels else 0
     columns = tuple((first + order.index(column), Header(column)) for column in COLUMNS)
     message = (
-        "The columns have no headers and were read in the order a, α, d, θ. If yours is another, "
+        "The columns have no headers and were read in the order a, α, d, θ. If yours is different, "
         "such as θ, d, a, α in the Robotics Toolbox, put headers above them."
     )
     finding = _note("column_order", message, grid.rows[0][0])
@@ -269,7 +268,7 @@ def _row(
     row: Sequence[GridCell], columns: Sequence[ColumnOrder], width: int, reader: Reader
 ) -> PastedRow:
     if len(row) != width:
-        message = f"This row has {len(row)} values, and the table {width} columns."
+        message = f"This row has {len(row)} values; the table has {width} columns."
         finding = reading_error("row_length", message, place_of(row))
         return PastedRow((row[0],) * len(COLUMNS), finding)
     cells = tuple(row[place or 0] for place, _ in columns)

@@ -134,12 +134,7 @@ def read_table(
         table = _table(rows, convention, (*findings, *pasted.findings), reader)
         return table if pasted.is_named else replace(table, reread=reread)
     if not isinstance(answer, Mapping) or not isinstance(answer.get("rows"), list):
-        raise UnreadableAnswerError(
-            reading_error(
-                "wrong_shape",
-                'A DH table is written {"rows": [{"a": …, "alpha": …, "d": …, "theta": …}, …]}.',
-            )
-        )
+        raise UnreadableAnswerError(_NO_TABLE if isinstance(answer, Mapping) else _NOT_ROWS)
     rows = answer["rows"]
     if len(rows) > MAX_ROWS:
         raise UnreadableAnswerError(_too_many_rows(len(rows)))
@@ -230,7 +225,7 @@ def _values(rows: Sequence[tuple[Entry, ...]], samples: Samples) -> Table:
 
 
 def _too_many_rows(found: int) -> Finding:
-    message = f"A table has at most {MAX_ROWS} rows; this one has {found}."
+    message = f"A table has at most {MAX_ROWS} rows; yours has {found}."
     return reading_error("too_many_rows", message)
 
 
@@ -242,8 +237,7 @@ def _convention(stated: object) -> tuple[Convention | None, tuple[Finding, ...]]
         return CONVENTION_NAMES[name], ()
     unknown = Finding(
         "unknown_convention",
-        'The convention is "standard" (distal) or "modified" (proximal): this name is neither, and '
-        "is left aside.",
+        'This convention is not known, so it was ignored. Write "standard" or "modified".',
         severity=Severity.WARNING,
         reading=True,
     )
@@ -261,11 +255,11 @@ def _entries(rows: Sequence[object], reader: Reader) -> list[tuple[Entry, ...]]:
 
 
 def _cells(row: object) -> list[object]:
-    """The values of a, α, d, θ; ``_NO_ROW`` where nobody can say what the value is."""
+    """The values of a, α, d, θ; a finding where nobody can say what the value is."""
     if row is None:
         return [None] * len(COLUMNS)
     if not isinstance(row, Mapping):
-        return [_NO_ROW] * len(COLUMNS)
+        return [_NOT_VALUES] * len(COLUMNS)
     # A value under an unknown name must not pass for a missing one.
     absent = None if row.keys() <= QUANTITIES.keys() else _NO_ROW
     return [row.get(column, absent) for column in COLUMNS]
@@ -277,14 +271,22 @@ def _row_entries(cells: list[object], number: int | None, reader: Reader) -> tup
 
     def read(column: int) -> Entry:
         raw = ordered[column]
-        if raw is _NO_ROW:
-            return unreadable(_NO_ROW)
+        if isinstance(raw, Finding):
+            return unreadable(raw)
         return reader.read(raw, QUANTITIES[COLUMNS[column]], in_table=True)
 
     return row_entries(ordered, found, number, read, lambda _, entry: entry, reader.vocabulary)
 
 
+# An object is answered with the one that is asked for, a list or a single value in words.
+_NO_TABLE = reading_error(
+    "wrong_shape", 'A DH table is written {"rows": [{"a": …, "alpha": …, "d": …, "theta": …}, …]}.'
+)
+_NOT_ROWS = reading_error(
+    "wrong_shape", "Write the rows of the table, each with its four values a, α, d, θ."
+)
 _NO_ROW = reading_error("wrong_shape", 'A row is written {"a": …, "alpha": …, "d": …, "theta": …}.')
+_NOT_VALUES = reading_error("wrong_shape", "Write the four values a, α, d, θ in this row.")
 
 
 def table_values(rows: Sequence[StudentRow], samples: Samples) -> Table:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from service.expressions import Expression, Kind
+from service.expressions.errors import counted
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error, reading_note
 from service.grading.reading.component_names import ListNames
 from service.grading.reading.entry import MISSING, Entry, Reader, entry_values, unreadable
@@ -225,13 +226,12 @@ _OF_TABLES = {
     "too_many_rows": "",
     "too_many_columns": "",
     "ambiguous_separators": "",
-    "ambiguous_columns": "Here blanks may separate two values or stand inside one.",
-    "mixed_separators": "Here blanks may separate values, too: write a*b and a - b, not a b "
-    "and a -b.",
+    "ambiguous_columns": "Here a space may separate two values or stand inside one.",
+    "mixed_separators": "Inside a value, write a*b and a - b, not a b and a -b.",
 }
 
 _ZERO_LEFT_ASIDE = reading_note(
-    "zero_left_aside", "Only two values are asked for; the third, 0, was left aside."
+    "zero_left_aside", "Only two values are asked for; the third, 0, was ignored."
 )
 
 
@@ -239,8 +239,7 @@ def _wrong_shape(count: int, found: int) -> Finding:
     """The finding that an answer is no such list; ``found`` counts the values of one too long."""
     return reading_error(
         "wrong_shape",
-        f"This answer is a list of {count} values, such as [{', '.join(['…'] * count)}]"
-        f"{f'; this one has {found}' if found else ''}.",
+        f"Write a list of {counted(count)}{f'; yours has {found}' if found else ''}.",
     )
 
 
@@ -250,7 +249,7 @@ def _from_grid_error(error: GridError, count: int) -> Finding:
     if error.code not in _OF_TABLES:
         return finding
     message = (
-        f"This answer is a list of {count} values: write them with commas between them, or one on "
-        f"each line. {_OF_TABLES[error.code]}"
+        f"Write a list of {counted(count)}, with commas between them or one on each line. "
+        f"{_OF_TABLES[error.code]}"
     )
     return replace(finding, hint=message.strip())
