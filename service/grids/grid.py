@@ -57,7 +57,7 @@ def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid
     tidied = [[tidy(cell) for cell in row] for row in rows]
     filled = [row for row in tidied if any(cell.text for cell in row)]
     if not filled:
-        raise GridError("empty", "No cell of this table or matrix holds anything.", whole)
+        raise GridError("empty", "All cells of this table or matrix are empty.", whole)
     filled = _without_empty_columns(filled)
     if len(filled) > GRID_LIMITS.rows:
         most = f"at most {GRID_LIMITS.rows - 1} and a header are read"

@@ -10,7 +10,7 @@ def repair(failure: Failure) -> Repair:
     opener, wanted = failure.details["opener"], failure.details["wanted"]
     first = quoted(failure.source[slice(*opener)])
     if wanted == CLOSE or failure.span[0] == failure.span[1]:
-        message = f"{first} is not closed in its place."
+        message = f"{first} has no closing bracket in its place. Close it, or delete it."
         return error(failure, "mismatched_bracket", message, span=opener)
     message = (
         f"{first} at {position(opener)} is closed by {quoted(failure.written)} at "

@@ -31,7 +31,8 @@ def in_unit(entry: Entry, header: Header, reader: Reader) -> Entry:
     if metres is None or header.metres is None:
         message = (
             f"The header says {header.unit}, but this exercise's lengths have no unit that it "
-            "could be converted to; write the number as the exercise does, without a unit above."
+            "could be converted to. Take it out of the header, and write the number as the "
+            "exercise does."
         )
         return unreadable(reading_error("header_unit", message))
     factor = header.metres / metres
@@ -65,7 +66,7 @@ def _of_letters(entry: Entry, expression: Expression, header: Header, reader: Re
         return entry
     unit = reader.length_unit or "the exercise’s unit"
     message = (
-        f"Below the header {header.unit} this mixes letters with a number that may be {header.unit}"
-        f" or {unit}; write the number as the exercise does, without a unit above."
+        f"This cell has letters and a number, which may be in {header.unit} as the header says, or "
+        f"in {unit}. Take the unit out of the header, and write the number as the exercise does."
     )
     return unreadable(reading_error("header_unit", message))

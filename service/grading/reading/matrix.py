@@ -97,13 +97,13 @@ def _row(row: object, kinds: Sequence[Kind], reader: Reader) -> list[Entry]:
     if row is None:
         return [MISSING] * len(kinds)
     if not isinstance(row, list) or len(row) != len(kinds):
-        found = f"{len(row)} entries" if isinstance(row, list) else "no list"
+        found = f"one has {len(row)}" if isinstance(row, list) else "is no list"
         return _of_wrong_length(found, len(kinds))
     return [reader.read(raw, kind) for raw, kind in zip(row, kinds, strict=True)]
 
 
 def _of_wrong_length(found: str, wanted: int, span: tuple[int, int] | None = None) -> list[Entry]:
-    message = f"A row has {wanted} entries; this is {found}."
+    message = f"A row has {wanted} entries; this {found}."
     return _unreadable_row(reading_error("row_length", message, span), [""] * wanted)
 
 
@@ -141,7 +141,7 @@ def _of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> list[list[En
 
 def _pasted_row(row: Sequence[GridCell], kinds: Sequence[Kind], reader: Reader) -> list[Entry]:
     if len(row) != len(kinds):
-        return _of_wrong_length(f"{len(row)} entries", len(kinds), place_of(row))
+        return _of_wrong_length(f"one has {len(row)}", len(kinds), place_of(row))
     return [
         placed(reader.read(cell.text, kind), cell) for cell, kind in zip(row, kinds, strict=True)
     ]

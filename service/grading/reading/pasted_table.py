@@ -156,7 +156,8 @@ def _columns_by_headers(
             raise GridError(
                 "two_headers",
                 f"Two columns are {SHOWN[header.column]}: "
-                f"{quoted(row[places[header.column]].text)} and {quoted(row[i].text)}.",
+                f"{quoted(row[places[header.column]].text)} and {quoted(row[i].text)}. "
+                "Each parameter has one column.",
                 row[i].whole,
             )
         places[header.column] = i
@@ -190,7 +191,7 @@ def _check_unit(header: Header, column: str, cell: GridCell) -> None:
         raise GridError(
             "header_unit",
             f"{SHOWN[column]} is {'an angle' if is_angle else 'a length'}, but its header says "
-            f"{header.unit}.",
+            f"{header.unit}. Correct the header.",
             cell.whole,
         )
 
@@ -243,7 +244,10 @@ def _columns_in_order(
 
 def _row(row: Sequence[GridCell], columns: Sequence[ColumnOrder], width: int) -> PastedRow:
     if len(row) != width:
-        message = f"This row has {len(row)} values, and the table {width} columns."
+        message = (
+            f"This row has {len(row)} values, but the table has {width} columns. Write one value "
+            "in each column; where a parameter is 0, write 0."
+        )
         finding = reading_error("row_length", message, place_of(row))
         return PastedRow((row[0],) * len(COLUMNS), finding)
     return PastedRow(tuple(row[place or 0] for place, _ in columns))

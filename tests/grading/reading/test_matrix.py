@@ -131,7 +131,7 @@ def test_a_row_of_another_length_costs_that_row(arm: Exercise) -> None:
     [feedback] = cell(report, "4", "1").feedback
     assert (feedback.code, feedback.message) == (
         "row_length",
-        "A row has 4 entries; this is 3 entries.",
+        "A row has 4 entries; this one has 3.",
     )
 
 
