@@ -32,7 +32,7 @@ def wrong_answers() -> dict[str, Any]:
     rows[1][3] = "q2 + d2*d6 + q5"
     rows[3][2] = "d2 + d6"
     rows[4][0] = "(q1"
-    pose = [["c1 + q6 d2", "s12", "0", "sqrt(q4)"], [0.5] * 4, [], ["0", "0", "0", "1"]]
+    pose = [["c1 c2 c4 c5 c6", "s12", "0", "sqrt(q4)"], [0.5] * 4, [], ["0", "0", "0", "1"]]
     return {"table": table(rows), "pose": pose}
 
 

@@ -15,6 +15,7 @@ from service.grading.reading.entry import (
     from_note,
     unreadable,
 )
+from service.grading.reading.matrix_entry_names import misnamed_entry
 from service.grading.reading.pasted import from_grid_error, pasted_grid, place_of, placed
 from service.grading.samples import Samples
 from service.grids import Grid, GridCell, GridError
@@ -90,16 +91,28 @@ def _entries(answer: object, quantities: Quantities, reader: Reader) -> list[lis
             f"list of lists."
         )
         raise UnreadableAnswerError(reading_error("wrong_shape", message))
-    return [_row(row, kinds, reader) for row, kinds in zip(answer, quantities, strict=False)]
+    return [_row(row, i, quantities, reader) for i, row in enumerate(answer)]
 
 
-def _row(row: object, kinds: Sequence[Kind], reader: Reader) -> list[Entry]:
+def _row(row: object, i: int, quantities: Quantities, reader: Reader) -> list[Entry]:
+    kinds = quantities[i]
     if row is None:
         return [MISSING] * len(kinds)
     if not isinstance(row, list) or len(row) != len(kinds):
         found = f"one has {len(row)}" if isinstance(row, list) else "is no list"
         return _of_wrong_length(found, len(kinds))
-    return [reader.read(raw, kind) for raw, kind in zip(row, kinds, strict=True)]
+    return [_entry(raw, (i, j), quantities, reader) for j, raw in enumerate(row)]
+
+
+def _entry(raw: object, place: tuple[int, int], quantities: Quantities, reader: Reader) -> Entry:
+    """The entry in a place; unreadable where it is named after another."""
+    i, j = place
+    entry = reader.read(raw, quantities[i][j])
+    if entry.findings:
+        size = len(quantities), len(quantities[0])
+        wrong = misnamed_entry(raw, place, size, reader.vocabulary)
+        return unreadable(wrong) if wrong else entry
+    return entry
 
 
 def _of_wrong_length(found: str, wanted: int, span: tuple[int, int] | None = None) -> list[Entry]:
@@ -130,18 +143,19 @@ def _of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> list[list[En
         )
         span = grid.rows[0][0].whole[0], grid.rows[-1][-1].whole[1]
         raise UnreadableAnswerError(reading_error("wrong_shape", message, span))
-    entries = [
-        _pasted_row(row, kinds, reader) for row, kinds in zip(grid.rows, quantities, strict=False)
-    ]
+    entries = [_pasted_row(row, i, quantities, reader) for i, row in enumerate(grid.rows)]
     first = entries[0][0]
     notes = tuple(map(from_note, grid.notes))
     entries[0][0] = replace(first, findings=(*first.findings, *notes))
     return entries
 
 
-def _pasted_row(row: Sequence[GridCell], kinds: Sequence[Kind], reader: Reader) -> list[Entry]:
-    if len(row) != len(kinds):
-        return _of_wrong_length(f"one has {len(row)}", len(kinds), place_of(row))
+def _pasted_row(
+    row: Sequence[GridCell], i: int, quantities: Quantities, reader: Reader
+) -> list[Entry]:
+    width = len(quantities[i])
+    if len(row) != width:
+        return _of_wrong_length(f"one has {len(row)}", width, place_of(row))
     return [
-        placed(reader.read(cell.text, kind), cell) for cell, kind in zip(row, kinds, strict=True)
+        placed(_entry(cell.text, (i, j), quantities, reader), cell) for j, cell in enumerate(row)
     ]

@@ -2,20 +2,25 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Final
 
 from service.grading.feedback import Finding, reading_error, reading_note
 from service.grading.reading import column_headers
-from service.grading.reading.column_headers import METRES, QUANTITIES, Header, is_wordy, read_header
+from service.grading.reading.cell_names import arranged_row, first_number, row_entries
+from service.grading.reading.column_headers import (
+    METRES,
+    QUANTITIES,
+    SHOWN,
+    Header,
+    is_wordy,
+    read_header,
+)
 from service.grading.reading.entry import Entry, Reader, from_note, unreadable
 from service.grading.reading.length_units import in_unit
 from service.grading.reading.pasted import pasted_grid, place_of, placed, quoted
 from service.grading.reading.row_labels import in_order, is_label
+from service.grading.reading.written_names import Arrangement
 from service.grids import Grid, GridCell, GridError
 from service.kinematics.chain import COLUMNS
-
-# Names for these columns, as they are written in a message.
-SHOWN: Final = {"a": "a", "alpha": "α", "d": "d", "theta": "θ"}
 
 ColumnOrder = tuple[int | None, Header]
 
@@ -24,11 +29,18 @@ ColumnOrder = tuple[int | None, Header]
 class PastedRow:
     """The cells of one row in the order a, α, d, θ.
 
-    A row of the wrong length has a ``problem``, and each of its cells is the whole row.
+    A row of the wrong length has a ``problem``, and each of its cells is the whole row. ``named``
+    tells how the names in the cells gave them another order, or contradict it.
     """
 
     cells: tuple[GridCell, ...]
     problem: Finding | None = None
+    named: Arrangement | None = None
+
+    @property
+    def texts(self) -> list[str]:
+        """What is written in the cells."""
+        return [cell.text for cell in self.cells]
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +80,7 @@ def read_pasted_table(text: str, reader: Reader, order: Sequence[str] = COLUMNS)
             "no_rows", "There are headers here, but no rows below them.", place_of(grid.rows[0])
         )
     width = len(grid.rows[0]) if found is not None else max(map(len, body))
-    rows = tuple(_row(row, columns, width) for row in body)
+    rows = tuple(_row(row, columns, width, reader) for row in body)
     if labels is not None:
         labelled, more = in_order([row[labels] if labels < len(row) else row[0] for row in body])
         rows = tuple(rows[i] for i in labelled)
@@ -96,18 +108,30 @@ def _turned(grid: Grid) -> tuple[Grid, tuple[Finding, ...]]:
 
 def entries_of(table: PastedTable, reader: Reader) -> list[tuple[Entry, ...]]:
     """The entries of each row."""
+    first = first_number([row.texts for row in table.rows], reader.vocabulary)
     return [
-        (unreadable(row.problem),) * len(COLUMNS)
-        if row.problem
-        else tuple(
-            table_entry(cell, column, header, reader)
-            for cell, column, header in zip(row.cells, COLUMNS, table.headers, strict=True)
-        )
-        for row in table.rows
+        _row_entries(row, None if first is None else first + i, table.headers, reader)
+        for i, row in enumerate(table.rows)
     ]
 
 
-def table_entry(cell: GridCell, column: str, header: Header, reader: Reader) -> Entry:
+def _row_entries(
+    row: PastedRow, number: int | None, headers: Sequence[Header], reader: Reader
+) -> tuple[Entry, ...]:
+    if row.problem:
+        return (unreadable(row.problem),) * len(COLUMNS)
+    cells = row.cells
+    return row_entries(
+        row.texts,
+        row.named,
+        number,
+        lambda i: _entry(cells[i], COLUMNS[i], headers[i], reader),
+        lambda i, entry: placed(entry, cells[i]),
+        reader.vocabulary,
+    )
+
+
+def _entry(cell: GridCell, column: str, header: Header, reader: Reader) -> Entry:
     """One cell of a table, in the unit that its header names."""
     if header.angle_unit:
         reader = replace(reader, angle_unit=header.angle_unit)
@@ -242,7 +266,9 @@ def _columns_in_order(
     return columns, 0 if has_labels else None, (finding,)
 
 
-def _row(row: Sequence[GridCell], columns: Sequence[ColumnOrder], width: int) -> PastedRow:
+def _row(
+    row: Sequence[GridCell], columns: Sequence[ColumnOrder], width: int, reader: Reader
+) -> PastedRow:
     if len(row) != width:
         message = (
             f"This row has {len(row)} values, but the table has {width} columns. Write one value "
@@ -250,7 +276,9 @@ def _row(row: Sequence[GridCell], columns: Sequence[ColumnOrder], width: int) ->
         )
         finding = reading_error("row_length", message, place_of(row))
         return PastedRow((row[0],) * len(COLUMNS), finding)
-    return PastedRow(tuple(row[place or 0] for place, _ in columns))
+    cells = tuple(row[place or 0] for place, _ in columns)
+    named = arranged_row([cell.text for cell in cells], reader.vocabulary)
+    return PastedRow(tuple(cells[i] for i in named.order) if named else cells, named=named)
 
 
 def _note(code: str, message: str, cell: GridCell) -> Finding:

@@ -10,6 +10,7 @@ from service.expressions import Expression, Vocabulary
 from service.expressions import read as read_expression
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.reading.absent_variables import absent_names
+from service.grading.reading.cell_names import arranged_row, first_number, row_entries
 from service.grading.reading.column_headers import QUANTITIES
 from service.grading.reading.entry import Entry, Reader, entry_values, unreadable
 from service.grading.reading.pasted import from_grid_error
@@ -143,7 +144,7 @@ def read_table(
     if len(rows) > MAX_ROWS:
         raise UnreadableAnswerError(_too_many_rows(len(rows)))
     convention, findings = _convention(answer.get("convention"))
-    entries = [_with_empty_cells(_entries(row, reader), empty_is_zero) for row in rows]
+    entries = [_with_empty_cells(row, empty_is_zero) for row in _entries(rows, reader)]
     table = _table(entries, convention, findings, reader)
     return replace(table, reread=reread) if is_unnamed else table
 
@@ -249,19 +250,38 @@ def _convention(stated: object) -> tuple[Convention | None, tuple[Finding, ...]]
     return None, (unknown,)
 
 
-def _entries(row: object, reader: Reader) -> tuple[Entry, ...]:
+def _entries(rows: Sequence[object], reader: Reader) -> list[tuple[Entry, ...]]:
+    """The entries of each row."""
+    cells = [_cells(row) for row in rows]
+    first = first_number(cells, reader.vocabulary)
+    return [
+        _row_entries(row, None if first is None else first + i, reader)
+        for i, row in enumerate(cells)
+    ]
+
+
+def _cells(row: object) -> list[object]:
+    """The values of a, α, d, θ; ``_NO_ROW`` where nobody can say what the value is."""
     if row is None:
-        return (EMPTY,) * len(COLUMNS)
+        return [None] * len(COLUMNS)
     if not isinstance(row, Mapping):
-        return (unreadable(_NO_ROW),) * len(COLUMNS)
+        return [_NO_ROW] * len(COLUMNS)
     # A value under an unknown name must not pass for a missing one.
-    stray = not row.keys() <= QUANTITIES.keys()
-    return tuple(
-        unreadable(_NO_ROW)
-        if stray and column not in row
-        else reader.read(row.get(column), QUANTITIES[column], in_table=True)
-        for column in COLUMNS
-    )
+    absent = None if row.keys() <= QUANTITIES.keys() else _NO_ROW
+    return [row.get(column, absent) for column in COLUMNS]
+
+
+def _row_entries(cells: list[object], number: int | None, reader: Reader) -> tuple[Entry, ...]:
+    found = arranged_row(cells, reader.vocabulary)
+    ordered = [cells[i] for i in found.order] if found else cells
+
+    def read(column: int) -> Entry:
+        raw = ordered[column]
+        if raw is _NO_ROW:
+            return unreadable(_NO_ROW)
+        return reader.read(raw, QUANTITIES[COLUMNS[column]], in_table=True)
+
+    return row_entries(ordered, found, number, read, lambda _, entry: entry, reader.vocabulary)
 
 
 _NO_ROW = reading_error("wrong_shape", 'A row is written {"a": …, "alpha": …, "d": …, "theta": …}.')
