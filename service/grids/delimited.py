@@ -50,7 +50,7 @@ def _quoted(source: SourceText, start: int, stops: str) -> tuple[SourceText, int
     while True:
         close = text.find('"', i)
         if close < 0:
-            message = "The cell that begins with this quotation mark does not end."
+            message = "This cell has no quotation mark at its end. Add it, or delete this one."
             raise GridError("unclosed_quote", message, source.span(start, start + 1))
         if text[close + 1 : close + 2] != '"':
             break

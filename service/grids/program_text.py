@@ -87,7 +87,8 @@ def unwrap(source: SourceText, calls: int = 3) -> WrittenMatrix:
     source = without_remarks(source)
     head = _head(source.text)
     if head is None:
-        raise GridError("no_grid", "No matrix begins here.", source.whole)
+        message = "No matrix begins here. Paste the matrix alone, each row in brackets."
+        raise GridError("no_grid", message, source.whole)
     start, call = head
     source = _without_forms(source.cut(start, len(source.text)).strip(TAIL))
     if call:
@@ -244,9 +245,13 @@ def text_around(piece: SourceText) -> GridError:
     """The error for text around the matrix that may change its meaning."""
     piece = piece.strip()
     first = piece.text.split("\n", 1)[0][:30]
-    text = f"`{first}`" if first.isprintable() else "An invisible character"
-    return GridError(
-        "text_around",
-        f"{text} stands next to the matrix and may change it. Work it out, and paste the result.",
-        piece.span(0, len(piece.text)),
-    )
+    shown = "".join(filter(str.isprintable, first)).strip()
+    message = "Empty brackets stand next to the matrix. Delete them."
+    if piece.text:
+        message = "An invisible character stands next to the matrix. Delete it."
+    if shown:
+        message = (
+            f"`{shown}` stands next to the matrix and may change it. Paste the matrix alone, "
+            "worked out."
+        )
+    return GridError("text_around", message, piece.span(0, len(piece.text)))

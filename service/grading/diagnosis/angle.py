@@ -73,8 +73,8 @@ def lost_sign(case: WrongValue) -> Hypotheses:
             finding = finding_on(
                 case,
                 "lost_quadrant",
-                f"This angle is right for some joint values only: {reason}, atan2(y, x) tells all "
-                "directions apart.",
+                f"This angle is right for some joint values only: {reason}. Use "
+                "atan2(y, x), which tells all directions apart.",
             )
             written = np.where(is_other, other, case.expected)
             yield Written(written, finding, tolerance=ROUNDED_VALUE)

@@ -84,8 +84,7 @@ def position_not_inverted(case: MatrixCase) -> Hypotheses:
     """The position was left as it was before the transform was inverted."""
     finding = Finding(
         "position_not_inverted",
-        "This position belongs to the transform the other way round: it goes with the transposed "
-        f"rotation. {RULE}",
+        f"This position is that of the inverse of the transform that is asked for. {RULE}",
     )
     if case.is_transform:
         _, position = _parts(case)

@@ -180,11 +180,10 @@ def axis_direction(exercise: Exercise, samples: Samples) -> Axis:
         first = exercise.joints[0].index - 1
         screw = screws()[exercise.joints.index(joint)]
         cosine = screw[5] if joint.prismatic else screw[2]
-        verb = "slide along" if joint.prismatic else "turn about"
         if cosine < -1 + SAME_MOTION:
             return f"its axis points opposite to z{first}."
         if cosine > 1 - SAME_MOTION:
             return f"its axis points along z{first}."
-        return f"look which way the axis points that it must {verb}."
+        return "look which way its axis points."
 
     return direction

@@ -120,10 +120,11 @@ def _wrong_quantity(case: WrongEntry, required: Required) -> Finding | None:
     if _same(case, twice, (1 + required.grows) * once):
         return None
     if required.grows == 0:
-        return finding_on(case, "quantity", "A plain number is asked for; this has a length in it.")
+        hint = "A plain number is asked for, but this contains a length."
+        return finding_on(case, "quantity", hint)
     if _same(case, twice, once):
-        return finding_on(case, "quantity", "A length is asked for; this has none.")
-    hint = "A length is asked for, but not every term of this is one."
+        return finding_on(case, "quantity", "A length is asked for, but this contains none.")
+    hint = "A length is asked for, but not every term here is a length."
     return finding_on(case, "quantity", hint)
 
 
@@ -146,7 +147,7 @@ def _extra(case: WrongEntry, names: Iterable[str]) -> Finding | None:
     ]
     if not moving:
         return None
-    hint = f"This must not change with {_named(case, moving)}. Look what moves it."
+    hint = f"This must not change with {_named(case, moving)}. Look which joints move it."
     return finding_on(case, "joint_variable_extra", hint)
 
 

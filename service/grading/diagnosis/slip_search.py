@@ -113,7 +113,8 @@ def _finding(
     if not clauses or len(clauses) > MOST_TOLD:
         return None
     likeliest, correction = slips[0], ""
-    hint = f"One of these slips explains it: {'; '.join(clauses[:-1])}; or {clauses[-1]}."
+    hint = f"One of these slips explains it: {'; '.join(clauses[:-1])}; or {clauses[-1]}. "
+    hint += "Check each of them."
     if len(clauses) == 1:
         hint = f"{clauses[0]}: {likeliest.advice}"
         correction = likeliest.correction.format_map(_Names(name, lambda _: False))

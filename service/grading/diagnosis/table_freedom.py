@@ -15,7 +15,6 @@ from service.catalogue import Exercise, Joint
 from service.grading.diagnosis.wording import listed
 from service.grading.feedback import Finding
 from service.grading.joint_motion import changes
-from service.grading.report import Severity
 from service.grading.samples import Samples
 from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
@@ -45,7 +44,10 @@ def lost_freedom(
     exercise: Exercise,
     samples: Samples,
 ) -> tuple[Finding, ...]:
-    """The findings on joints that share an axis, depend on each other or move nothing.
+    """The findings on joints that share an axis or depend on each other.
+
+    A joint that moves nothing has a finding in its own cell, and none here; nor has what follows of
+    it, an axis that the joints on both its sides share.
 
     ``values`` is the student's table ``(rows, 4, SAMPLES)`` in ``convention``; a table with NaN,
     where a cell was not read, has no finding. ``joint_rows`` names the row of each of the robot's
@@ -57,19 +59,19 @@ def lost_freedom(
     present = [(j, row) for j, row in enumerate(joint_rows) if row is not None]
     idle = [j for j, row in present if np.abs(changes(table[row])).max() < SAME_SCREW]
     moving = [(j, row) for j, row in present if j not in idle]
-    idle_finding = (_without_effect([exercise.robot.joints[j] for j in idle]),) if idle else ()
     if len(moving) < 2:
-        return idle_finding
+        return ()
     written = _arm(table, convention, moving, exercise)
     if rank(written.screws) == len(moving):
-        return idle_finding
+        return ()
     subset = samples.subset(POSTURES)
     reference = exercise.robot.tables[exercise.robot.convention]
     right = reference.values(subset.values, subset.count)
     intended = _arm(right, reference.convention, [(j, j) for j, _ in moving], exercise)
-    shared = _shared_axes(written, intended, convention)
+    between = {exercise.robot.joints[j].index for j in idle}
+    shared = _shared_axes(written, intended, convention, between)
     # Where a joint moves nothing, a length that keeps other joints apart may be 0 for that reason.
-    return (*idle_finding, *shared) or _lost_rank(written, intended)
+    return shared if shared or idle else _lost_rank(written, intended)
 
 
 def _arm(
@@ -82,15 +84,22 @@ def _arm(
     return _Arm(joints, screws)
 
 
-def _shared_axes(written: _Arm, intended: _Arm, convention: Convention) -> tuple[Finding, ...]:
-    """The finding on each axis that joints share, but do not share in the reference."""
+def _shared_axes(
+    written: _Arm, intended: _Arm, convention: Convention, idle: set[int]
+) -> tuple[Finding, ...]:
+    """The finding on each axis that joints share, but do not share in the reference.
+
+    Joints with an ``idle`` one between them share it for that reason.
+    """
     joined = np.triu(coincident(written.screws) & ~coincident(intended.screws))
     findings, done = [], set[int]()
     for i, others in enumerate(joined):
         together = [i, *np.flatnonzero(others).tolist()]
         if len(together) > 1 and not done.intersection(together):
             done.update(together)
-            findings.append(_one_axis(together, written, intended, convention))
+            first, last = (written.joints[k].index for k in (together[0], together[-1]))
+            if not idle.intersection(range(first, last)):
+                findings.append(_one_axis(together, written, intended, convention))
     return tuple(findings)
 
 
@@ -148,16 +157,3 @@ def _rows_between(i: int, j: int, written: _Arm, convention: Convention) -> str:
     shift = int(convention is Convention.MODIFIED)
     labels = [str(joint.index) for joint in written.joints[i + shift : j + shift]]
     return f"row {labels[0]}" if len(labels) == 1 else f"rows {listed(labels)}"
-
-
-def _without_effect(joints: Sequence[Joint]) -> Finding:
-    names = [str(joint.index) for joint in joints]
-    variables = listed([joint.variable for joint in joints])
-    is_one = len(names) == 1
-    return Finding(
-        "lost_freedom",
-        f"{'Joint' if is_one else 'Joints'} {listed(names)} {'moves' if is_one else 'move'} "
-        f"nothing: {'its row contains' if is_one else 'their rows contain'} no joint variable.",
-        f"Where {variables} {'changes' if is_one else 'change'}, the arm moves.",
-        severity=Severity.WARNING,
-    )

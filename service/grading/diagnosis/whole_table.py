@@ -90,7 +90,7 @@ def _turned_sign(column: int) -> Finding:
         "column_sign",
         f"{SYMBOLS[column]} has the wrong sign throughout: it is measured {MEASURED[column]}, "
         f"positive {POSITIVE[column]}.",
-        f"Turn the sign of every {SYMBOLS[column]}.",
+        f"Change the sign of every {SYMBOLS[column]}.",
     )
 
 

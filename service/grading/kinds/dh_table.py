@@ -39,6 +39,7 @@ from service.kinematics.transforms import Matrices
 COST = 0.25
 COSTS = {"other_convention": 0.5}
 _QUANTITIES = tuple(QUANTITIES.values())
+_EXTRA_ROW = "extra_row"
 # With so many wrong cells two misconceptions at once are looked for.
 WRONG_THROUGHOUT = 3
 
@@ -144,8 +145,10 @@ def _with_rows_too_many(
     rows = tuple(answer.rows[i] for i in kept)
     without = _judged_as_read(part, replace(answer, rows=rows, values=answer.values[kept]), grading)
     extra = [i for i, row in enumerate(answer.rows) if i not in kept and not row.is_zero]
+    is_told = any(message.code == _EXTRA_ROW for message in judged.feedback)
     # Where nothing that was read is wrong, the table may be right.
-    messages = grading.visible(tuple(map(_row_too_many, extra))) if judged.is_wrong else ()
+    tells = judged.is_wrong and not is_told
+    messages = grading.visible(tuple(map(_row_too_many, extra))) if tells else ()
     of_mechanism = {row.label for row in without.rows}
     beside = [row for row in judged.rows if row.label not in of_mechanism]
     wrong = [row for row in beside if row.verdict is not Verdict.CORRECT]
@@ -282,14 +285,14 @@ def _missing(judged: JudgedRow) -> Finding:
 def _row_too_many(i: int) -> Finding:
     return Finding(
         "row_too_many",
-        f"Row {i + 1} of your table belongs to no joint and not to the end effector. A right table "
-        f"may have such a row, but in a wrong one it costs points.",
+        f"Row {i + 1} of your table belongs to no joint and not to the end effector. Leave it out "
+        "if your frames do not need it: in a wrong table it costs points.",
         severity=Severity.WARNING,
     )
 
 
 def _extra_row(i: int) -> Finding:
     return Finding(
-        "extra_row",
-        f"Row {i + 1} of your table belongs to no joint of this robot, so it is left out.",
+        _EXTRA_ROW,
+        f"Row {i + 1} of your table belongs to no joint and not to the end effector: leave it out.",
     )

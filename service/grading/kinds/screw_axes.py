@@ -144,7 +144,8 @@ def _known(axes: Numbers, grading: Grading) -> NDArray[np.bool_]:
 
 REVERSED = Finding(
     "own_direction",
-    "You let this axis point the opposite way; that is a valid choice, if its variable counts so.",
+    "You let this axis point the opposite way; that is a valid choice if its joint variable counts "
+    "positive that way.",
     severity=Severity.INFO,
 )
 

@@ -179,8 +179,9 @@ def _columns_by_headers(
         if header.column in places:
             raise GridError(
                 "two_headers",
-                f"Two headers mean {SHOWN[header.column]}: "
-                f"{quoted(row[places[header.column]].text)} and {quoted(row[i].text)}.",
+                f"Two columns are {SHOWN[header.column]}: "
+                f"{quoted(row[places[header.column]].text)} and {quoted(row[i].text)}. "
+                "Each parameter has one column.",
                 row[i].whole,
             )
         places[header.column] = i
@@ -214,7 +215,7 @@ def _check_unit(header: Header, column: str, cell: GridCell) -> None:
         raise GridError(
             "header_unit",
             f"{SHOWN[column]} is {'an angle' if is_angle else 'a length'}, but its header says "
-            f"{header.unit}.",
+            f"{header.unit}. Correct the header.",
             cell.whole,
         )
 
@@ -268,7 +269,10 @@ def _row(
     row: Sequence[GridCell], columns: Sequence[ColumnOrder], width: int, reader: Reader
 ) -> PastedRow:
     if len(row) != width:
-        message = f"This row has {len(row)} values; the table has {width} columns."
+        message = (
+            f"This row has {len(row)} values, but the table has {width} columns. Write one value "
+            "in each column; where a parameter is 0, write 0."
+        )
         finding = reading_error("row_length", message, place_of(row))
         return PastedRow((row[0],) * len(COLUMNS), finding)
     cells = tuple(row[place or 0] for place, _ in columns)

@@ -61,7 +61,7 @@ def in_order(labels: Sequence[GridCell]) -> tuple[list[int], tuple[Finding, ...]
         again = next(i for i in typed if known[i] in known[:i])
         raise GridError(
             "duplicate_row",
-            f"Two rows have the label {labels[again].text[:_LONGEST]}.",
+            f"Two rows have the label {labels[again].text[:_LONGEST]}. Give each row its own.",
             labels[again].whole,
         )
     order = sorted(typed, key=known.__getitem__)

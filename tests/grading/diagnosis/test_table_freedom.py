@@ -10,7 +10,7 @@ from service.grading import Severity
 from service.grading.diagnosis.table_freedom import lost_freedom
 from service.grading.feedback import Finding
 from service.grading.samples import SAMPLES, Samples, draw
-from service.kinematics.chain import ALPHA, A, D, Table
+from service.kinematics.chain import ALPHA, THETA, A, D, Table
 from service.kinematics.dh import Convention
 
 H = np.pi / 2
@@ -201,15 +201,20 @@ def test_what_the_robot_itself_lacks_is_no_loss(make_exercise: Callable[[str], E
     assert finding.hint.startswith("Joints 1 and 2 turn")
 
 
-def test_joints_without_effect(stanford: Exercise) -> None:
+def test_joints_without_effect_are_told_in_their_cells(stanford: Exercise) -> None:
     table = stanford.robot.tables[Convention.STANDARD].values(samples_of(stanford).values, SAMPLES)
     table[2, D] = 0.0
+    assert found(stanford, table) == ()
+
+
+def test_joints_in_line_because_the_one_between_them_stands_still(stanford: Exercise) -> None:
+    table = stanford.robot.tables[Convention.STANDARD].values(samples_of(stanford).values, SAMPLES)
+    table[4, THETA] = 0.0
+    assert found(stanford, table) == ()
+    # Joints 1 and 2 are in line for a reason of their own.
+    table[0, ALPHA] = 0.0
     [finding] = found(stanford, table)
-    assert finding.hint == "Joint 3 moves nothing: its row contains no joint variable."
-    assert finding.severity is Severity.WARNING
-    table[4, 3] = 0.2
-    [finding] = found(stanford, table)
-    assert finding.hint == "Joints 3 and 5 move nothing: their rows contain no joint variable."
+    assert finding.hint.startswith("Joints 1 and 2 turn about one and the same line")
 
 
 def test_a_joint_without_a_row_is_left_out(stanford: Exercise) -> None:
