@@ -38,7 +38,7 @@ _NO_SENTENCES: Final = frozenset(
         "see above", "turns in steps",
         "exercise … has no part …; it has …", "exercise … has no part …", "exercise … has no robot",
         "part … has no formulas",
-        "true and false are no numbers. For a number, write 1 or 0.",
+        "Write a number or a formula, not true or false.",
     }
 )  # fmt: skip
 # The end of a line in an answer.
