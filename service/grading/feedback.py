@@ -73,8 +73,7 @@ class UnreadableAnswerError(Exception):
 
 ROUNDED = Finding(
     "rounded",
-    "Accepted, though rounded: write the number exactly, as a fraction or a root, and nothing can "
-    "be lost.",
+    "Accepted, but rounded: write the exact value, as a fraction, a root or with pi.",
     severity=Severity.INFO,
 )
 
