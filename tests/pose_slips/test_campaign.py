@@ -44,7 +44,7 @@ SAID = [
         "position",
         ["R + L1 c2 + L2 c23", "0", "L1 s2 + L2 s23"],
         "joint_variable_missing",
-        "Joint 1 stands still: nothing turns with theta1",
+        "Joint 1 stands still: check what must change with theta1",
     ),
     (
         "planar-rrr-standard",
@@ -63,7 +63,7 @@ SAID = [
             ["0", "0", "0", "1"],
         ],
         "joint_variable_sign",
-        "Joint 4 counts the wrong way: its axis points opposite to z0",
+        "Joint 4 counts the wrong way: check the sign of its variable. Its axis points",
     ),
 ]
 

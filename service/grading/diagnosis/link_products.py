@@ -108,7 +108,7 @@ def other_convention(chain: Chain) -> Iterator[LinkPose]:
     finding = Finding(
         "other_convention",
         f"the product that the table gives with the link transform of the {used} convention. "
-        "Check in which order a link transform turns and shifts about z and about x.",
+        "Check in which order a link transform moves about and along z and x.",
         f"The table is written in the {right} convention.",
     )
     yield Written(compound(chain.misread_links), finding)
@@ -159,7 +159,7 @@ def premultiplied(chain: Chain) -> Iterator[LinkPose]:
     Multiplied so throughout, the whole product is reversed, down to the turns and shifts in a link.
     """
     order = list(range(len(chain.links)))
-    advice = "What happens about the axes of the frame reached so far is multiplied from the right."
+    advice = "Check on which side a motion about a moving axis is multiplied."
     correction = f"Multiply from the right throughout: {chain.product(order)}."
     poses = chain.links[1:] @ chain.from_base[:-1]
     poses[:-1] = poses[:-1] @ chain.to_end[2:]

@@ -16,7 +16,7 @@ from service.grading.diagnosis.wording import listed
 from service.grading.feedback import Finding
 from service.grading.joint_motion import changes
 from service.grading.samples import Samples
-from service.kinematics.chain import Table
+from service.kinematics.chain import THETA, D, Table
 from service.kinematics.dh import Convention
 from service.kinematics.jacobian import Screws, coincident, dependent, rank, space_jacobian
 from service.kinematics.tolerances import SAME_SCREW
@@ -46,32 +46,26 @@ def lost_freedom(
 ) -> tuple[Finding, ...]:
     """The findings on joints that share an axis or depend on each other.
 
-    A joint that moves nothing has a finding in its own cell, and none here; nor has what follows of
-    it, an axis that the joints on both its sides share.
-
     ``values`` is the student's table ``(rows, 4, SAMPLES)`` in ``convention``; a table with NaN,
     where a cell was not read, has no finding. ``joint_rows`` names the row of each of the robot's
-    joints; a joint without a row is left out.
+    joints; a joint without a row is left out. One without its variable has a finding in its cell.
     """
     table = samples.subset_of(values, POSTURES)
     if not np.isfinite(table).all():
         return ()
     present = [(j, row) for j, row in enumerate(joint_rows) if row is not None]
-    idle = [j for j, row in present if np.abs(changes(table[row])).max() < SAME_SCREW]
-    moving = [(j, row) for j, row in present if j not in idle]
-    if len(moving) < 2:
+    own = [D if joint.prismatic else THETA for joint in exercise.robot.joints]
+    if any(np.abs(changes(table[row, own[j]])).max() < SAME_SCREW for j, row in present):
+        # Other joints may have lost their freedom only because this one stands still.
         return ()
-    written = _arm(table, convention, moving, exercise)
-    if rank(written.screws) == len(moving):
+    written = _arm(table, convention, present, exercise)
+    if rank(written.screws) == len(present):
         return ()
     subset = samples.subset(POSTURES)
     reference = exercise.robot.tables[exercise.robot.convention]
     right = reference.values(subset.values, subset.count)
-    intended = _arm(right, reference.convention, [(j, j) for j, _ in moving], exercise)
-    between = {exercise.robot.joints[j].index for j in idle}
-    shared = _shared_axes(written, intended, convention, between)
-    # Where a joint moves nothing, a length that keeps other joints apart may be 0 for that reason.
-    return shared if shared or idle else _lost_rank(written, intended)
+    intended = _arm(right, reference.convention, [(j, j) for j, _ in present], exercise)
+    return _shared_axes(written, intended, convention) or _lost_rank(written, intended, convention)
 
 
 def _arm(
@@ -84,26 +78,19 @@ def _arm(
     return _Arm(joints, screws)
 
 
-def _shared_axes(
-    written: _Arm, intended: _Arm, convention: Convention, idle: set[int]
-) -> tuple[Finding, ...]:
-    """The finding on each axis that joints share, but do not share in the reference.
-
-    Joints with an ``idle`` one between them share it for that reason.
-    """
+def _shared_axes(written: _Arm, intended: _Arm, convention: Convention) -> tuple[Finding, ...]:
+    """The finding on each axis that joints share, but do not share in the reference."""
     joined = np.triu(coincident(written.screws) & ~coincident(intended.screws))
     findings, done = [], set[int]()
     for i, others in enumerate(joined):
         together = [i, *np.flatnonzero(others).tolist()]
         if len(together) > 1 and not done.intersection(together):
             done.update(together)
-            first, last = (written.joints[k].index for k in (together[0], together[-1]))
-            if not idle.intersection(range(first, last)):
-                findings.append(_one_axis(together, written, intended, convention))
+            findings.append(_one_axis(together, written, intended, convention))
     return tuple(findings)
 
 
-def _lost_rank(written: _Arm, intended: _Arm) -> tuple[Finding, ...]:
+def _lost_rank(written: _Arm, intended: _Arm, convention: Convention) -> tuple[Finding, ...]:
     """The finding on joints of which one can do nothing that the others cannot do as well."""
     if rank(written.screws) >= rank(intended.screws):
         return ()
@@ -111,10 +98,11 @@ def _lost_rank(written: _Arm, intended: _Arm) -> tuple[Finding, ...]:
     if not involved.any():
         involved = np.ones_like(involved)
     names = [str(joint.index) for joint, yes in zip(written.joints, involved, strict=True) if yes]
+    first, *_, last = np.flatnonzero(involved).tolist()
     finding = Finding(
         "lost_freedom",
-        f"The axes of joints {listed(names)} lie so that the arm has fewer degrees of freedom than "
-        f"the robot: check a and α between these joints.",
+        f"The axes of joints {listed(names)} leave the arm fewer degrees of freedom than the robot "
+        f"has: check a and α of {_rows_between(first, last, written, convention)}.",
     )
     return (finding,)
 

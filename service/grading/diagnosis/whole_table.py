@@ -159,7 +159,7 @@ def lengths_exchanged(table: WrittenTable) -> Iterator[RepairedTable]:
 def _exchanged_lengths(one: str, other: str) -> Finding:
     return Finding(
         "lengths_exchanged",
-        f"{one} and {other} are exchanged: look in the drawing which length each of them is.",
+        f"{one} and {other} are exchanged: check which length each of them is.",
         f"Exchange {one} and {other}.",
     )
 

@@ -14,6 +14,7 @@ from service.grading.feedback import Finding
 from service.grading.follow_through import stands_still
 from service.grading.judging.convention import judged_in_convention
 from service.grading.judging.own_frames.best_roles import roles_in, rows_of_mechanism
+from service.grading.judging.own_frames.remarks import OWN_FRAME_CHOICE
 from service.grading.judging.report_rows import Slips, cell_report
 from service.grading.judging.row_places import row_places
 from service.grading.judging.table import JudgedRow, Judgement
@@ -154,9 +155,39 @@ def _with_rows_too_many(
     wrong = [row for row in beside if row.verdict is not Verdict.CORRECT]
     return replace(
         judged,
-        feedback=(*judged.feedback, *messages),
+        rows=_explained_without(judged.rows, without.rows),
+        feedback=(*(m for m in judged.feedback if m.code != OWN_FRAME_CHOICE), *messages),
         slips=judged.slips + len(wrong),
         at_most=without,
+    )
+
+
+def _explained_without(
+    rows: tuple[RowReport, ...], without: tuple[RowReport, ...]
+) -> tuple[RowReport, ...]:
+    """The rows of a table, silent where only a row too many makes a cell wrong.
+
+    ``without`` are the rows of the table without the rows too many.
+    """
+    right = {
+        (row.label, cell.label): cell
+        for row in without
+        for cell in row.cells
+        if cell.verdict is Verdict.CORRECT
+    }
+    labels = {row.label for row in without}
+
+    def silent(row: RowReport, cell: CellReport) -> CellReport:
+        if cell.verdict is not Verdict.INCORRECT:
+            return cell
+        if row.label not in labels:
+            return replace(cell, feedback=())
+        found = right.get((row.label, cell.label))
+        return cell if found is None else replace(cell, feedback=found.feedback)
+
+    return tuple(
+        row_report(row.label, tuple(silent(row, cell) for cell in row.cells), row.feedback)
+        for row in rows
     )
 
 
@@ -285,8 +316,8 @@ def _missing(judged: JudgedRow) -> Finding:
 def _row_too_many(i: int) -> Finding:
     return Finding(
         "row_too_many",
-        f"Row {i + 1} of your table belongs to no joint and not to the end effector. Leave it out "
-        "if your frames do not need it: in a wrong table it costs points.",
+        f"Row {i + 1} of your table belongs to no joint and not to the end effector: check whether "
+        f"you need it.",
         severity=Severity.WARNING,
     )
 

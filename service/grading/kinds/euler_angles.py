@@ -45,8 +45,8 @@ from service.kinematics.transforms import Matrices, Numbers
 
 SINGULAR = Finding(
     "singular_orientation",
-    "Here the first and the third axis lie in one line, so that only the sum or the difference of "
-    "the outer angles is determined: any pair that fits is right.",
+    "Here the first and the third axis lie in one line. Only the sum or the difference of the "
+    "outer angles counts: any pair that fits is right.",
     severity=Severity.INFO,
 )
 
