@@ -19,8 +19,7 @@ RIGHT = STANFORD.format(d="d3", theta="0")
 
 
 def report(exercise: Exercise, part: str, answer: str, degrees: bool = False) -> PartReport:
-    unit = "degrees" if degrees else "radians"
-    graded = grade(exercise, Submission({part: answer}, unit))
+    graded = grade(exercise, Submission({part: answer}, "degrees" if degrees else "radians"))
     return next(each for each in graded.parts if each.part == part)
 
 

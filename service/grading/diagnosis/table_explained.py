@@ -77,13 +77,8 @@ def explained(
     wrong = judgement.matches < Match.ROUNDED
     agree = [each for each in intended if each.table is None or np.array_equal(each.changed, wrong)]
     if agree:
-        intended_table = agree[0].table
-        findings: tuple[Finding, ...] = ()
-        if intended_table is not None:
-            # The frames that the student chose are those of the table without the slip.
-            of_intended = judged_by_intended(intended_table, roles, convention, grading)
-            findings = of_intended.findings
-        return agree[0].findings, replace(judgement, findings=findings)
+        # The frames of a table with the slip in it are not those that the student chose.
+        return agree[0].findings, replace(judgement, findings=())
     nearest = min(intended, key=lambda each: each.departures, default=None)
     if nearest is None or nearest.table is None or nearest.departures >= judgement.departures:
         return (), judgement
