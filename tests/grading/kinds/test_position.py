@@ -75,7 +75,7 @@ def test_three_values_with_a_zero_behind_them_are_refused(make_exercise: Make) -
     report = graded(make_exercise(POSITION), [*SPATIAL, 0])
     assert all_codes(report) == {"wrong_shape"}
     [message] = report.feedback
-    assert message.message.endswith("; this one has 4.")
+    assert message.message == "Write a list of 3 values; yours has 4."
 
 
 def test_two_coordinates_leave_the_third_missing(make_exercise: Make) -> None:
