@@ -31,6 +31,8 @@ from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers
 
+_OF_UNIT = frozenset({"degrees_as_radians", "radians_as_degrees"})
+
 # Of more lengths in wrong cells nobody can say which two were exchanged.
 MOST_LENGTHS = 4
 
@@ -77,8 +79,13 @@ def explained(
     wrong = judgement.matches < Match.ROUNDED
     agree = [each for each in intended if each.table is None or np.array_equal(each.changed, wrong)]
     if agree:
-        # The frames of a table with the slip in it are not those that the student chose.
-        return agree[0].findings, replace(judgement, findings=())
+        findings, table = agree[0].findings, agree[0].table
+        if table is None or _OF_UNIT.intersection(finding.code for finding in findings):
+            # Converted numbers are rounded: they tell nothing of the frames.
+            return findings, replace(judgement, findings=())
+        # The frames that the student chose are those of the table without the slip.
+        chosen = judged_by_intended(table, roles, convention, grading).findings
+        return findings, replace(judgement, findings=chosen)
     nearest = min(intended, key=lambda each: each.departures, default=None)
     if nearest is None or nearest.table is None or nearest.departures >= judgement.departures:
         return (), judgement
