@@ -315,7 +315,10 @@ def test_no_frame_of_another_convention_is_named(catalogue: Mapping[str, Exercis
     z1, x1 = factors(SCARA)[0]
     z2, _ = factors(SCARA)[1]
     report = graded_pose(catalogue[SCARA.exercise], text(product([z1, x1, z2])))
-    messages = [*report.feedback, *(m for row in report.rows for c in row.cells for m in c.feedback)]
+    messages = [
+        *report.feedback,
+        *(m for row in report.rows for c in row.cells for m in c.feedback),
+    ]
     assert messages
     assert not [m for m in messages if "convention" in m.message]
 

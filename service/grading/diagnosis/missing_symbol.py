@@ -98,11 +98,9 @@ def explain_dependence(case: WrongEntry, required: Required) -> Finding | None:
     lengths = sorted(required.symbols & required.lengths - written - set(required.joints))
     return (
         _wrong_quantity(case, required)
-        or _missing(case, joints, "Check what this joint moves.", "Check what these joints move.")
+        or _missing_joints(case, joints)
         or _extra(case, [name for name in required.joints if name in written - required.symbols])
-        or _missing(
-            case, lengths, "Check where this length lies.", "Check where these lengths lie."
-        )
+        or (_missing_length(case) if lengths else None)
     )
 
 
@@ -135,11 +133,18 @@ def _wrong_quantity(case: WrongEntry, required: Required) -> Finding | None:
     return finding_on(case, "quantity", hint)
 
 
-def _missing(case: WrongEntry, names: list[str], one: str, several: str) -> Finding | None:
+def _missing_joints(case: WrongEntry, names: list[str]) -> Finding | None:
     if not names or any(_is_whole(case, name) for name in names):
         return None
-    advice = one if len(names) == 1 else several
-    hint = f"Nothing here depends on {_named(case, names)}. {advice}"
+    advice = "Check what this joint moves." if len(names) == 1 else "Check what these joints move."
+    return finding_on(
+        case, "independent_of", f"Nothing here depends on {_named(case, names)}. {advice}"
+    )
+
+
+def _missing_length(case: WrongEntry) -> Finding:
+    """Its name is not told: it may be all that is missing."""
+    hint = "A length is missing here: check which lengths have a part in this."
     return finding_on(case, "independent_of", hint)
 
 
