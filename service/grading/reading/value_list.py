@@ -1,11 +1,11 @@
 """A list of values as handed in, JSON or pasted text -> its entries and their numbers."""
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-from service.expressions import Expression, Kind
+from service.expressions import LIMITS, Expression, Kind, LeftSide
 from service.expressions.errors import counted
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error, reading_note
 from service.grading.reading.component_names import ListNames
@@ -41,12 +41,37 @@ def read_list(
     ``planar`` answer may have one 0 more, as in [x, y, 0]: it is left aside, with a note. Raises
     UnreadableAnswerError where there is no list of the length asked for.
     """
+    if isinstance(answer, dict):
+        answer = _by_keys(answer, names, reader)
     if isinstance(answer, str):
+        # Of the same length, so that a place in the text stays where it is.
+        answer = _NAME_WITH_COLON.sub(r"\1=", answer)
         entries = _pasted(answer, names, reader, planar=planar)
     else:
         entries = _listed(answer, names, reader, planar=planar)
     quantities = names.quantities
     return StudentValues(entries, quantities, entry_values(entries, quantities, reader.samples))
+
+
+def _by_keys(answer: Mapping[str, object], names: ListNames, reader: Reader) -> list[object]:
+    """The values of an object in the order that is asked for, by their keys: {"x": …, "y": …}.
+
+    Raises UnreadableAnswerError where a key has not exactly one place of its own.
+    """
+    count = len(names.quantities)
+    if not 0 < len(answer) <= count:
+        raise UnreadableAnswerError(_wrong_shape(count, 0))
+    keys = [LeftSide(key[: LIMITS.characters], (0, 0)) for key in answer]
+    values: list[object] = [None] * count
+    taken: set[int] = set()
+    for places, value in zip(
+        names.places_of(keys, reader.vocabulary), answer.values(), strict=True
+    ):
+        if places is None or len(places) != 1 or places[0] in taken:
+            raise UnreadableAnswerError(_wrong_shape(count, 0))
+        values[places[0]] = value
+        taken.add(places[0])
+    return values
 
 
 # A value to be read, and what becomes of its entry: a cell's is moved to its place in the text.
@@ -215,6 +240,9 @@ def _shifted(entry: Entry, by: int) -> Entry:
     )
     return replace(entry, findings=findings)
 
+
+# A name at the begin of a line, with a colon behind it: "x: l1 c1".
+_NAME_WITH_COLON = re.compile(r"(?m)^([ \t]*[^\W\d][\w{}^]{0,20}[ \t]{0,3}):(?![:=])")
 
 # A blank and a sign with none behind it: in MATLAB's brackets a new value begins there.
 _NEW_VALUE = re.compile(r"[^\s,;(\[{*/^+-]\s+[-+−–][^\s]")

@@ -51,7 +51,7 @@ def test_a_wrong_position(
     assert all_codes(report) == codes
 
 
-@pytest.mark.parametrize("answer", [[], ["0"] * 4, [["0", "0", "0"]] * 2, {"x": "0"}, 1, None])
+@pytest.mark.parametrize("answer", [[], ["0"] * 4, [["0", "0", "0"]] * 2, {"u": 1}, 1, None])
 def test_a_position_of_another_shape(answer: object, make_exercise: Make) -> None:
     report = graded(make_exercise(POSITION), answer)
     assert report.points == 0

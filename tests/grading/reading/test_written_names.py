@@ -384,3 +384,35 @@ def test_a_note_on_one_cell_stays_there_with_its_place(catalogue: Mapping[str, E
     report = part(handed_in(catalogue["planar-rr"], {"position": answer}), "position")
     [note] = cell(report, "1", "1").feedback
     assert (note.code, note.span) == ("equation", (0, 3))
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        {"z": "2 l", "x": "l", "y": "k l"},
+        {"p_x": "l", "p_y": "k l", "p_z": "2 l"},
+        "y: k l\nx: l\nz: 2 l",
+    ],
+)
+def test_an_object_and_lines_with_colons_are_read_by_name(
+    answer: object, make_exercise: Make
+) -> None:
+    assert full_marks(graded(make_exercise(POINT), answer))
+
+
+def test_an_object_may_leave_a_value_off(make_exercise: Make) -> None:
+    report = graded(make_exercise(POINT), {"z": "2 l", "x": "l"})
+    assert [row.verdict for row in report.rows] == [
+        Verdict.CORRECT,
+        Verdict.MISSING,
+        Verdict.CORRECT,
+    ]
+
+
+@pytest.mark.parametrize(
+    "answer", [{}, {"u": "l", "y": "k l"}, {"x": "l", "p_x": "l"}, dict.fromkeys("xyzw", "l")]
+)
+def test_keys_without_a_place_of_their_own_are_refused(answer: object, make_exercise: Make) -> None:
+    report = graded(make_exercise(POINT), answer)
+    assert report.verdict is Verdict.UNREADABLE
+    assert all_codes(report) == {"wrong_shape"}
