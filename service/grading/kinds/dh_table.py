@@ -68,7 +68,8 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     for intended in in_other_orders(answer, grading):
         without = _judged_as_read(part, intended.table, grading)
         if 3 * _wrong_cells(without) <= wrong:
-            return _with_slip(intended, without, judged, grading)
+            # Who writes the columns in another order multiplies the links out as they were meant.
+            return replace(_with_slip(intended, without, judged, grading), chain=without.chain)
     convention = part.convention if part.convention != "either" else answer.convention
     if (intended := with_exchanged_row(answer, convention, grading)) is not None:
         without = _judged_as_read(part, intended.table, grading)
