@@ -98,3 +98,11 @@ def test_a_shift_explains_no_invented_link(
     report = graded_table(catalogue[name], rows)
     assert "link_columns_shifted" not in errors(report)
     assert report.points < report.max_points / 2
+
+
+def test_freedom_lost_by_an_angle_about_z_is_no_matter_of_the_links(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    # Only θ of row 2 is wrong: it should be -90deg.
+    rows = [("0", "-90deg", "d1", "0"), ("0", "-90deg", "d2", "0"), ("0", "0", "d3", "0")]
+    assert errors(graded_table(catalogue["three-link-cartesian"], rows)) == ["quarter_turn"]
