@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from service.catalogue.parts.dh_table import DhTableSpec
+from service.grading.comparison import Match
 from service.grading.diagnosis.column_order import in_other_orders
 from service.grading.diagnosis.intended_table import IntendedTable, with_exchanged_row
 from service.grading.diagnosis.joint_numbering import by_other_numbering
@@ -32,7 +33,7 @@ from service.grading.report import (
     row_report,
 )
 from service.grading.samples import Samples
-from service.kinematics.chain import COLUMNS, frames, links
+from service.kinematics.chain import COLUMNS, D, frames, links
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices
 
@@ -70,7 +71,8 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     for intended in in_other_orders(answer, grading):
         without = _judged_as_read(part, intended.table, grading)
         if 3 * _wrong_cells(without) <= wrong:
-            return _with_slip(intended, without, judged, grading)
+            # Who writes the columns in another order multiplies the links out as they were meant.
+            return replace(_with_slip(intended, without, judged, grading), chain=without.chain)
     convention = part.convention if part.convention != "either" else answer.convention
     if (intended := with_exchanged_row(answer, convention, grading)) is not None:
         without = _judged_as_read(part, intended.table, grading)
@@ -248,7 +250,10 @@ def _of_the_whole(
         combine = judgement.wrong >= WRONG_THROUGHOUT
         found, judgement = explained(part, roles, convention, judgement, grading, combine=combine)
     # An explained table is not the one that the student intended, so its freedom says nothing.
-    return judgement, found, () if found else freedom_lost(roles, convention, grading)
+    # Axes that lie wrong by another slip, such as an offset of θ, are no matter of a and α.
+    of_links = bool((judgement.matches[:, :D] < Match.ROUNDED).any())
+    lost = freedom_lost(roles, convention, grading) if of_links and not found else ()
+    return judgement, found, lost
 
 
 def _chain(
