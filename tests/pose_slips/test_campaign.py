@@ -38,7 +38,7 @@ def test_a_right_answer_draws_none(name: str) -> None:
 # The answers that a course's students handed in, and what each of them must be told.
 SAID = [
     ("spherical-wrist", "position", ["0", "0", "d6"], "home_position", "home position"),
-    ("spherical-wrist", "position", ["c4 s5", "s4 s5", "c5"], "quantity", "this has none"),
+    ("spherical-wrist", "position", ["c4 s5", "s4 s5", "c5"], "quantity", "this contains none"),
     (
         "spatial-rrr",
         "position",
