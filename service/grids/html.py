@@ -119,7 +119,7 @@ def _table_tag(table: _Table, place: tuple[int, int], *, closes: bool) -> None:
     table.depth += 1
     table.tables += 1
     if table.depth > 1:
-        message = "One table inside another cannot be read; paste the inner one alone."
+        message = "One table inside another cannot be read. Write all entries in one."
         raise GridError("nested_table", message, place)
     if table.tables > 1:
         raise GridError("two_tables", "There are two tables here; paste one of them.", place)

@@ -99,7 +99,7 @@ def _body(source: SourceText) -> SourceText:
         raise never_ended(source, first)
     last = marks[1]
     if last[1] == "begin":
-        message = "One matrix or table inside another cannot be read; paste the inner one alone."
+        message = "One matrix or table inside another cannot be read. Write all entries in one."
         raise GridError("nested_table", message, source.span(*last.span()))
     if last[2] != first[2]:
         raise other_end(source, first, last)

@@ -180,7 +180,7 @@ SLIPS: dict[str, Slip] = {
         STANFORD,
         product(links(STANFORD, modified=True)[::-1]),
         ["premultiplied"],
-        "all turns and shifts in reverse order",
+        "all rotations and translations, each put on the left",
         WHOLE,
     ),
     "inverse of the reverse order": (

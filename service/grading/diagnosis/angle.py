@@ -96,7 +96,7 @@ def half_turn(case: WrongValue) -> Hypotheses:
     finding = finding_on(
         case,
         "half_turn",
-        "This angle gives the opposite direction: check the signs, in atan2 of both arguments.",
+        "This angle is off by half a turn: check its signs, and in atan2 those of both arguments.",
         otherwise="It is off by half a turn (180°).",
     )
     yield Written(case.expected + np.pi, finding, tolerance=ROUNDED_VALUE)

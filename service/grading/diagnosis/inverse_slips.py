@@ -84,7 +84,7 @@ def position_not_inverted(case: MatrixCase) -> Hypotheses:
     """The position was left as it was before the transform was inverted."""
     finding = Finding(
         "position_not_inverted",
-        f"This position belongs to the inverse transform. {RULE}",
+        f"The position is still that of the transform that was to be inverted. {RULE}",
     )
     if case.is_transform:
         _, position = _parts(case)

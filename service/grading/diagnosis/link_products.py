@@ -158,7 +158,7 @@ def premultiplied(chain: Chain) -> Iterator[LinkPose]:
         wrong_order = chain.product([k, *order[:k], *order[k + 1 :]])
         used = f"the product with A{chain.frames[k + 1]} multiplied from the left, {wrong_order}."
         yield Written(pose, Finding("premultiplied", f"{used} {advice}", correction))
-    used = "the product of all turns and shifts in reverse order, each multiplied from the left."
+    used = "the product of all rotations and translations, each put on the left."
     throughout = Finding("premultiplied", f"{used} {advice}", correction)
     yield Written(compound(chain.misread_links[::-1]), throughout)
 

@@ -55,7 +55,7 @@ class WrongScrew(WrongNumbers):
 
 
 EXCHANGED_HALVES = Finding(
-    "exchanged_halves", "ω comes first here, v second: the order is (ω; v).", "Exchange ω and v."
+    "exchanged_halves", "ω and v are exchanged: write ω first, then v.", "Exchange ω and v."
 )
 AXIS_REVERSED = Finding(
     "axis_reversed",

@@ -56,7 +56,7 @@ INVERTED = Finding(
 # The inverse of something else than what is asked for.
 OTHER_WAY = replace(
     INVERTED,
-    hint="This matrix leads the other way: check which frame it describes, and in which.",
+    hint="This matrix leads the other way: check which frame it describes, and from which frame.",
     correction="",
 )
 

@@ -183,8 +183,9 @@ def _row(matrix: Matrices, part: LinkTransformsSpec) -> StudentRow | None:
 
 
 def _wrong_shape(labels: tuple[str, ...]) -> Finding:
+    between = "and" if len(labels) == 2 else "to"
     message = (
-        f"This answer is a list of {len(labels)} matrices, A{labels[0]} to A{labels[-1]}, each "
-        f"with 4 rows of 4 entries."
+        f"Write {len(labels)} matrices, A{labels[0]} {between} A{labels[-1]}, each with 4 rows of "
+        "4 entries."
     )
     return reading_error("wrong_shape", message)
