@@ -23,7 +23,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test coverage lint format bench fuzz attack campaign policies prints clients lock clean
+.PHONY: help install run test coverage lint format bench fuzz attack campaign policies prints slips clients lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' Makefile

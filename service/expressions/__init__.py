@@ -3,6 +3,7 @@
 from service.expressions.errors import ExpressionError, Note
 from service.expressions.evaluation.decimals import Decimals, decimals_of
 from service.expressions.limits import LIMITS, Limits
+from service.expressions.parsing.equation import LeftSide, left_side
 from service.expressions.reader import AngleUnit, Expression, evaluate_all, read
 from service.expressions.vocabulary.symbols import Kind, Symbol, Vocabulary, joint_variable
 
@@ -13,6 +14,7 @@ __all__ = [
     "Expression",
     "ExpressionError",
     "Kind",
+    "LeftSide",
     "Limits",
     "Note",
     "Symbol",
@@ -20,5 +22,6 @@ __all__ = [
     "decimals_of",
     "evaluate_all",
     "joint_variable",
+    "left_side",
     "read",
 ]

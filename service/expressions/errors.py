@@ -84,6 +84,11 @@ def shortened(text: str) -> str:
     return text if len(text) <= _LONGEST_QUOTATION else f"{text[:_LONGEST_QUOTATION]}…"
 
 
+def counted(values: int) -> str:
+    """A number of values in words."""
+    return "one value" if values == 1 else f"{values} values"
+
+
 def quoted(text: str) -> str:
     """``text`` as a message quotes it: shortened, and with the numbers of unprintable letters."""
     text = shortened(text)

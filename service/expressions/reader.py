@@ -242,9 +242,8 @@ class _Parsed(NamedTuple):
 def _parsed(text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool) -> _Parsed:
     """The syntax tree of ``text`` and its notes. Raises UnreadableError."""
     notes: list[Note] = []
-    if "=" in text or "≔" in text:
-        text, note = right_side(text, vocabulary)
-        notes += (note,) if note else ()
+    text, note = right_side(text, vocabulary)
+    notes += (note,) if note else ()
     characters = normalise(text)
     if not characters.text or characters.text.isspace():
         raise UnreadableError("empty", (0, len(text)))

@@ -73,8 +73,7 @@ class UnreadableAnswerError(Exception):
 
 ROUNDED = Finding(
     "rounded",
-    "Accepted, though rounded: write the number exactly, as a fraction or a root, and nothing can "
-    "be lost.",
+    "Accepted, but rounded. Write the exact number: a fraction, a root or a multiple of π.",
     severity=Severity.INFO,
 )
 
@@ -89,6 +88,10 @@ def visible_messages(
     return tuple(message for message in feedback if message is not None)
 
 
+# Notes that say all they have to say in their words: shared by several cells, they are told once,
+# without the places in the cells' texts.
+_WORDS_ENOUGH = frozenset({"equation", "letter_case"})
+
 # What a message says: its code, its sentence, the repaired text.
 _Said = tuple[str, str, str | None]
 
@@ -97,13 +100,13 @@ def told_once(report: PartReport) -> PartReport:
     """The report with each message that several places share told once, with the part.
 
     Messages are the same where they say the same; of their counterexamples the first is kept. One
-    with a span stays with its cell, whose text the span is in.
+    with a span stays with its cell, whose text the span is in, unless its words are enough.
     """
     in_cells: dict[_Said, list[tuple[Place, Feedback]]] = {}
     for row in report.rows:
         for cell in row.cells:
             for message in cell.feedback:
-                if message.span is None:
+                if _is_shareable(message):
                     place = Place(row.label, cell.label)
                     in_cells.setdefault(_said(message), []).append((place, message))
     shared = {said: told for said, told in in_cells.items() if len(told) > 1}
@@ -117,22 +120,27 @@ def told_once(report: PartReport) -> PartReport:
     return replace(report, rows=rows, feedback=_joined(messages))
 
 
+def _is_shareable(message: Feedback) -> bool:
+    """Whether the message says the same in another cell."""
+    return message.span is None or message.code in _WORDS_ENOUGH
+
+
 def _said(message: Feedback) -> _Said:
     return message.code, message.message, message.suggestion
 
 
 def _together(told: Sequence[tuple[Place, Feedback]]) -> Feedback:
     """The first of the messages with the places of all."""
-    _, first = told[0]
+    first = replace(told[0][1], span=None)
     if len({message.correction for _, message in told}) == 1:
-        return replace(first, places=tuple(place for place, _ in told))
+        return replace(first, places=tuple(dict.fromkeys(place for place, _ in told)))
     places = tuple(replace(place, correction=message.correction) for place, message in told)
     return replace(first, places=places, correction=None)
 
 
 def _without(cell: CellReport, shared: Set[_Said]) -> CellReport:
     """The cell with the messages that are its own."""
-    own = tuple(m for m in cell.feedback if m.span is not None or _said(m) not in shared)
+    own = tuple(m for m in cell.feedback if not _is_shareable(m) or _said(m) not in shared)
     return cell if len(own) == len(cell.feedback) else replace(cell, feedback=own)
 
 

@@ -106,7 +106,7 @@ def follows_from(earlier: PartSpec) -> Finding:
     """The message to a student who earned the points by following through."""
     return Finding(
         "follow_through",
-        f"This is not the robot's, but it follows from your own answer to {earlier.title!r}: it "
-        f"earns its points.",
+        f"This earns its points, for it follows from your answer to {earlier.title!r}. That answer "
+        f"is wrong: check it first.",
         severity=Severity.INFO,
     )

@@ -84,6 +84,16 @@ class Grading:
 
         return lambda symbol: spelling().names.get(symbol, symbol)
 
+    def unwritten(self, entries: Iterable[Entry]) -> frozenset[str]:
+        """The constants of the exercise that none of the entries contains.
+
+        A hint does not name them: which one is missing may be all that is asked for.
+        """
+        read = (each.expression.symbols for each in entries if each.expression is not None)
+        joints = (joint.variable for joint in self.exercise.joints)
+        names = {variable.name for variable in self.exercise.variables}
+        return frozenset(names.difference(joints, *read))
+
     @property
     def corrects(self) -> bool:
         """Whether corrections are told, so that they need to be worked out."""

@@ -7,6 +7,7 @@ from service.grids.grid import Grid, GridCell, GridError
 from service.grids.limits import GRID_LIMITS, GridLimits
 from service.grids.registry import FORMATS, read_grid
 from service.grids.several import NamedGrid, read_grids
+from service.grids.source_text import SourceText
 
 __all__ = [
     "FORMATS",
@@ -16,6 +17,7 @@ __all__ = [
     "GridError",
     "GridLimits",
     "NamedGrid",
+    "SourceText",
     "read_grid",
     "read_grids",
 ]

@@ -4,7 +4,7 @@ import itertools
 import re
 from typing import Final
 
-from service.expressions.errors import Note
+from service.expressions.errors import Note, counted
 from service.grids.blanks import continues, split_blanks
 from service.grids.grid import Grid, GridError, GridFormat, grid
 from service.grids.source_text import SourceText
@@ -30,12 +30,12 @@ def _parse(source: SourceText) -> Grid:
     if len(readings) == 2 and list(map(len, wide)) != list(map(len, narrow)):
         raise GridError(
             "ambiguous_columns",
-            f"Each line may have {len(wide[0])} or {len(narrow[0])} values, for a blank may "
-            "separate two values or stand inside one. Put commas between the values.",
+            f"Each line may have {len(wide[0])} or {len(narrow[0])} values: a space may separate "
+            "two values or stand inside one. Write commas between the values.",
             lines[0].whole,
         )
     first = readings[0][0]
-    message = f"Blanks were read as the ends of columns: {len(first)} values in each line."
+    message = f"Spaces were read as separators: each line has {len(first)} values."
     note = Note("blank_columns", message, first[0].whole)
     return grid("columns", readings[0], source.whole, [note])
 
@@ -59,8 +59,8 @@ def _uneven(lines: list[SourceText], rows: list[list[SourceText]]) -> GridError:
     at = next((i for i, row in enumerate(rows) if len(row) != len(rows[0])), 0)
     return GridError(
         "ambiguous_columns",
-        f"Only blanks separate the values, and so line 1 seems to have {len(rows[0])} of them but "
-        f"line {at + 1} {len(rows[at])}. Put commas between the values.",
+        f"Line 1 seems to have {counted(len(rows[0]))}, line {at + 1} seems to have "
+        f"{counted(len(rows[at]))}. Write commas between the values.",
         lines[at].whole,
     )
 

@@ -50,7 +50,7 @@ def _quoted(source: SourceText, start: int, stops: str) -> tuple[SourceText, int
     while True:
         close = text.find('"', i)
         if close < 0:
-            message = "The cell that begins with this quotation mark does not end."
+            message = "This cell has no quotation mark at its end. Add it, or delete this one."
             raise GridError("unclosed_quote", message, source.span(start, start + 1))
         if text[close + 1 : close + 2] != '"':
             break
@@ -61,6 +61,8 @@ def _quoted(source: SourceText, start: int, stops: str) -> tuple[SourceText, int
     while end < len(text) and text[end].isspace() and text[end] not in stops:
         end += 1
     if end < len(text) and text[end] not in stops:
-        message = 'After this quotation mark the cell should end; write "" for a mark inside it.'
+        message = (
+            'The cell must end after this quotation mark. Delete the marks, or write "" inside.'
+        )
         raise GridError("stray_quote", message, source.span(close, close + 1))
     return joined(pieces, source.span(start + 1)[0]), end

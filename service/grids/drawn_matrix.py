@@ -59,8 +59,8 @@ def _cells(row: SourceText) -> list[SourceText]:
 def _refusal(line: SourceText) -> GridError:
     return GridError(
         "drawn_matrix",
-        "In this drawing powers, fractions or long rows stand on several lines, and cannot be read "
-        "safely. Paste the matrix as one line of text or as LaTeX: print(T) or latex(T).",
+        "This drawn matrix cannot be read safely. Paste it as one line of text or as LaTeX, as "
+        "print(T) or latex(T) in SymPy give it.",
         line.whole,
     )
 

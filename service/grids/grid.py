@@ -45,8 +45,14 @@ class GridFormat:
 
 def too_many_matrices(whole: Span) -> GridError:
     """The error for more matrices than an arm has links."""
-    message = f"At most {GRID_LIMITS.rows} matrices are read from one text; here are more."
+    message = f"A pasted text has at most {GRID_LIMITS.rows} matrices; yours has more."
     return GridError("too_many_matrices", message, whole)
+
+
+def too_many_rows(found: str, whole: Span) -> GridError:
+    """The error for a table with ``found`` rows, "14 in all" or "more"."""
+    most = f"A table has at most {GRID_LIMITS.rows - 1} rows below a header"
+    return GridError("too_many_rows", f"{most}; yours has {found}.", whole)
 
 
 def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid:
@@ -57,14 +63,13 @@ def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid
     tidied = [[tidy(cell) for cell in row] for row in rows]
     filled = [row for row in tidied if any(cell.text for cell in row)]
     if not filled:
-        raise GridError("empty", "No cell of this table or matrix holds anything.", whole)
+        raise GridError("empty", "All cells of this table or matrix are empty.", whole)
     filled = _without_empty_columns(filled)
     if len(filled) > GRID_LIMITS.rows:
-        most = f"at most {GRID_LIMITS.rows - 1} and a header are read"
-        raise GridError("too_many_rows", f"This has {len(filled)} rows; {most}.", whole)
+        raise too_many_rows(f"{len(filled)} in all", whole)
     widest = max(map(len, filled))
     if widest > GRID_LIMITS.columns:
-        message = f"This has {widest} columns; at most {GRID_LIMITS.columns} are read."
+        message = f"A table has at most {GRID_LIMITS.columns} columns; yours has {widest}."
         raise GridError("too_many_columns", message, whole)
     return Grid(name, tuple(map(tuple, filled)), tuple(notes))
 

@@ -102,7 +102,7 @@ def _tag(source: SourceText, table: _Table, tag: re.Match[str], end: int) -> int
     elif name == "br":
         table.pieces.append(source.cut(start, start + 1).spelled(" "))
     elif name not in _STYLING and name not in _LAYOUT and table.cell_at is not None:
-        message = f"What <{name}> shows in a cell cannot be read; type it as plain text."
+        message = f"<{name}> cannot be read in a cell. Type its content as plain text."
         raise GridError("unread_tag", message, place)
     return end
 
@@ -119,7 +119,7 @@ def _table_tag(table: _Table, place: tuple[int, int], *, closes: bool) -> None:
     table.depth += 1
     table.tables += 1
     if table.depth > 1:
-        message = "One table inside another cannot be read; paste the inner one alone."
+        message = "One table inside another cannot be read. Write all entries in one."
         raise GridError("nested_table", message, place)
     if table.tables > 1:
         raise GridError("two_tables", "There are two tables here; paste one of them.", place)

@@ -99,7 +99,7 @@ def _body(source: SourceText) -> SourceText:
         raise never_ended(source, first)
     last = marks[1]
     if last[1] == "begin":
-        message = "One matrix or table inside another cannot be read."
+        message = "One matrix or table inside another cannot be read. Write all entries in one."
         raise GridError("nested_table", message, source.span(*last.span()))
     if last[2] != first[2]:
         raise other_end(source, first, last)
@@ -110,7 +110,7 @@ def _body(source: SourceText) -> SourceText:
 
 def never_begun(source: SourceText, mark: re.Match[str]) -> GridError:
     """The error for an end of an environment without its beginning."""
-    message = f"This ends a {mark[2]} that was never begun."
+    message = f"This ends a {mark[2]} that has no beginning. Put \\begin{{{mark[2]}}} in front."
     return GridError("unbalanced_environment", message, source.span(*mark.span()))
 
 

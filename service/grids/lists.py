@@ -4,7 +4,7 @@ import re
 from typing import Final
 
 from service.grids.blanks import split_blanks
-from service.grids.grid import GridError
+from service.grids.grid import GridError, too_many_rows
 from service.grids.limits import GRID_LIMITS
 from service.grids.pairs import CLOSES, split, strict_pairs
 from service.grids.program_text import WrittenMatrix
@@ -31,8 +31,7 @@ def lines_of(content: SourceText) -> list[SourceText] | None:
             if text[i] == "(" and len(split(line, ",")) == 1:
                 return None
             if len(lines) > GRID_LIMITS.rows:
-                message = f"There are too many rows here; at most {GRID_LIMITS.rows} are read."
-                raise GridError("too_many_rows", message, content.whole)
+                raise too_many_rows("more", content.whole)
             lines.append(line)
             i = ends[i]
         elif text[i] in _BETWEEN:
@@ -68,7 +67,7 @@ def flat(content: SourceText, matrix: WrittenMatrix) -> list[list[SourceText]]:
     height, width = matrix.shape
     if height * width != len(values):
         count = height * width
-        message = f"A {height} × {width} matrix has {count} values; here are {len(values)}."
+        message = f"A {height} × {width} matrix has {count} values; yours has {len(values)}."
         raise GridError("wrong_count", message, content.whole)
     return [values[i * width : (i + 1) * width] for i in range(height)]
 

@@ -1,6 +1,6 @@
 """Rows of a MATLAB matrix, between semicolons or line ends, and values between commas or blanks."""
 
-from service.expressions.errors import Note
+from service.expressions.errors import Note, counted
 from service.grids.blanks import split_blanks
 from service.grids.grid import GridError
 from service.grids.pairs import split
@@ -23,7 +23,7 @@ def rows(content: SourceText) -> tuple[list[list[SourceText]], tuple[Note, ...]]
     if _is_rectangle(by_blanks):
         raise _ambiguous(by_commas, by_blanks)
     message = (
-        "Commas separate the values here, so blanks inside a value were read as products and sums."
+        "Commas separate the values here, so spaces inside a value were read as products and sums."
     )
     return by_commas, (Note("commas_separate", message, content.whole),)
 
@@ -56,8 +56,8 @@ def _sign_notes(signs: list[SourceText]) -> tuple[Note, ...]:
         return ()
     sign = signs[0]
     message = (
-        f"The blank in front of {sign.text[:20]} begins a new value, as in MATLAB; a difference "
-        "has blanks on both sides of the sign, or none."
+        f"The space before {sign.text[:20]} begins a new value, as in MATLAB; a difference has "
+        "spaces on both sides of the sign, or none."
     )
     return (Note("blank_before_sign", message, sign.whole),)
 
@@ -67,7 +67,7 @@ def _ambiguous(by_commas: list[list[SourceText]], by_blanks: list[list[SourceTex
     row, longer = by_commas[at], by_blanks[at]
     return GridError(
         "mixed_separators",
-        f"This row has {len(row)} values if only commas separate them, and {len(longer)} if blanks "
-        "do as well. Put a comma between all values.",
+        f"This row has {counted(len(row))} if only commas separate them, and {len(longer)} if "
+        "spaces do, too. Write commas between all values.",
         (row[0].whole[0], row[-1].whole[1]),
     )

@@ -48,7 +48,7 @@ def strict_pairs(source: SourceText) -> dict[int, int]:
         if letter in _STRINGS and (i == 0 or text[i - 1].isspace() or text[i - 1] in "[({,;:="):
             string = _STRINGS[letter].match(text, i)
             if string is None:
-                message = "The text that begins with this quotation mark does not end."
+                message = "This text has no quotation mark at its end. Add it, or delete this one."
                 raise GridError("unclosed_quote", message, source.span(i, i + 1))
             found[i] = i = string.end()
             continue

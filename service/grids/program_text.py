@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 from typing import Final
 
-from service.grids.grid import GridError
+from service.grids.grid import GridError, too_many_rows
 from service.grids.limits import GRID_LIMITS
 from service.grids.pairs import CLOSES, split, strict_pairs
 from service.grids.source_text import SourceText, joined
@@ -87,7 +87,8 @@ def unwrap(source: SourceText, calls: int = 3) -> WrittenMatrix:
     source = without_remarks(source)
     head = _head(source.text)
     if head is None:
-        raise GridError("no_grid", "No matrix begins here.", source.whole)
+        message = "No matrix begins here. Paste the matrix alone, each row in brackets."
+        raise GridError("no_grid", message, source.whole)
     start, call = head
     source = _without_forms(source.cut(start, len(source.text)).strip(TAIL))
     if call:
@@ -201,8 +202,7 @@ def _groups(source: SourceText) -> list[SourceText]:
     while i < len(source.text):
         if source.text[i] in CLOSES:
             if len(groups) > GRID_LIMITS.rows:
-                message = f"There are too many rows here; at most {GRID_LIMITS.rows} are read."
-                raise GridError("too_many_rows", message, source.whole)
+                raise too_many_rows("more", source.whole)
             groups.append(source.cut(i + 1, ends[i] - 1))
             i = ends[i]
         elif source.text[i] in TAIL:
@@ -245,9 +245,13 @@ def text_around(piece: SourceText) -> GridError:
     """The error for text around the matrix that may change its meaning."""
     piece = piece.strip()
     first = piece.text.split("\n", 1)[0][:30]
-    text = f"`{first}`" if first.isprintable() else "An invisible character"
-    return GridError(
-        "text_around",
-        f"{text} stands next to the matrix and may change it. Paste the matrix alone, worked out.",
-        piece.span(0, len(piece.text)),
-    )
+    shown = "".join(filter(str.isprintable, first)).strip()
+    message = "Empty brackets stand next to the matrix. Delete them."
+    if piece.text:
+        message = "An invisible character stands next to the matrix. Delete it."
+    if shown:
+        message = (
+            f"`{shown}` stands next to the matrix and may change it. Paste the matrix alone, "
+            "worked out."
+        )
+    return GridError("text_around", message, piece.span(0, len(piece.text)))

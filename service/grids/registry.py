@@ -40,7 +40,7 @@ def pasted_source(text: str, *, named: bool = False) -> SourceText:
     """
     if len(text) > GRID_LIMITS.characters:
         most = GRID_LIMITS.characters
-        message = f"This has {len(text)} characters; a pasted text may have {most}."
+        message = f"A pasted text has at most {most:,} characters; yours has {len(text):,}."
         raise GridError("too_long", message, (most, len(text)))
     source = SourceText.of(text).strip("\ufeff")
     if not source.text.strip():
@@ -48,7 +48,7 @@ def pasted_source(text: str, *, named: bool = False) -> SourceText:
     if sum(map(text.count, _SEPARATORS)) - text.count(_THIN_SPACE) > GRID_LIMITS.separators:
         raise GridError(
             "too_many_cells",
-            f"This has more than {GRID_LIMITS.separators} commas, tabs, bars and line ends; "
+            f"This has more than {GRID_LIMITS.separators:,} commas, tabs, bars and line ends; "
             "paste only the table or matrix.",
             (0, len(text)),
         )
@@ -62,7 +62,7 @@ def grid_of(source: SourceText) -> Grid:
             return candidate.parse(source)
     raise GridError(
         "no_grid",
-        "This was not recognised as a table or matrix. Put each row on a line of its own with "
+        "This was not recognised as a table or matrix. Write each row on a line of its own with "
         "commas between the values, or paste a table from a spreadsheet, Markdown, LaTeX, MATLAB "
         "or Python.",
         source.whole,

@@ -45,7 +45,7 @@ def test_the_worked_example_of_frame_choice_gets_full_marks(client: httpx.Client
     table = report["parts"][0]
     assert table["points"] == table["max_points"]
     remarks = [message["message"] for message in table["feedback"]]
-    assert remarks == ["You turned z2 over; that is a valid choice."]
+    assert remarks == ["You let z2 point the opposite way; that is a valid choice."]
     forgot = {**submission["answers"]["table"]["rows"][2], "d": "d3"}
     submission["answers"]["table"]["rows"][2] = forgot
     report = client.post("/v1/exercises/stanford-arm/grade", json=submission).json()

@@ -14,10 +14,11 @@ from tempfile import TemporaryDirectory
 from typing import Any, Final
 
 from service.catalogue import Exercise, load_catalogue, shipped_folder
-from service.expressions import AngleUnit, ExpressionError, Vocabulary, read
+from service.expressions import LIMITS, AngleUnit, ExpressionError, Vocabulary, read
 from service.grading import FeedbackLevel, Submission, grade
 from service.grading.reading.preview import preview_pasted
 from service.grading.report import Feedback, Place, messages_of
+from service.grids import GRID_LIMITS
 from tests.docs import test_message_codes as messages_page
 from tests.docs.codes import sources
 from tests.docs.templates import Template, templates_in
@@ -28,7 +29,8 @@ from tests.grading.support.submitting import table
 ROOT: Final = Path(__file__).parents[2]
 EXAMPLES: Final = Path(__file__).with_name("sentence_examples.toml")
 _READING: Final = ("expressions/", "grids/", "grading/")
-# Strings of two words that are no part of a message.
+# Strings of two words that are no part of a message, and the words for programs that read formulas
+# by themselves.
 _NO_SENTENCES: Final = frozenset(
     {
         "CSV with semicolons", "rows with semicolons", "drawn matrix", "Judged | None",
@@ -36,6 +38,7 @@ _NO_SENTENCES: Final = frozenset(
         "see above", "turns in steps",
         "exercise … has no part …; it has …", "exercise … has no part …", "exercise … has no robot",
         "part … has no formulas",
+        "Write a number or a formula, not true or false.",
     }
 )  # fmt: skip
 # The end of a line in an answer.
@@ -98,6 +101,10 @@ def answers(catalogue: Mapping[str, Exercise]) -> Iterator[Example]:
     for exercise in catalogue.values():
         for check in exercise.checks:
             yield Example(exercise.id, check.answers, check.angle_unit)
+    # More than may be read of one submission.
+    yield Example("planar-rr", {"position": ["+" * LIMITS.characters] * 2})
+    texts = "1, 2\n" * (GRID_LIMITS.characters // 5)
+    yield Example("planar-rr", {"table": texts, "pose": texts})
 
 
 def _of_the_page(line: messages_page.Line) -> Example | None:
@@ -113,7 +120,7 @@ def _of_the_page(line: messages_page.Line) -> Example | None:
             matrix += [["0", "0", "1", "0"], ["0", "0", "0", "1"]]
             matrix[0][matrix[0].index(right)] = written
             return Example("planar-rr", {"pose": matrix})
-        case "Slips behind a pose" | "Positions", (answer,):
+        case "Positions" | "Slips behind a pose", (answer,):
             return Example("planar-rr", {"position": answer})
         case "Angles", (answer,):
             return Example("spherical-wrist", {"zyz": answer})

@@ -48,12 +48,16 @@ class Template:
 
     @cached_property
     def _longest(self) -> str:
-        return max(self.pieces, key=len).strip()
+        """The longest piece without its first letter, which may be a capital in the text."""
+        return max(self.pieces, key=len).strip()[1:]
 
     @cached_property
     def _pattern(self) -> re.Pattern[str]:
-        pieces = [re.escape(piece) for piece in GAP.join(self.pieces).strip().split(GAP)]
-        return re.compile(".*?".join(pieces), re.DOTALL)
+        """A clause may begin a sentence, with a capital letter."""
+        first, *others = [re.escape(piece) for piece in self.text.split(GAP)]
+        if first[:1].islower():
+            first = f"[{first[0]}{first[0].upper()}]{first[1:]}"
+        return re.compile(".*?".join([first, *others]), re.DOTALL)
 
 
 def templates_in(files: Mapping[str, str]) -> list[Template]:

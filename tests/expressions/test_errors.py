@@ -127,7 +127,7 @@ def test_a_number_that_is_not_finite(number: float, arm: Vocabulary) -> None:
 
 @pytest.mark.parametrize("boolean", [True, False])
 def test_a_boolean_is_no_number(boolean: bool, arm: Vocabulary) -> None:
-    with pytest.raises(ExpressionError, match="write 1 or 0") as caught:
+    with pytest.raises(ExpressionError, match="not true or false") as caught:
         read(boolean, arm)
     assert caught.value.code == "not_a_number"
 

@@ -142,7 +142,7 @@ def test_the_note_costs_nothing_and_says_what_to_write(arm: Exercise) -> None:
     assert (report.verdict, report.points) == (Verdict.CORRECT, report.max_points)
     [note] = cell(report, "2", "alpha").feedback
     assert note.severity is Severity.INFO
-    assert "write the number exactly" in note.message
+    assert "Write the exact number" in note.message
 
 
 # The cell, just inside and just outside: rounded (half a unit) and cut off (a whole unit).

@@ -229,5 +229,20 @@ def test_refused_with_its_place(text: str, code: str, marked: str) -> None:
     assert error.message.endswith(".")
 
 
+@pytest.mark.parametrize(
+    ("behind", "named"),
+    [
+        ("'", "`'`"),
+        ("\u200b", "An invisible character"),
+        (" \u200bx", "`x`"),
+        (" [5; 6]", "`5; 6`"),
+        (" []", "Empty brackets"),
+    ],
+)
+def test_what_stands_next_to_a_matrix_is_named(behind: str, named: str) -> None:
+    message = refusal(f"[1 2; 3 4]{behind}").message
+    assert message.startswith((f"{named} stands next", f"{named} stand next"))
+
+
 def test_a_bracket_of_another_shape_names_both_places() -> None:
     assert "does not fit the ( at character 6" in refusal("[[1, (2], [3, 4]]").message

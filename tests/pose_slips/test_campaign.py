@@ -38,13 +38,13 @@ def test_a_right_answer_draws_none(name: str) -> None:
 # The answers that a course's students handed in, and what each of them must be told.
 SAID = [
     ("spherical-wrist", "position", ["0", "0", "d6"], "home_position", "home position"),
-    ("spherical-wrist", "position", ["c4 s5", "s4 s5", "c5"], "quantity", "this has none"),
+    ("spherical-wrist", "position", ["c4 s5", "s4 s5", "c5"], "quantity", "this contains none"),
     (
         "spatial-rrr",
         "position",
         ["R + L1 c2 + L2 c23", "0", "L1 s2 + L2 s23"],
         "joint_variable_missing",
-        "Joint 1 stands still: nothing turns with theta1",
+        "Joint 1 stands still: check what must change with theta1",
     ),
     (
         "planar-rrr-standard",
@@ -63,7 +63,7 @@ SAID = [
             ["0", "0", "0", "1"],
         ],
         "joint_variable_sign",
-        "Joint 4 counts the wrong way: its axis points opposite to z0",
+        "Joint 4 counts the wrong way: check the sign of its variable. Its axis points",
     ),
 ]
 

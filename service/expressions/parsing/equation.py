@@ -4,10 +4,10 @@ Its value is the right side. The left side becomes blanks, so that all places st
 """
 
 import re
-from typing import Final
+from typing import Final, NamedTuple
 
 from service.expressions.characters import greek
-from service.expressions.errors import Note
+from service.expressions.errors import Note, Span
 from service.expressions.parsing.words import split
 from service.expressions.vocabulary.symbols import Vocabulary
 
@@ -18,13 +18,15 @@ _LEFT: Final = re.compile(
     rf"""
     (?: \$ | \s | \\[(\[] | \\begin\{{[a-z]+\*?\}} ){{0,8}}
     (?P<side>
+      (?P<left>
         (?: (?:let|const|var|double|float|auto) \s++ )?
         (?: \{{\s*+\}}\s*+ )?
         (?: {_SCRIPT}\s*+ ){{0,2}}
         (?P<name> {_STYLE}\{{\s*{_LETTERS}\s*\}} | {_STYLE}[A-Za-z] | {_LETTERS} )?
         (?: \s*+{_SCRIPT} | [₀-₉]+ | ['’′*] | \.[A-Za-z]{{1,8}} ){{0,3}}
         (?P<brackets> (?: \s*+[(\[{{]\s*+[\w\s,:\\]{{1,32}}[)\]}}] ){{0,2}} )
-        \s*+ &? \s*+ (?: :?==? | ≔ | \\coloneqq(?![A-Za-z]) )
+      )
+      \s*+ &? \s*+ (?: :?==? | ≔ | \\coloneqq(?![A-Za-z]) )
     )
     """,
     re.VERBOSE,
@@ -35,16 +37,35 @@ _WORD: Final = re.compile(r"[A-Za-z]+[0-9]*")
 _OF_NAMES: Final = re.compile(r"[(\[{]\s*+(?!t\s*+\))[^0-9\s]")
 
 
-def right_side(source: str, vocabulary: Vocabulary) -> tuple[str, Note | None]:
-    """``source`` with blanks for the name before its equals sign, and a note on that."""
+class LeftSide(NamedTuple):
+    """The name in front of an equals sign, with single blanks; ``span`` holds both, [from, to)."""
+
+    name: str
+    span: Span
+
+
+def left_side(source: str, vocabulary: Vocabulary) -> LeftSide | None:
+    """The name before the equals sign of an equation; None for any other text."""
+    if "=" not in source and "≔" not in source and r"\coloneqq" not in source:
+        return None
     found = _LEFT.match(source)
     if found is None or _EQUALS.search(source, found.end()):
-        return source, None
+        return None
     if not source[found.end() :].strip(" $") or not _is_name(found, vocabulary):
+        return None
+    return LeftSide(" ".join(found["left"].split()), found.span("side"))
+
+
+def right_side(source: str, vocabulary: Vocabulary) -> tuple[str, Note | None]:
+    """``source`` with blanks for the name before its equals sign, and a note on that."""
+    left = left_side(source, vocabulary)
+    if left is None:
         return source, None
-    start, end = span = found.span("side")
+    start, end = left.span
     message = "Only the right side of the equation was read."
-    return f"{source[:start]}{' ' * (end - start)}{source[end:]}", Note("equation", message, span)
+    return f"{source[:start]}{' ' * (end - start)}{source[end:]}", Note(
+        "equation", message, left.span
+    )
 
 
 def _is_name(found: re.Match[str], vocabulary: Vocabulary) -> bool:

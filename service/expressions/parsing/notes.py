@@ -14,9 +14,9 @@ _INDEXING: Final = {
     "index without brackets.",
     "(": "This was read as {name}, counting from 1.",
 }
-_MARKER: Final = "The * behind the joint variable was read as its marker, not as a product."
+_MARKER: Final = "The * after the joint variable was read as its mark, not as a product."
 _PRODUCT: Final = (
-    "The * behind the joint variable was read as a product; if it marks the variable, leave it out."
+    "The * after the joint variable was read as a product. If it marks the variable, delete it."
 )
 _SHORT: Final = {
     "c": ("cosine", "cos"), "s": ("sine", "sin"), "C": ("cosine", "cos"), "S": ("sine", "sin"),
@@ -84,12 +84,12 @@ class WordNotes:
             self._add("letter_case", f"This was read as the function {name}.", (a, b))
         if name in OF_DEGREES:
             message = (
-                f"{name} takes degrees: bare numbers inside it were read as degrees, and an "
-                "angle symbol as the angle itself."
+                f"A number without a unit inside {name} was read in degrees; the symbol of an "
+                "angle keeps its own unit."
             )
             self._add("degrees_function", message, (a, b))
         if name in IN_DEGREES:
-            message = f"{name} gives degrees; this was read as that angle."
+            message = f"{name} gives degrees: its value was read as an angle in degrees."
             self._add("degrees_function", message, (a, b))
         inverted, a_is_known = name[1:], "a" in self.vocabulary.by_name
         if written[0] == "a" and inverted in {"sin", "cos", "tan"} and a_is_known:

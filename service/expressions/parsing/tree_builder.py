@@ -194,7 +194,10 @@ class Builder:
                 continue
             if number.value and not self.degrees:
                 text = self._text(number)
-                message = f"Only one of these is in degrees: {text} was read as radians."
+                message = (
+                    f"Only one of these is in degrees: {text} was read as radians. For degrees, "
+                    f"write {text}°."
+                )
                 self._note("mixed_units", message, number.start, number.end)
 
     def _note_order(self, y: Node, x: Node, start: int, end: int) -> None:

@@ -9,7 +9,7 @@ def repair(failure: Failure) -> Repair:
     (start, end) = failure.details["star"]
     variable = failure.source[failure.span[0] : start].strip()
     message = (
-        f"The * behind {quoted(variable)} may be a mark or a product. Leave out a mark; write a "
+        f"The * after {quoted(variable)} may mark the joint variable. Delete it, or write the "
         f"product as {variable}*(…)."
     )
     return error(failure, "ambiguous_star", message, failure.replaced("", (start, end)))

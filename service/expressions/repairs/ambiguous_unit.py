@@ -9,7 +9,7 @@ def repair(failure: Failure) -> Repair:
     if not failure.details["opens"]:
         return None
     message = (
-        "A unit before a bracket has two readings. Write the unit behind the number: 90deg, "
-        "or (180/2)deg."
+        "A unit before a bracket has two readings. Write an operator between them, as in 2deg*(3), "
+        "or the unit after the bracket, as in (180/2)deg."
     )
     return error(failure, "ambiguous_unit", message)

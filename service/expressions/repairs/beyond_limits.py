@@ -20,5 +20,8 @@ def repair(failure: Failure) -> Repair:
     if limit == "terms":
         message = "A sum or a product here is too long. Collect its terms."
         return error(failure, "too_many_nodes", message)
-    message = f"This has more than {LIMITS.depth} levels of brackets. Write it with fewer."
+    message = (
+        f"More than {LIMITS.depth} brackets, signs or functions stand inside each other. "
+        "Write it with fewer."
+    )
     return error(failure, "too_deep", message)

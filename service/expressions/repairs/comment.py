@@ -22,5 +22,5 @@ def repair(failure: Failure) -> Repair:
             "For a fraction, write one slash."
         )
         return error(failure, "comment", message, division, match.span())
-    message = f"The text behind {match.group()} looks like a comment. Write only the formula."
+    message = f"The text after {match.group()} looks like a comment. Write only the formula."
     return error(failure, "comment", message, before, (match.start(), len(failure.source)))

@@ -1,7 +1,12 @@
 """Indices of programs that name no symbol: q[6] on six joints, or two styles in one text."""
 
+import re
+
 from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
 
+# A whole number in brackets: what stands in front of it is the unknown name.
+_NUMBERED = re.compile(r"\[\s{0,8}\d+\s{0,8}\]")
+_PLAINLY = "Write the index without brackets."
 _COUNTING = {"[": "Python counts from 0, so", "(": "MATLAB counts from 1, so"}
 
 
@@ -12,7 +17,7 @@ def repair(failure: Failure) -> Repair:
         return _no_number(failure)
     details, written = failure.details, quoted(failure.written)
     if details["reason"] == "mixed":
-        message = "Two ways to count joints are mixed here. Write q1 for joint 1."
+        message = "Two ways to count joints are mixed here. Write each index without brackets."
         return error(failure, "mixed_index", message)
     if details["reason"] == "no_stem":
         message = f"{written} may be an index or a factor. Write * before a factor."
@@ -22,7 +27,7 @@ def repair(failure: Failure) -> Repair:
     if details["reason"] == "shorthand":
         message += ". Write the shorthand without brackets."
         return error(failure, "index", message, failure.replaced(f"{run}{digits}"))
-    message += ", which is no name here. Write q1 for joint 1."
+    message += f", which is no name here. {_PLAINLY}"
     plain = failure.replaced(f"{run}{int(digits) - 1}") if details["style"] == "[" else None
     return error(failure, "index", message, plain)
 
@@ -30,7 +35,7 @@ def repair(failure: Failure) -> Repair:
 def _no_number(failure: Failure) -> Repair:
     """Refuse q[i] and q[-1]."""
     start, end = failure.span
-    if failure.source[end : end + 1] != "[":
+    if failure.source[end : end + 1] != "[" or _NUMBERED.match(failure.source, end):
         return None
-    message = "An index in brackets is a number. Write q1 for joint 1."
+    message = f"An index must be a positive whole number. {_PLAINLY}"
     return error(failure, "index", message, span=(start, end + 1))

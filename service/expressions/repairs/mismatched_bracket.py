@@ -1,7 +1,11 @@
 """(q1 + q2]: a bracket closed by one of another kind."""
 
+import re
+
 from service.expressions.characters.unicode import CLOSE
 from service.expressions.repairs.failure import Failure, Repair, answers, error, position, quoted
+
+_COMMAND = re.compile(r"\\(?:[dtc]?frac|sqrt)\s{0,8}$")
 
 
 @answers("mismatch")
@@ -10,7 +14,9 @@ def repair(failure: Failure) -> Repair:
     opener, wanted = failure.details["opener"], failure.details["wanted"]
     first = quoted(failure.source[slice(*opener)])
     if wanted == CLOSE or failure.span[0] == failure.span[1]:
-        message = f"{first} is not closed in its place."
+        message = f"The {first} at {position(opener)} has no closing bracket."
+        if command := _COMMAND.search(failure.source, 0, opener[0]):
+            message = f"Write braces after `{command[0].rstrip()}`, not {first}."
         return error(failure, "mismatched_bracket", message, span=opener)
     message = (
         f"{first} at {position(opener)} is closed by {quoted(failure.written)} at "

@@ -19,7 +19,7 @@ def repair(failure: Failure) -> Repair:
         alone = not number.start() and end == len(failure.source.rstrip())
         suggestion = failure.replaced(total if alone else f"({total})", (number.start(), end))
     message = (
-        f"A number with {failure.written} behind it can mean a sum or a product. "
+        f"A number with {failure.written} after it can mean a sum or a product. "
         f"Write it out: + {fraction} or *({fraction})."
     )
     return error(failure, "two_values", message, suggestion)

@@ -2,6 +2,4 @@
 
 from service.expressions.repairs.failure import refusal
 
-repair = refusal(
-    "boolean", "not_a_number", "true and false are no numbers. For a number, write 1 or 0."
-)
+repair = refusal("boolean", "not_a_number", "Write a number or a formula, not true or false.")

@@ -2,4 +2,8 @@
 
 from service.expressions.repairs.failure import refusal
 
-repair = refusal("not_finite", "not_finite", "This is no finite number. Write a finite one.")
+repair = refusal(
+    "not_finite",
+    "not_finite",
+    "This number is infinite, undefined or too large. Write a finite number.",
+)

@@ -2,7 +2,7 @@
 
 import re
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
 
 _RAISED_T = re.compile(r"\^\s*\{?\s*(?:\\top|T)\s*\}?|\.'")
 
@@ -16,8 +16,6 @@ def repair(failure: Failure) -> Repair:
         if match is None or match.end() < span[0] or match.start() > span[1]:
             return None
         span = match.span()
-    message = (
-        "A single value has no transpose and no derivative here. Leave out the mark, or use a name "
-        "of the exercise."
-    )
+    mark = quoted(failure.source[slice(*span)].strip())
+    message = f"A single value has no transpose and no derivative here. Leave out {mark}."
     return error(failure, "transpose", message, failure.replaced("", span).strip() or None, span)

@@ -1,6 +1,6 @@
 """(q1 + 90)deg: a variable is not a number of degrees."""
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
 
 
 @answers("unit_on_variable")
@@ -14,5 +14,6 @@ def repair(failure: Failure) -> Repair:
     suggestion = None
     if alone and rest in {"°", "deg", "degree", "degrees", "rad", "radian", "radians"}:
         suggestion = failure.replaced("", (inside[1], end))
-    message = f"A unit belongs behind a number, not behind {failure.details['name']}: q1 + 90deg."
+    name = quoted(failure.source[slice(*inside)])
+    message = f"A unit belongs after a number. Write it there, and not after {name}."
     return error(failure, "unit_on_variable", message, suggestion)

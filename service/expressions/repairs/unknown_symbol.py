@@ -44,7 +44,7 @@ def _written(piece: Piece, run: str) -> str:
 
 
 def _listed(name: str, vocabulary: Vocabulary) -> str:
-    """A sentence on the names with the same letter, or else of the same kind."""
+    """A sentence on the names with the same letter, or else of the same kind, or else on all."""
     siblings = _siblings(name, vocabulary)
     if name in _OF_JOINTS:
         siblings = [symbol for symbol in vocabulary.symbols if symbol.joint is not None]
@@ -55,7 +55,9 @@ def _listed(name: str, vocabulary: Vocabulary) -> str:
     constants = [symbol for symbol in named if symbol.joint is None]
     if constants:
         return f" Its {kind}s are {_joined(constants)}."
-    return "" if kind is None or named else f" It has no {kind}s."
+    if kind is not None and not named:
+        return f" It has no {kind}s."
+    return f" It has {_joined(list(vocabulary.symbols))}." if vocabulary.symbols else ""
 
 
 def _siblings(name: str, vocabulary: Vocabulary) -> list[Symbol]:

@@ -1,5 +1,6 @@
 """atan2 of one value, sin of two, atan(y, x), and cos(0,5) with a decimal comma."""
 
+from service.expressions.errors import counted
 from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 
@@ -11,10 +12,10 @@ def repair(failure: Failure) -> Repair:
     if len(places) == 2 * wanted and (point := _with_points(failure)) is not None:
         message = "A comma separates values. Write one number with a point."
         return error(failure, "decimal_comma", message, point, (places[0][1], places[1][0]))
-    message = f"The function {name} takes {_count(wanted)}, and {_count(len(places))} stand here."
+    message = f"The function {name} takes {counted(wanted)}, and {counted(len(places))} stand here."
     suggestion = None
     if len(places) == 1:
-        message = f"The function {name} takes {_count(wanted)}, and one stands here."
+        message = f"The function {name} takes {counted(wanted)}, and one stands here."
     if name == "atan" and len(places) == 2:
         suggestion = failure.replaced("atan2", failure.details["function"])
     if name == "atan2":
@@ -32,7 +33,3 @@ def _with_points(failure: Failure) -> str | None:
             return None
         source = f"{source[: left[1]]}.{source[right[0] :]}"
     return None if failure.details["name"] == "atan" else source
-
-
-def _count(number: int) -> str:
-    return "one value" if number == 1 else f"{number} values"

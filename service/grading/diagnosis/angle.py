@@ -4,7 +4,7 @@ import numpy as np
 
 from service.expressions.tree import Call, Node
 from service.grading.comparison import difference
-from service.grading.diagnosis.angle_sum import explain_sum
+from service.grading.diagnosis.angle_sum import BETWEEN, explain_sum
 from service.grading.diagnosis.formula_rewriting import nodes
 from service.grading.diagnosis.wrong_value import (
     Hypotheses,
@@ -15,7 +15,8 @@ from service.grading.diagnosis.wrong_value import (
 )
 from service.grading.feedback import Finding
 from service.grading.misconception import Repaired, Written, diagnosed
-from service.grading.tolerances import ROUNDED_VALUE
+from service.grading.tolerances import CONSTANT, ROUNDED_VALUE
+from service.kinematics.transforms import Numbers
 
 WRONG_SIGN = (
     "The sign of this angle is wrong: an angle counts positive by the right-hand rule about its "
@@ -26,6 +27,10 @@ FITS_IN_DEGREES = (
 )
 FITS_IN_RADIANS = (
     "This angle was read in degrees, but it fits in radians: write the unit behind it (rad)."
+)
+CONVERTED = (
+    "This angle was converted between degrees and radians. Leave out the factor: a joint variable "
+    "and a function such as atan2 already give the angle."
 )
 ARGUMENTS_SWAPPED = (
     "The arguments of atan2 are exchanged: in atan2(y, x) the part of the sine comes first, that "
@@ -39,13 +44,20 @@ def sign(case: WrongValue) -> Hypotheses:
 
 
 def degrees_as_radians(case: WrongValue) -> Hypotheses:
-    """A number in degrees was handed in where radians are read."""
-    yield Repaired(np.radians(case.actual), finding_on(case, "degrees_as_radians", FITS_IN_DEGREES))
+    """An angle in degrees was handed in where radians are read."""
+    hint = FITS_IN_DEGREES if is_constant(case.actual) else CONVERTED
+    yield Repaired(np.radians(case.actual), finding_on(case, "degrees_as_radians", hint))
 
 
 def radians_as_degrees(case: WrongValue) -> Hypotheses:
-    """A number in radians was handed in where degrees are read."""
-    yield Repaired(np.degrees(case.actual), finding_on(case, "radians_as_degrees", FITS_IN_RADIANS))
+    """An angle in radians was handed in where degrees are read."""
+    hint = FITS_IN_RADIANS if is_constant(case.actual) else CONVERTED
+    yield Repaired(np.degrees(case.actual), finding_on(case, "radians_as_degrees", hint))
+
+
+def is_constant(angle: Numbers) -> bool:
+    """Whether an angle ``(SAMPLES,)`` is a number; a formula in the wrong unit has a factor."""
+    return bool(np.ptp(angle) < CONSTANT)
 
 
 def lost_quadrant(case: WrongValue) -> Hypotheses:
@@ -55,8 +67,8 @@ def lost_quadrant(case: WrongValue) -> Hypotheses:
         finding = finding_on(
             case,
             "lost_quadrant",
-            "This angle is right for some joint values and half a turn off for others: atan(y/x) "
-            "takes opposite directions for one, atan2(y, x) tells them apart.",
+            "This angle is right for some joint values only: atan(y/x) gives one angle for two "
+            "opposite directions. Use atan2(y, x).",
         )
         yield Written(case.expected + np.pi * opposite, finding, tolerance=ROUNDED_VALUE)
 
@@ -73,8 +85,7 @@ def lost_sign(case: WrongValue) -> Hypotheses:
             finding = finding_on(
                 case,
                 "lost_quadrant",
-                f"This angle is right for some joint values only: {reason}, atan2(y, x) tells all "
-                "directions apart.",
+                f"This angle is right for some joint values only: {reason}. Use atan2(y, x).",
             )
             written = np.where(is_other, other, case.expected)
             yield Written(written, finding, tolerance=ROUNDED_VALUE)
@@ -85,8 +96,7 @@ def half_turn(case: WrongValue) -> Hypotheses:
     finding = finding_on(
         case,
         "half_turn",
-        "This angle leads to the opposite direction: check which way the directions point that it "
-        "is measured between.",
+        "This angle is off by half a turn: check its signs, and in atan2 those of both arguments.",
         otherwise="It is off by half a turn (180°).",
     )
     yield Written(case.expected + np.pi, finding, tolerance=ROUNDED_VALUE)
@@ -117,7 +127,7 @@ def quarter_turn(case: WrongValue) -> Hypotheses:
     finding = finding_on(
         case,
         "quarter_turn",
-        "This angle is not right: check which directions it is measured between.",
+        f"This angle is not right: {BETWEEN}",
         otherwise="It is off by a quarter turn (90°).",
     )
     error = difference(case.actual, case.expected, angle=True)
@@ -133,6 +143,4 @@ MISCONCEPTIONS = (sign, *OF_UNIT, *OF_TURNS)
 def diagnose_angle(case: WrongValue) -> Finding:
     """The finding on a wrong angle."""
     found = diagnosed(case, MISCONCEPTIONS, CHECKS) or explain_sum(case)
-    return found or differs(
-        case, "This angle is not right: look which turns lie between the two directions."
-    )
+    return found or differs(case, f"This angle is not right: {BETWEEN}")

@@ -17,7 +17,8 @@ from service.kinematics.transforms import Numbers
 # An angle of more addends is not taken apart: the subsets of ten are a thousand.
 MAX_ADDENDS = 6
 
-SUMMED = "Add up every turn between the two directions."
+SUMMED = "Check which angles add up to it."
+BETWEEN = "check which two directions it is measured between."
 
 
 def addends(case: WrongValue) -> dict[str, int]:
@@ -92,7 +93,7 @@ def left_out(wrong: WrongSum) -> Hypotheses:
 def constant(wrong: WrongSum) -> Hypotheses:
     """No angle is counted."""
     if wrong.counts and np.ptp(wrong.case.actual) < CONSTANT:
-        hint = "This angle is a constant, but it must change when the angles before it change."
+        hint = "This angle is constant, but it must not be: check which variables it depends on."
         yield Written(wrong.case.actual, finding_on(wrong.case, "joint_variable_missing", hint))
 
 
@@ -101,7 +102,7 @@ def reversed_addends(wrong: WrongSum) -> Hypotheses:
     for names, part in wrong.subsets():
         verb = "has" if len(names) == 1 else "have"
         hint = (
-            f"{wrong.named(names)} {verb} the wrong sign in this angle: look which way this turn "
+            f"{wrong.named(names)} {verb} the wrong sign in this angle: check which way this turn "
             "counts positive."
         )
         yield Written(
@@ -120,10 +121,7 @@ def counted_twice(wrong: WrongSum) -> Hypotheses:
 def added(wrong: WrongSum) -> Hypotheses:
     """An angle is counted that does not turn the direction."""
     for name, value in wrong.others():
-        hint = (
-            f"{wrong.named([name])} does not belong in this angle: look which turns lie between "
-            "the two directions."
-        )
+        hint = f"{wrong.named([name])} does not belong in this angle: {BETWEEN}"
         for sign in (1, -1):
             finding = finding_on(wrong.case, "joint_variable_extra", hint)
             yield Written(wrong.case.expected + sign * value, finding)
@@ -133,10 +131,7 @@ def of_another_joint(wrong: WrongSum) -> Hypotheses:
     """An angle is counted in place of another."""
     for other, value in wrong.others():
         for name, count in wrong.counts.items():
-            hint = (
-                f"{wrong.named([other])} stands in the place of another angle: look which turns "
-                "lie between the two directions."
-            )
+            hint = f"{wrong.named([other])} stands in the place of another angle: {BETWEEN}"
             written = wrong.case.expected + count * (value - wrong.case.samples.values[name])
             yield Written(written, finding_on(wrong.case, "joint_variable_index", hint))
 

@@ -89,7 +89,7 @@ def violated(transform: Matrices, convention: Convention, length_scale: float) -
     row_of_entry, column = (3, 1) if convention is Convention.STANDARD else (1, 3)
     perpendicular = Finding(
         "dh_not_perpendicular",
-        f"Check the first DH condition: is {x} perpendicular to {z}? Look at the entry in row "
+        f"Check the first DH condition: is {x} perpendicular to {z}? Check the entry in row "
         f"{row_of_entry}, column {column}.",
         f"It is not 0, so that {x} is not perpendicular to {z} and there is no row.",
     )

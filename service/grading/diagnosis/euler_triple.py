@@ -60,7 +60,16 @@ def some_angles(case: WrongTriple) -> Iterator[RepairedTriple]:
                 if finding.code == "swapped_atan2" and not may_be_swapped[slipped].all():
                     continue
                 mixed = np.where(slipped[:, None], repaired, angles)
-                yield Repaired(replace(case, angles=mixed), finding, slipped)
+                told = _told_of(finding, angles[slipped])
+                yield Repaired(replace(case, angles=mixed), told, slipped)
+
+
+def _told_of(finding: Finding, angles: Numbers) -> Finding:
+    """The finding on some angles; a formula in the wrong unit has a factor in it."""
+    is_of_unit = finding.hint in (angle.FITS_IN_DEGREES, angle.FITS_IN_RADIANS)
+    if is_of_unit and not all(map(angle.is_constant, angles)):
+        return replace(finding, hint=angle.CONVERTED)
+    return finding
 
 
 def other_order(case: WrongTriple) -> Iterator[RepairedTriple]:

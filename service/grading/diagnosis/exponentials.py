@@ -77,8 +77,8 @@ def moment_sign(product: Exponentials) -> Hypotheses:
     """V was taken to be ω × q for every turning joint."""
     finding = Finding(
         "moment_sign",
-        "The screw axes behind this have v = ω × q: the turn moves the point at the origin with "
-        "v = −ω × q.",
+        "v has the wrong sign in the screw axes behind this: check the order of ω and q in the "
+        "cross product.",
     )
     for axes, multiply in ((product.space, product_in_space), (product.body, product_in_body)):
         turns = np.abs(axes[..., :3]).max(axis=-1, keepdims=True) > 0.5

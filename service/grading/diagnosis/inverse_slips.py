@@ -72,8 +72,8 @@ def position_not_turned(case: MatrixCase) -> Hypotheses:
     """The position of the inverse was taken to be −p."""
     finding = Finding(
         "position_not_turned",
-        "The position is the right vector, but described in the axes of the other frame: turn it, "
-        f"too. {RULE}",
+        "The position is the right vector, but seen in the axes of the other frame: it must be "
+        f"turned, too. {RULE}",
     )
     if case.is_transform:
         _, position = _parts(case)
@@ -84,8 +84,7 @@ def position_not_inverted(case: MatrixCase) -> Hypotheses:
     """The position was left as it was before the transform was inverted."""
     finding = Finding(
         "position_not_inverted",
-        "This position belongs to the transform the other way round: it goes with the transposed "
-        f"rotation. {RULE}",
+        f"The position is still that of the transform that was to be inverted. {RULE}",
     )
     if case.is_transform:
         _, position = _parts(case)
@@ -96,8 +95,7 @@ def position_reversed(case: MatrixCase) -> Hypotheses:
     """The position was turned into the other frame, but not reversed."""
     finding = Finding(
         "reversed_position",
-        "Every coordinate of the position has the wrong sign: the vector points the opposite way. "
-        f"{RULE}",
+        f"Every coordinate of the position has the wrong sign. {RULE}",
     )
     if case.is_transform:
         yield _position(-case.expected[:3, 3], finding)

@@ -120,7 +120,7 @@ def _numbered_by_kind(joint: Joint, spelling: Spelling) -> Finding:
     variable = spelling.names.get(joint.variable, joint.variable)
     return Finding(
         "joint_numbering_by_kind",
-        f"Turning and sliding joints are numbered separately. This robot's joints are numbered in "
-        f"one row from base to tool: the variable of joint {joint.index} is {variable}.",
-        "Number all joints in one row, whether they turn or slide.",
+        f"Turning and sliding joints are numbered separately. Number all joints together, from the "
+        f"base to the end effector: the variable of joint {joint.index} is {variable}.",
+        "Number turning and sliding joints together.",
     )

@@ -42,7 +42,7 @@ def counts_the_wrong_way(joint: Joint, axis: Axis, cell: CellChange | None = Non
     return Slip(
         "joint_variable_sign",
         f"joint {joint.index} {verb} the wrong way",
-        axis(joint),
+        f"check the sign of its variable. {axis(joint)}",
         f"Change the sign of {{{joint.variable}}} throughout.",
         symbols=(SymbolChange(joint.variable, joint.variable, -1.0),),
         cell=cell,
@@ -55,7 +55,7 @@ def stands_still(joint: Joint, cell: CellChange | None = None) -> Slip:
     return Slip(
         "joint_variable_missing",
         f"joint {joint.index} stands still",
-        f"nothing {verb} with {{{joint.variable}:its variable}} as it should.",
+        f"check what must change with {{{joint.variable}:its variable}}.",
         f"Joint {joint.index} {verb} with {{{joint.variable}}}.",
         symbols=(SymbolChange(joint.variable, joint.variable, 0.0),),
         cell=cell,
@@ -97,14 +97,14 @@ def _turned_joint(joint: Joint, code: str, turn: float, error: str) -> Slip:
     return Slip(
         code,
         f"joint {joint.index} starts from another position",
-        f"look how the link lies when {{{joint.variable}:its variable}} is 0.",
+        f"check how the link lies when {{{joint.variable}:its variable}} is 0.",
         f"{{{joint.variable}}} is off by {error}.",
         symbols=(SymbolChange(joint.variable, joint.variable, 1.0, turn),),
     )
 
 
 def home_slip(joints: Sequence[Joint]) -> Iterator[Slip]:
-    """The answer was worked out for the home configuration."""
+    """The answer was worked out for the home position."""
     if len(joints) > 1:
         yield Slip(
             HOME_POSITION,
@@ -132,7 +132,7 @@ def _length_sign(length: str) -> Slip:
     return Slip(
         "sign",
         f"the length {{{length}:of one link}} has the wrong sign",
-        "look along which axis it is measured, and which way.",
+        "check along which axis it is measured, and which way.",
         f"Change the sign of {{{length}}} throughout.",
         symbols=(SymbolChange(length, length, -1.0),),
     )
@@ -142,7 +142,7 @@ def _length_left_out(length: str) -> Slip:
     return Slip(
         "distance_left_out",
         f"the length {{{length}:of one link}} is left out",
-        "look in the drawing which frames it lies between.",
+        "check which frames it lies between.",
         symbols=(SymbolChange(length, length, 0.0),),
     )
 
@@ -150,9 +150,8 @@ def _length_left_out(length: str) -> Slip:
 def _exchanged(one: str, other: str) -> Slip:
     return Slip(
         "lengths_exchanged",
-        f"the lengths {{{one}:of one link}} and {{{other}:of another}} stand in each other's "
-        "places",
-        "look in the drawing which link each of them belongs to.",
+        f"the lengths {{{one}:of one link}} and {{{other}:of another}} are exchanged",
+        "check which link each of them belongs to.",
         f"Write {{{one}}} for {{{other}}}, and {{{other}}} for {{{one}}}.",
         symbols=(SymbolChange(one, other), SymbolChange(other, one)),
     )
@@ -162,7 +161,7 @@ def _other_length(right: str, written: str) -> Slip:
     return Slip(
         "other_length",
         f"the length {{{written}:of one link}} stands where another length belongs",
-        "look in the drawing which link it belongs to.",
+        "check which link it belongs to.",
         f"It is {{{right}}}.",
         symbols=(SymbolChange(right, written),),
     )
@@ -180,11 +179,10 @@ def axis_direction(exercise: Exercise, samples: Samples) -> Axis:
         first = exercise.joints[0].index - 1
         screw = screws()[exercise.joints.index(joint)]
         cosine = screw[5] if joint.prismatic else screw[2]
-        verb = "slide along" if joint.prismatic else "turn about"
         if cosine < -1 + SAME_MOTION:
-            return f"its axis points opposite to z{first}."
+            return f"Its axis points opposite to z{first}."
         if cosine > 1 - SAME_MOTION:
-            return f"its axis points along z{first}."
-        return f"look which way the axis points that it must {verb}."
+            return f"Its axis points along z{first}."
+        return "Check which way its axis points."
 
     return direction

@@ -24,16 +24,15 @@ LinkPose = Written[Matrices]
 
 @dataclass(frozen=True)
 class Chain:
-    """The links of the reference in one convention.
+    """The links of the reference.
 
     ``table`` is ``(rows, 4, SAMPLES)``. ``frames`` names the frame that each row starts from, then
-    the last frame. ``is_asked`` says that the convention is the exercise's.
+    the last frame.
     """
 
     table: Table
     convention: Convention
     frames: tuple[str, ...]
-    is_asked: bool = True
 
     @cached_property
     def links(self) -> Matrices:
@@ -61,9 +60,8 @@ class Chain:
         return "·".join(f"A{self.frames[i + 1]}" for i in order)
 
     def frame(self, i: int) -> str:
-        """Frame ``i`` as a textbook writes it; in another convention than asked, with its name."""
-        name = f"{{{self.frames[i]}}}"
-        return name if self.is_asked else f"{name} of the {self.convention.value} convention"
+        """Frame ``i`` as a textbook writes it."""
+        return f"{{{self.frames[i]}}}"
 
 
 def _running_products(transforms: Matrices) -> Matrices:
@@ -75,19 +73,12 @@ def _running_products(transforms: Matrices) -> Matrices:
 
 
 def chains_of(exercise: Exercise, samples: Samples) -> tuple[Chain, ...]:
-    """The exercise's robot in each convention that can express it, the exercise's own first."""
+    """The links of the exercise's robot, in its own convention: a student knows no other."""
     robot = exercise.robot
+    table = robot.tables[robot.convention]
     base = str(robot.joints[0].index - 1)
-    chains = [
-        Chain(
-            table.values(samples.values, samples.count),
-            convention,
-            frames=(base, *table.labels),
-            is_asked=convention is robot.convention,
-        )
-        for convention, table in robot.tables.items()
-    ]
-    return tuple(sorted(chains, key=lambda chain: not chain.is_asked))
+    values = table.values(samples.values, samples.count)
+    return (Chain(values, robot.convention, frames=(base, *table.labels)),)
 
 
 def reversed_product(chain: Chain) -> Iterator[LinkPose]:
@@ -108,7 +99,7 @@ def other_convention(chain: Chain) -> Iterator[LinkPose]:
     finding = Finding(
         "other_convention",
         f"the product that the table gives with the link transform of the {used} convention. "
-        "Check in which order a link transform turns and shifts about z and about x.",
+        "Check in which order a link transform moves about and along z and x.",
         f"The table is written in the {right} convention.",
     )
     yield Written(compound(chain.misread_links), finding)
@@ -159,7 +150,7 @@ def premultiplied(chain: Chain) -> Iterator[LinkPose]:
     Multiplied so throughout, the whole product is reversed, down to the turns and shifts in a link.
     """
     order = list(range(len(chain.links)))
-    advice = "What happens about the axes of the frame reached so far is multiplied from the right."
+    advice = "Check on which side a motion about a moving axis is multiplied."
     correction = f"Multiply from the right throughout: {chain.product(order)}."
     poses = chain.links[1:] @ chain.from_base[:-1]
     poses[:-1] = poses[:-1] @ chain.to_end[2:]
@@ -167,7 +158,7 @@ def premultiplied(chain: Chain) -> Iterator[LinkPose]:
         wrong_order = chain.product([k, *order[:k], *order[k + 1 :]])
         used = f"the product with A{chain.frames[k + 1]} multiplied from the left, {wrong_order}."
         yield Written(pose, Finding("premultiplied", f"{used} {advice}", correction))
-    used = "the product of all turns and shifts in reverse order, each multiplied from the left."
+    used = "the product of all rotations and translations, each put on the left."
     throughout = Finding("premultiplied", f"{used} {advice}", correction)
     yield Written(compound(chain.misread_links[::-1]), throughout)
 
@@ -178,7 +169,7 @@ MISCONCEPTIONS = (reversed_product, other_convention, *OF_FRAMES, *OF_FACTORS)
 
 
 def other_poses(chains: tuple[Chain, ...]) -> list[LinkPose]:
-    """The poses that all misconceptions lead to, those of the exercise's own convention first."""
+    """The poses that all misconceptions lead to."""
     return [pose for chain in chains for pose in hypotheses_of(chain, MISCONCEPTIONS)]
 
 

@@ -19,8 +19,9 @@ from service.grading.feedback import Finding
 from service.grading.judging.expected import as_entries
 from service.grading.misconception import Written, explanation
 from service.grading.samples import Samples
-from service.kinematics.chain import compound
+from service.kinematics.chain import A, D, compound
 from service.kinematics.dh import Convention
+from service.kinematics.dh_row import row
 from service.kinematics.transforms import Matrices, Numbers, rot_z
 
 
@@ -80,7 +81,21 @@ def pose_for_link(link: LinkAmongOthers) -> Hypotheses:
         yield Written(as_entries(compound(link.links)), finding)
 
 
-MISCONCEPTIONS = (absolute_angle, pose_for_link)
+def translation_not_turned(link: LinkAmongOthers) -> Hypotheses:
+    """The translations were written beside the rotation, as if nothing turned them."""
+    finding = Finding(
+        "translation_not_turned",
+        "The rotation is right, but the last column is not turned with it. Check the order of the "
+        "four factors of a link transform.",
+    )
+    right = link.links[-1]
+    cells = row(right, link.convention)
+    beside = right.copy()
+    beside[:, :3, 3] = np.stack([cells[A], np.zeros_like(cells[A]), cells[D]], axis=-1)
+    yield Written(as_entries(beside), finding)
+
+
+MISCONCEPTIONS = (absolute_angle, pose_for_link, translation_not_turned)
 
 
 def explain_link(link: LinkAmongOthers, case: MatrixCase) -> list[Explanation]:

@@ -90,8 +90,8 @@ def product_for_sum_angle(case: WrongEntry) -> Formulas:
     """The shorthand c12 was read as c1 c2, s12 as s1 s2, in all places or for some joints."""
     finding = Finding(
         "product_for_sum_angle",
-        "A cosine with several joint numbers is the cosine of the sum of these joint angles, not a "
-        "product of cosines. It is the same for sines.",
+        "Check this product of sines or cosines: the direction of a link has one sine or cosine of "
+        "a sum of joint angles.",
     )
     if len(case.sines_and_cosines) > 1:
         yield Rewritten(rewriting.products_merged(case.tree), finding)
@@ -131,7 +131,7 @@ def angle_too_many(case: WrongEntry) -> Formulas:
         finding = Finding(
             "joint_variable_extra",
             f"{case.spelling.name(symbol)} does not belong in a sine or cosine here: the direction "
-            "of a link is the sum of the joint angles up to it, and of none behind it.",
+            "of a link is the sum of the joint angles up to it, and of none after it.",
         )
         yield from _with_angles_changed(case, rewriting.without_angle(symbol), finding)
 
@@ -199,5 +199,5 @@ def _explained(case: WrongEntry, *, take_apart: bool) -> Finding | None:
 def _unexplained(case: WrongEntry, required: Required | None) -> Finding:
     return (required and explain_dependence(case, required)) or differs(
         case,
-        "This is not right. Check each term: which lengths and angles belong in it, and its sign.",
+        "This is not right. Check each term: its factor, length, angle and sign.",
     )

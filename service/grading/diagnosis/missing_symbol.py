@@ -13,7 +13,7 @@ from service.grading.diagnosis.formula_repair import WrongEntry
 from service.grading.diagnosis.slip import Change, SymbolChange
 from service.grading.diagnosis.slipped_answers import SlippedAnswers
 from service.grading.diagnosis.wording import listed
-from service.grading.diagnosis.wrong_value import Mask, finding_on
+from service.grading.diagnosis.wrong_value import Mask, differs, finding_on
 from service.grading.feedback import Finding
 from service.grading.samples import Samples
 from service.kinematics.transforms import Numbers
@@ -21,6 +21,7 @@ from service.kinematics.transforms import Numbers
 # A change that no entry of a robot is blind to: no whole turn, no factor of any length.
 PROBE = 0.37
 TWICE = 2.0
+NOT_ZERO = "This must not be 0: check which lengths have a part here."
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,14 +89,18 @@ def explain_dependence(case: WrongEntry, required: Required) -> Finding | None:
     """What a wrong entry lacks, or what it has too much."""
     written = case.expression.symbols
     joints = [name for name in required.joints if name in required.symbols - written]
+    if not written and joints:
+        return _constant(case)
+    if required.grows == 1 and required.lengths and _same(case, case.actual, 0 * case.actual):
+        return differs(case, NOT_ZERO)
     if not written:
-        return _constant(case) if joints else None
+        return None
     lengths = sorted(required.symbols & required.lengths - written - set(required.joints))
     return (
         _wrong_quantity(case, required)
-        or _missing(case, joints, "Look what this joint moves.", "Look what these joints move.")
+        or _missing_joints(case, joints)
         or _extra(case, [name for name in required.joints if name in written - required.symbols])
-        or _missing(case, lengths, "Look where this length lies.", "Look where these lengths lie.")
+        or (_missing_length(case) if lengths else None)
     )
 
 
@@ -120,18 +125,26 @@ def _wrong_quantity(case: WrongEntry, required: Required) -> Finding | None:
     if _same(case, twice, (1 + required.grows) * once):
         return None
     if required.grows == 0:
-        return finding_on(case, "quantity", "A plain number is asked for; this has a length in it.")
+        hint = "A plain number is asked for, but this contains a length."
+        return finding_on(case, "quantity", hint)
     if _same(case, twice, once):
-        return finding_on(case, "quantity", "A length is asked for; this has none.")
-    hint = "A length is asked for, but not every term of this is one."
+        return finding_on(case, "quantity", "A length is asked for, but this contains none.")
+    hint = "A length is asked for, but not every term here is a length."
     return finding_on(case, "quantity", hint)
 
 
-def _missing(case: WrongEntry, names: list[str], one: str, several: str) -> Finding | None:
+def _missing_joints(case: WrongEntry, names: list[str]) -> Finding | None:
     if not names or any(_is_whole(case, name) for name in names):
         return None
-    advice = one if len(names) == 1 else several
-    hint = f"Nothing here depends on {_named(case, names)}. {advice}"
+    advice = "Check what this joint moves." if len(names) == 1 else "Check what these joints move."
+    return finding_on(
+        case, "independent_of", f"Nothing here depends on {_named(case, names)}. {advice}"
+    )
+
+
+def _missing_length(case: WrongEntry) -> Finding:
+    """Its name is not told: it may be all that is missing."""
+    hint = "A length is missing here: check which lengths have a part in this."
     return finding_on(case, "independent_of", hint)
 
 
@@ -146,7 +159,7 @@ def _extra(case: WrongEntry, names: Iterable[str]) -> Finding | None:
     ]
     if not moving:
         return None
-    hint = f"This must not change with {_named(case, moving)}. Look what moves it."
+    hint = f"This must not change with {_named(case, moving)}: check which joints move it."
     return finding_on(case, "joint_variable_extra", hint)
 
 

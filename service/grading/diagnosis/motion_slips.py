@@ -114,8 +114,8 @@ def turns_in_another_order(motion: GivenMotion) -> Hypotheses:
 
 OTHER_ORDER = Finding(
     "reversed_product",
-    "The motions were multiplied in the wrong order: each is seen from the frame that the one "
-    "before has reached, so the first stands on the left.",
+    "The motions were multiplied in the wrong order. Each is described in the frame that the one "
+    "before it has reached, so the first stands on the left.",
 )
 
 

@@ -29,7 +29,7 @@ def exchanged_coordinates(case: WrongPosition) -> Hypotheses:
     names = ", ".join("xyz"[axis] for axis in case.axes)
     finding = Finding(
         "exchanged_coordinates",
-        f"These coordinates stand in each other's places: the order is {names}.",
+        f"These coordinates are in the wrong order: it must be {names}.",
     )
     for order in permutations(range(len(case.axes))):
         yield Written(case.expected[list(order)], finding)
@@ -39,8 +39,7 @@ def reversed_position(case: WrongPosition) -> Hypotheses:
     """The vector was taken from the point to the origin."""
     finding = Finding(
         "reversed_position",
-        "Every coordinate has the wrong sign: the vector leads from the origin of the first frame "
-        "to the point.",
+        "Every coordinate has the wrong sign: check where the vector must start and end.",
     )
     yield Written(-case.expected, finding)
 

@@ -69,7 +69,7 @@ def about_another_axis(steps: Sequence[Step]) -> Hypotheses:
         for axis in "XYZ".replace(step.axis, ""):
             finding = Finding(
                 "turn_axis",
-                f"Turn {i + 1} was made about {axis.lower()}: look which axis it is about.",
+                f"Turn {i + 1} was made about {axis.lower()}: check which axis it is about.",
                 f"It is about {step.axis.lower()}.",
             )
             turned = replace(step, rotation=_about(axis, step))
@@ -81,7 +81,7 @@ def by_another_angle(steps: Sequence[Step]) -> Hypotheses:
     for i, j in permutations(range(len(steps)), 2):
         finding = Finding(
             "turn_angle",
-            f"Turn {i + 1} was made by the angle of turn {j + 1}: look which angle belongs to "
+            f"Turn {i + 1} was made by the angle of turn {j + 1}: check which angle belongs to "
             "which axis.",
         )
         turned = list(steps)
@@ -90,7 +90,7 @@ def by_another_angle(steps: Sequence[Step]) -> Hypotheses:
     for i, j in combinations(range(len(steps)), 2):
         finding = Finding(
             "turn_angle",
-            f"The angles of turns {i + 1} and {j + 1} are exchanged: look which angle belongs to "
+            f"The angles of turns {i + 1} and {j + 1} are exchanged: check which angle belongs to "
             "which axis.",
         )
         turned = list(steps)

@@ -55,11 +55,11 @@ class WrongScrew(WrongNumbers):
 
 
 EXCHANGED_HALVES = Finding(
-    "exchanged_halves", "ω comes first here, v second: the order is (ω; v).", "Exchange ω and v."
+    "exchanged_halves", "ω and v are exchanged: write ω first, then v.", "Exchange ω and v."
 )
 AXIS_REVERSED = Finding(
     "axis_reversed",
-    "The axis points the opposite way: look which way the joint counts positive.",
+    "The axis points the opposite way: check which way the joint counts positive.",
     "Change the sign of all six numbers.",
 )
 MOMENT_SIGN = Finding(
@@ -70,7 +70,7 @@ MOMENT_SIGN = Finding(
 
 def seen_from_elsewhere(frame: str) -> Finding:
     """The finding that an axis is seen from the other frame than "space" or "body", asked for."""
-    seen, asked = ("tool", "base") if frame == "space" else ("base", "tool")
+    seen, asked = ("end-effector", "base") if frame == "space" else ("base", "end-effector")
     return Finding(
         "body_for_space" if frame == "space" else "space_for_body",
         f"ω and v are written as seen from the {seen} frame. A {frame} axis is seen from the "
@@ -101,7 +101,7 @@ def sliding_as_turning(case: WrongScrew) -> Hypotheses:
     """A sliding joint was written as one that turns: infinite pitch is ω = 0."""
     finding = Finding(
         "infinite_pitch",
-        "This joint slides and does not turn: look which of ω and v holds its direction.",
+        "This joint slides and does not turn: check which of ω and v holds its direction.",
         "ω is 0, and v is the unit vector of the direction.",
     )
     if not case.turns and (np.abs(case.actual[:3]).max(axis=0) > EXACT_VALUE).all():
@@ -113,7 +113,7 @@ def turning_as_sliding(case: WrongScrew) -> Hypotheses:
     """The axis of a turning joint was written in v."""
     finding = Finding(
         "infinite_pitch",
-        "This joint turns and does not slide: look which of ω and v holds its direction.",
+        "This joint turns and does not slide: check which of ω and v holds its direction.",
         "ω is the unit vector along the axis, and v = −ω × q.",
     )
     if case.turns:
@@ -130,7 +130,7 @@ def not_normalised(case: WrongScrew) -> Hypotheses:
     letter, unit = ("ω", slice(0, 3)) if case.turns else ("v", slice(3, 6))
     finding = Finding(
         "not_normalised",
-        f"The direction is right, but {letter} is not of length 1, as it must be here.",
+        f"The direction is right, but {letter} is not of length 1, as it must be.",
         f"Divide all six numbers by the length of {letter}.",
     )
     factor = (case.actual[unit] * case.expected[unit]).sum(axis=0)
@@ -155,7 +155,7 @@ def pitch(case: WrongScrew) -> Hypotheses:
     """The advance along the axis was left out, added, or is another."""
     if not case.turns:
         return
-    hint = "The part of v along ω is not right. It is h ω with the pitch h of this joint."
+    hint = "The part of v along ω is not right: check the pitch of this joint."
     along = ((case.actual[3:] - case.moment) * case.direction).sum(axis=0)
     if np.abs(along - case.pitch).max() >= ROUNDED_VALUE * case.length_scale:
         velocity = case.moment + along * case.direction
@@ -167,7 +167,8 @@ def point_off_axis(case: WrongScrew) -> Hypotheses:
     finding = Finding(
         "point_off_axis",
         "ω is right, v is not: v = −ω × q needs a point q on this axis. Check the coordinates of q "
-        f"in the {'base' if case.frame == 'space' else 'tool'} frame, and the cross product.",
+        f"in the {'base' if case.frame == 'space' else 'end-effector'} frame, and the cross "
+        "product.",
     )
     along = (case.actual[3:] * case.direction).sum(axis=0)
     if case.turns and nearly_equal(along, case.pitch, case.length_scale):
@@ -179,8 +180,7 @@ def other_direction(case: WrongScrew) -> Hypotheses:
     letter, unit = ("ω", slice(0, 3)) if case.turns else ("v", slice(3, 6))
     finding = Finding(
         "other_direction",
-        f"{letter} is a unit vector, but not along the axis of this joint: look along which "
-        f"direction the joint {'turns' if case.turns else 'slides'} in the home position.",
+        f"{letter} is not along the axis of this joint: check the axis in the home position.",
     )
     length = np.sqrt((case.actual[unit] ** 2).sum(axis=0))
     along = (case.actual[unit] * case.expected[unit]).sum(axis=0)

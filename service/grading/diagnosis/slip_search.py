@@ -1,6 +1,6 @@
 """The search for the slips of which a wrong answer follows, and the finding on them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -44,7 +44,7 @@ class SlipSearch:
     ``actual`` and ``expected`` are ``(..., L)`` at the first samples of each half of ``samples``,
     NaN where nothing could be read; ``wrong`` ``(...)`` marks the wrong entries. ``scale``
     broadcasts to ``(...)``, ``angle`` to ``(..., 1)``. ``name`` gives the student's name of a
-    symbol.
+    symbol; ``unwritten`` are the constants that the student did not write.
     """
 
     answers: SlippedAnswers
@@ -55,6 +55,7 @@ class SlipSearch:
     scale: ArrayLike
     angle: ArrayLike = False
     name: Callable[[str], str] = str
+    unwritten: Set[str] = frozenset()
 
     def finding(self, entries: Mask) -> Finding | None:
         """The finding on the slips that explain these entries; None where none does."""
@@ -63,8 +64,11 @@ class SlipSearch:
     def _gives_away(self, symbol: str) -> bool:
         """Whether to name a symbol would answer what is asked.
 
-        It is the whole of a wrong entry; or the answer stands still, and any variable moves it.
+        It is a constant that the student did not write, or the whole of a wrong entry; or the
+        answer stands still, and any variable moves it.
         """
+        if symbol in self.unwritten:
+            return True
         count = self.actual.shape[-1] // 2
         value = Samples.subset_of(self.samples.values[symbol], count)
         whole = nearly_equal(np.abs(self.expected[self.wrong]), np.abs(value)).any()
@@ -113,7 +117,8 @@ def _finding(
     if not clauses or len(clauses) > MOST_TOLD:
         return None
     likeliest, correction = slips[0], ""
-    hint = f"One of these slips explains it: {'; '.join(clauses[:-1])}; or {clauses[-1]}."
+    hint = f"One of these slips explains it: {'; '.join(clauses[:-1])}; or {clauses[-1]}. "
+    hint += "Check each of them."
     if len(clauses) == 1:
         hint = f"{clauses[0]}: {likeliest.advice}"
         correction = likeliest.correction.format_map(_Names(name, lambda _: False))

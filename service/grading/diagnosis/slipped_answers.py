@@ -79,7 +79,8 @@ def _of_table(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Slipp
 
     few = samples.subset(1)
     constants = table.values(at_home(robot.joints, few.values, few.count), few.count)
-    return SlippedAnswers(tuple(table_slips(table, constants, axis_direction(exercise, few))), at)
+    slips = table_slips(table, constants, axis_direction(exercise, few), home=part.home)
+    return SlippedAnswers(tuple(slips), at)
 
 
 def slipped_tables(

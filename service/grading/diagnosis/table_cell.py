@@ -1,5 +1,6 @@
 """Slips in a single table cell."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -25,10 +26,17 @@ from service.grading.part import Grading
 from service.grading.reading.absent_variables import absent_names, joint_counted
 from service.grading.reading.table import IS_ANGLE
 from service.grading.tolerances import ROUNDED_VALUE
-from service.kinematics.chain import D
+from service.kinematics.chain import ALPHA, THETA, D
+from service.kinematics.factors import CellIndex
+from service.kinematics.transforms import Numbers
 
 SUM_COUNTS = (
     "A neighbouring joint has a parallel axis, so only the sum of the offsets along both counts."
+)
+
+CONVERTED = (
+    "The joint variable was converted between degrees and radians. Leave out the factor: a joint "
+    "variable is already an angle."
 )
 
 # The turn that an angle is off by may itself have been rounded.
@@ -99,9 +107,24 @@ def joint_variable_doubled(case: WrongCell) -> Finding | None:
     return finding_on(
         case,
         "joint_variable_doubled",
-        f"The cell contains the joint variable more than once: the joint {_motion(joint)} by that "
-        f"variable itself.",
+        f"The joint variable has a wrong factor: check how far the joint "
+        f"{'slides' if joint.prismatic else 'turns'} when the variable grows by 1.",
     )
+
+
+def joint_variable_converted(case: WrongCell) -> Finding | None:
+    """The joint variable, or the whole cell, was multiplied by π/180 or 180/π."""
+    if not case.angle or not case.required or case.contained is not None:
+        return None
+    constant = case.constants[1]
+    moved, motion = case.actual - constant, case.expected - constant
+
+    def is_converted(convert: Callable[[Numbers], Numbers]) -> bool:
+        return case.equal(moved, convert(motion)) or case.equal(case.actual, convert(case.expected))
+
+    if is_converted(np.degrees):
+        return finding_on(case, "degrees_as_radians", CONVERTED)
+    return finding_on(case, "radians_as_degrees", CONVERTED) if is_converted(np.radians) else None
 
 
 def joint_variable_column(case: WrongCell) -> Finding | None:
@@ -150,8 +173,8 @@ def sign(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         "sign",
-        f"The sign of {case.symbol} is wrong: measure the {'turn' if case.angle else 'distance'} "
-        f"{case.measured}, positive {POSITIVE[case.column]}.",
+        f"The sign of {case.symbol} is wrong: it must be measured {case.measured}, positive "
+        f"{POSITIVE[case.column]}.",
     )
     yield Written(-case.constants[1], finding)
 
@@ -207,12 +230,18 @@ def quarter_turn(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         "quarter_turn",
-        f"{case.symbol} is not right: compare the directions of the two axes that it is measured "
-        f"between{', in the home configuration' if case.joint else ''}.",
+        _compare_axes(case),
         otherwise="It is off by a quarter turn (90°).",
     )
     for turn in (np.pi / 2, -np.pi / 2):
         yield Written(case.constants[1] + turn, finding, tolerance=ROUNDED_TURN)
+
+
+def _compare_axes(case: WrongCell) -> str:
+    if case.column == ALPHA:
+        return "α is not right: compare the two z axes."
+    where = " in the home position" if case.joint else ""
+    return f"{case.symbol} is not right: compare the two x axes{where}."
 
 
 def half_turn(case: WrongCell) -> Hypotheses:
@@ -220,8 +249,7 @@ def half_turn(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         "half_turn",
-        f"{case.symbol} is not right: check the directions of the two axes that it is measured "
-        f"between.",
+        _compare_axes(case),
         otherwise="It is off by half a turn (180°).",
     )
     yield Written(case.constants[1] + np.pi, finding, tolerance=ROUNDED_TURN)
@@ -234,10 +262,13 @@ CHECKS = (
     joint_variable_sign,
     joint_variable_index,
     joint_variable_doubled,
+    joint_variable_converted,
     joint_variable_column,
     joint_variable_extra,
     wrong_quantity,
 )
+# The codes of a joint variable in the column that stays constant.
+MISPLACED = (joint_variable_absent.__name__, joint_variable_column.__name__)
 OF_DISTANCE = (distance_left_out, distance_extra)
 OF_ANGLE = (degrees_as_radians, radians_as_degrees, quarter_turn, half_turn)
 MISCONCEPTIONS = (sign, *OF_DISTANCE, *OF_ANGLE)
@@ -248,8 +279,8 @@ def diagnose(case: WrongCell) -> Finding:
     misconceptions = (sign, *(OF_ANGLE if case.angle else OF_DISTANCE))
     finding = diagnosed(case, misconceptions, CHECKS) or differs(
         case,
-        f"{case.symbol} is not right here: measure the {'angle' if case.angle else 'distance'} "
-        f"{case.measured} again.{_too_large(case)}",
+        f"{case.symbol} is not right: check the {'angle' if case.angle else 'distance'} "
+        f"{case.measured}.{_too_large(case)}",
     )
     if case.column == D and case.shared and case.same_motion:
         return replace(finding, hint=f"{finding.hint} {SUM_COUNTS}")
@@ -269,7 +300,7 @@ def _by_joint(counts: tuple[int, ...] | None, joints: tuple[Joint, ...]) -> dict
     return {joint: count for joint, count in zip(joints, counts, strict=True) if count}
 
 
-def diagnose_cells(judgement: Judgement, grading: Grading) -> dict[tuple[int, int], Finding]:
+def diagnose_cells(judgement: Judgement, grading: Grading) -> dict[CellIndex, Finding]:
     """The finding on each wrong cell that was read, by row and column."""
     written = [
         (i, column, judged, row.handed_in[column], expression)
@@ -290,7 +321,7 @@ def diagnose_cells(judgement: Judgement, grading: Grading) -> dict[tuple[int, in
     if grading.corrects or any(map(any, filter(None, counts[: len(written)]))):
         rows = [judged.row for judged in judgement.rows if judged.row is not None]
         spelling = grading.spelling(entry for row in rows for entry in row.entries)
-    slips = {}
+    slips: dict[CellIndex, Finding] = {}
     for k, (i, column, judged, actual, expression) in enumerate(written):
         contained, required = counts[k], counts[len(written) + k]
         own, correction = spelling, None
@@ -318,4 +349,22 @@ def diagnose_cells(judgement: Judgement, grading: Grading) -> dict[tuple[int, in
                 joints=joints,
             )
         )
-    return slips
+    return _of_misplaced_variables(slips, judgement)
+
+
+def _of_misplaced_variables(
+    slips: dict[CellIndex, Finding], judgement: Judgement
+) -> dict[CellIndex, Finding]:
+    """The findings with one for both cells where a joint's variable stands in the other's place.
+
+    Where the angle of a sliding joint has its variable, or a name like theta3, the offset lacks it.
+    """
+    told = dict(slips)
+    for (i, column), finding in slips.items():
+        joint = judgement.rows[i].joint
+        if finding.code != joint_variable_missing.__name__ or joint is None:
+            continue
+        other = slips.get((i, THETA if column == D else D))
+        if other is not None and other.code in MISPLACED:
+            told[i, column] = replace(other, correction=finding.correction)
+    return told

@@ -26,11 +26,12 @@ from service.grading.judging.own_frames.written_table import (
 from service.grading.judging.table import Judgement, departures_of, judged_by_intended
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE, table_values, values_of
-from service.grading.report import Severity
 from service.grading.tolerances import INTENDED_CELL, INTENDED_POSE
 from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers
+
+_OF_UNIT = frozenset({"degrees_as_radians", "radians_as_degrees"})
 
 # Of more lengths in wrong cells nobody can say which two were exchanged.
 MOST_LENGTHS = 4
@@ -78,7 +79,13 @@ def explained(
     wrong = judgement.matches < Match.ROUNDED
     agree = [each for each in intended if each.table is None or np.array_equal(each.changed, wrong)]
     if agree:
-        return agree[0].findings, judgement
+        findings, table = agree[0].findings, agree[0].table
+        if table is None or _OF_UNIT.intersection(finding.code for finding in findings):
+            # Converted numbers are rounded: they tell nothing of the frames.
+            return findings, replace(judgement, findings=())
+        # The frames that the student chose are those of the table without the slip.
+        chosen = judged_by_intended(table, roles, convention, grading).findings
+        return findings, replace(judgement, findings=chosen)
     nearest = min(intended, key=lambda each: each.departures, default=None)
     if nearest is None or nearest.table is None or nearest.departures >= judgement.departures:
         return (), judgement
@@ -146,13 +153,11 @@ def _intended(
 def freedom_lost(
     roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> tuple[Finding, ...]:
-    """The findings on joints of the student's table that share an axis or have no effect."""
+    """The findings on joints of the student's table that share an axis or depend on each other."""
     present = [role for role in roles if role.row is not None]
     joints = grading.exercise.robot.joints
     where = [next((i for i, role in enumerate(present) if role.joint is j), None) for j in joints]
     if None in where:
         return ()
     values = values_of([role.row for role in present if role.row])
-    found = lost_freedom(values, where, convention, grading.exercise, grading.samples)
-    # A joint without variable has a finding in its own cell.
-    return tuple(finding for finding in found if finding.severity is Severity.ERROR)
+    return lost_freedom(values, where, convention, grading.exercise, grading.samples)

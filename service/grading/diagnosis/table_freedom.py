@@ -15,9 +15,8 @@ from service.catalogue import Exercise, Joint
 from service.grading.diagnosis.wording import listed
 from service.grading.feedback import Finding
 from service.grading.joint_motion import changes
-from service.grading.report import Severity
 from service.grading.samples import Samples
-from service.kinematics.chain import Table
+from service.kinematics.chain import THETA, D, Table
 from service.kinematics.dh import Convention
 from service.kinematics.jacobian import Screws, coincident, dependent, rank, space_jacobian
 from service.kinematics.tolerances import SAME_SCREW
@@ -45,31 +44,28 @@ def lost_freedom(
     exercise: Exercise,
     samples: Samples,
 ) -> tuple[Finding, ...]:
-    """The findings on joints that share an axis, depend on each other or move nothing.
+    """The findings on joints that share an axis or depend on each other.
 
     ``values`` is the student's table ``(rows, 4, SAMPLES)`` in ``convention``; a table with NaN,
     where a cell was not read, has no finding. ``joint_rows`` names the row of each of the robot's
-    joints; a joint without a row is left out.
+    joints; a joint without a row is left out. One without its variable has a finding in its cell.
     """
     table = samples.subset_of(values, POSTURES)
     if not np.isfinite(table).all():
         return ()
     present = [(j, row) for j, row in enumerate(joint_rows) if row is not None]
-    idle = [j for j, row in present if np.abs(changes(table[row])).max() < SAME_SCREW]
-    moving = [(j, row) for j, row in present if j not in idle]
-    idle_finding = (_without_effect([exercise.robot.joints[j] for j in idle]),) if idle else ()
-    if len(moving) < 2:
-        return idle_finding
-    written = _arm(table, convention, moving, exercise)
-    if rank(written.screws) == len(moving):
-        return idle_finding
+    own = [D if joint.prismatic else THETA for joint in exercise.robot.joints]
+    if any(np.abs(changes(table[row, own[j]])).max() < SAME_SCREW for j, row in present):
+        # Other joints may have lost their freedom only because this one stands still.
+        return ()
+    written = _arm(table, convention, present, exercise)
+    if rank(written.screws) == len(present):
+        return ()
     subset = samples.subset(POSTURES)
     reference = exercise.robot.tables[exercise.robot.convention]
     right = reference.values(subset.values, subset.count)
-    intended = _arm(right, reference.convention, [(j, j) for j, _ in moving], exercise)
-    shared = _shared_axes(written, intended, convention)
-    # Where a joint moves nothing, a length that keeps other joints apart may be 0 for that reason.
-    return (*idle_finding, *shared) or _lost_rank(written, intended)
+    intended = _arm(right, reference.convention, [(j, j) for j, _ in present], exercise)
+    return _shared_axes(written, intended, convention) or _lost_rank(written, intended, convention)
 
 
 def _arm(
@@ -94,7 +90,7 @@ def _shared_axes(written: _Arm, intended: _Arm, convention: Convention) -> tuple
     return tuple(findings)
 
 
-def _lost_rank(written: _Arm, intended: _Arm) -> tuple[Finding, ...]:
+def _lost_rank(written: _Arm, intended: _Arm, convention: Convention) -> tuple[Finding, ...]:
     """The finding on joints of which one can do nothing that the others cannot do as well."""
     if rank(written.screws) >= rank(intended.screws):
         return ()
@@ -102,10 +98,11 @@ def _lost_rank(written: _Arm, intended: _Arm) -> tuple[Finding, ...]:
     if not involved.any():
         involved = np.ones_like(involved)
     names = [str(joint.index) for joint, yes in zip(written.joints, involved, strict=True) if yes]
+    first, *_, last = np.flatnonzero(involved).tolist()
     finding = Finding(
         "lost_freedom",
-        f"The axes of joints {listed(names)} lie so that the arm has fewer degrees of freedom than "
-        f"the robot: check a and α between these joints.",
+        f"The axes of joints {listed(names)} leave the arm fewer degrees of freedom than the robot "
+        f"has: check a and α of {_rows_between(first, last, written, convention)}.",
     )
     return (finding,)
 
@@ -148,16 +145,3 @@ def _rows_between(i: int, j: int, written: _Arm, convention: Convention) -> str:
     shift = int(convention is Convention.MODIFIED)
     labels = [str(joint.index) for joint in written.joints[i + shift : j + shift]]
     return f"row {labels[0]}" if len(labels) == 1 else f"rows {listed(labels)}"
-
-
-def _without_effect(joints: Sequence[Joint]) -> Finding:
-    names = [str(joint.index) for joint in joints]
-    variables = listed([joint.variable for joint in joints])
-    is_one = len(names) == 1
-    return Finding(
-        "lost_freedom",
-        f"{'Joint' if is_one else 'Joints'} {listed(names)} {'moves' if is_one else 'move'} "
-        f"nothing: {'its row contains' if is_one else 'their rows contain'} no joint variable.",
-        f"Where {variables} {'changes' if is_one else 'change'}, the arm moves.",
-        severity=Severity.WARNING,
-    )

@@ -39,12 +39,18 @@ class Cell:
     correction: str = ""
 
 
-def table_slips(table: ReferenceTable, constants: Table, axis: Axis) -> Iterator[Slip]:
-    """All single slips; ``constants`` ``(rows, 4, samples)`` is the table at home."""
-    yield from joint_slips(table.joints, table.joints, axis)
-    yield from home_slip(table.joints)
+def table_slips(
+    table: ReferenceTable, constants: Table, axis: Axis, *, home: bool = False
+) -> Iterator[Slip]:
+    """All single slips; ``constants`` ``(rows, 4, samples)`` is the table at home.
+
+    An answer ``home`` has no joint variables: all slips are in constants.
+    """
+    if not home:
+        yield from joint_slips(table.joints, table.joints, axis)
+        yield from home_slip(table.joints)
     for i in range(len(table.rows)):
-        yield from row_slips(table, i, constants[i, :, 0].tolist(), axis)
+        yield from row_slips(table, i, constants[i, :, 0].tolist(), axis, home=home)
     yield from length_slips(*lengths_of(table))
 
 
@@ -63,12 +69,13 @@ def row_slips(
     axis: Axis,
     *,
     own_frames: bool = False,
+    home: bool = False,
 ) -> Iterator[Slip]:
     """The slips in the ``constants`` of one row, which are its cells at home at one sample.
 
-    In ``own_frames`` the cells are not those of the table.
+    In ``own_frames`` the cells are not those of the table. At ``home`` no joint moves.
     """
-    joint = table.joints[row] if row < len(table.joints) else None
+    joint = table.joints[row] if row < len(table.joints) and not home else None
     for column in (A, ALPHA, D, THETA):
         cell, constant = _cell(table, row, column, own_frames=own_frames), constants[column]
         moves = joint is not None and column == (D if joint.prismatic else THETA)
@@ -113,7 +120,7 @@ def _left_out(cell: Cell, code: str) -> Slip:
     return Slip(
         code,
         f"{cell.parameter} is left out",
-        f"work out {cell.link} again.",
+        f"check {cell.link}.",
         cell.correction,
         cell=CellChange(cell.row, cell.column, 0.0),
     )
@@ -124,7 +131,7 @@ def _turned(cell: Cell, code: str, turn: float, error: str) -> Slip:
     return Slip(
         code,
         f"{cell.parameter} is not right",
-        f"compare the two {axes} axes in the home configuration.",
+        f"compare the two {axes} axes in the home position.",
         f"{cell.correction} It is off by {error}.".strip(),
         cell=CellChange(cell.row, cell.column, 1.0, turn),
     )

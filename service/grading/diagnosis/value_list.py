@@ -31,6 +31,7 @@ def search_of(
         scale=compared.scales(grading),
         angle=np.array([[quantity == "angle"] for quantity in student.quantities]),
         name=grading.symbol_names(student.entries),
+        unwritten=grading.unwritten(student.entries),
     )
 
 

@@ -53,6 +53,13 @@ INVERTED = Finding(
     "Its columns are the axes and the origin of the last frame, seen from the first.",
 )
 
+# The inverse of something else than what is asked for.
+OTHER_WAY = replace(
+    INVERTED,
+    hint="This matrix leads the other way: check which frame it describes, and from which frame.",
+    correction="",
+)
+
 
 def _inverted(matrix: Numbers) -> Numbers:
     """The inverse of transforms ``(..., 4, 4, SAMPLES)``."""
@@ -70,7 +77,7 @@ def inverse_of_other_pose(case: MatrixCase) -> Hypotheses:
     if case.is_transform:
         poses, entries = case.other_poses
         for pose, inverted in zip(poses, _inverted(entries), strict=True):
-            finding = named(pose, "What was inverted is", INVERTED)
+            finding = named(pose, "This is the inverse of", OTHER_WAY)
             yield Written(inverted[UPPER_ROWS], finding, UPPER_ROWS)
 
 
@@ -78,8 +85,8 @@ def transposed_rotation(case: MatrixCase) -> Hypotheses:
     """The axes of the first frame were written down as seen from the last."""
     finding = Finding(
         "transposed_rotation",
-        "The rotation is transposed: its columns, not its rows, are the axes of the frame that is "
-        "described.",
+        "The rotation is transposed: its columns, not its rows, must be the axes of the frame that "
+        "is described.",
         "Write its rows as columns.",
     )
     yield Written(np.swapaxes(case.expected[ROTATION_BLOCK], 0, 1), finding, ROTATION_BLOCK)
@@ -90,8 +97,8 @@ def columns_exchanged(case: MatrixCase) -> Hypotheses:
     for order in list(permutations(range(3)))[1:]:
         finding = Finding(
             "columns_exchanged",
-            "The columns of the rotation are in another order: they are the x, y and z axis of the "
-            "frame that is described.",
+            "The columns of the rotation are in the wrong order: check which axis belongs in which "
+            "column.",
             f"Your columns are its {', '.join('xyz'[j] for j in order)} axes.",
         )
         yield Written(case.expected[:3, order], finding, ROTATION_BLOCK)

@@ -17,7 +17,7 @@ from service.grading.feedback import Finding
 from service.grading.judging.own_frames import written_table
 from service.grading.judging.own_frames.written_table import RepairedTable, WrittenTable
 from service.grading.misconception import AnyHypothesis, Repaired, hypotheses_of
-from service.grading.tolerances import INTENDED_POSE
+from service.grading.tolerances import INTENDED_CELL, INTENDED_POSE
 from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D, Table
 from service.kinematics.dh import Convention
 
@@ -51,7 +51,10 @@ class WrongTable:
 
 
 def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
-    """The link's own columns, a and α or one of them, stand one row too early or too late."""
+    """The link's own columns, a and α or one of them, stand one row too early or too late.
+
+    The row that the shift leaves open holds what was shifted out at the other end, or nothing.
+    """
     rows = list(range(len(table.constants)))
     up, down = [*rows[1:], rows[0]], [rows[-1], *rows[:-1]]
     for columns in (slice(A, ALPHA + 1), slice(A, A + 1), slice(ALPHA, ALPHA + 1)):
@@ -60,7 +63,8 @@ def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
             constants = table.constants.copy()
             constants[:, columns] = table.constants[order, columns]
             yield Repaired(table.changed(constants), finding)
-            if table.reference is not None:
+            is_open = np.abs(table.values[-1 - end, columns]).max() < INTENDED_CELL
+            if table.reference is not None and is_open:
                 # The row that fell off the end is not in the student's table.
                 completed = constants.copy()
                 completed[end, columns] = table.reference[end, columns]
@@ -90,7 +94,7 @@ def _turned_sign(column: int) -> Finding:
         "column_sign",
         f"{SYMBOLS[column]} has the wrong sign throughout: it is measured {MEASURED[column]}, "
         f"positive {POSITIVE[column]}.",
-        f"Turn the sign of every {SYMBOLS[column]}.",
+        f"Change the sign of every {SYMBOLS[column]}.",
     )
 
 
@@ -159,7 +163,7 @@ def lengths_exchanged(table: WrittenTable) -> Iterator[RepairedTable]:
 def _exchanged_lengths(one: str, other: str) -> Finding:
     return Finding(
         "lengths_exchanged",
-        f"{one} and {other} are exchanged: look in the drawing which length each of them is.",
+        f"{one} and {other} are exchanged: check which length each of them is.",
         f"Exchange {one} and {other}.",
     )
 

@@ -195,8 +195,8 @@ def undefined(case: WrongValue) -> Finding | None:
     return finding_on(
         case,
         "undefined",
-        f"{case.expression.text()} has no value{' at ' if where else ''}{where}: it divides by "
-        f"zero, takes the root of a negative number, or grows beyond all bounds.",
+        f"{case.expression.text()} has no value{' at ' if where else ''}{where}: check for a "
+        f"division by zero, a root of a negative number, or a number that is too large.",
         {**at},
     )
 

@@ -9,8 +9,6 @@ from service.grading.report import Severity
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention
 
-_NAMES = {Convention.STANDARD: "standard (distal)", Convention.MODIFIED: "modified (proximal)"}
-
 
 def judged_in_convention(
     part: DhTableSpec, table: StudentTable, grading: Grading
@@ -49,8 +47,8 @@ def _misfit(judgement: Judgement) -> int:
 def _taken(convention: Convention) -> Finding:
     return Finding(
         "convention_taken",
-        f"The answer names no convention. It was read in the {_NAMES[convention]} one, which fits "
-        f'it best; to decide yourself, write "convention": "{convention.value}" beside the rows.',
+        f"The answer names no convention; it was read as {convention.value}, which fits it best. "
+        f"Check which convention you used, and name it.",
         severity=Severity.INFO,
     )
 

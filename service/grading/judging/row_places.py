@@ -1,11 +1,16 @@
 """Which of the student's rows is graded as which: told where the numbers differ."""
 
+from typing import Final
+
 from service.grading.feedback import Finding
 from service.grading.judging.table import JudgedRow, Judgement
 from service.grading.part import Grading
 from service.grading.reading.table import StudentTable
 from service.grading.report import Severity
 from service.kinematics.dh import Convention
+
+# Fixed rows by their labels.
+_FIXED: Final = {"0": "the fixed row before the first joint", "e": "the end effector"}
 
 
 def row_places(
@@ -24,7 +29,7 @@ def row_places(
     # Rounded angles made exact make a new row of the same entries.
     places = {id(row.entries): i for i, row in enumerate(table.rows)}
     moved = [
-        f"your row {place + 1} as {_of(judged)}"
+        f"your row {place + 1} with {_of(judged)}"
         for judged in judgement.rows
         if judged.row is not None
         for place in [places[id(judged.row.entries)]]
@@ -32,13 +37,13 @@ def row_places(
     ]
     if not moved:
         return ()
-    *others, last = moved
-    listed = f"{', '.join(others)} and {last}" if others else last
-    message = f"Rows were graded under the numbers of the joints that they fit: {listed}."
+    first, *others = moved
+    first = first.replace("your", "Your", 1).replace(" with", " was compared with", 1)
+    message = f"{', '.join([first, *others])}."
     return (Finding("rows_matched", message, severity=Severity.INFO),)
 
 
 def _of(judged: JudgedRow) -> str:
     if judged.joint is not None:
-        return f"that of joint {judged.joint.index}"
-    return f"the fixed row {judged.label}"
+        return f"joint {judged.joint.index}"
+    return _FIXED.get(judged.label, f"the fixed row {judged.label} behind the last joint")

@@ -13,7 +13,7 @@ from service.expressions.printing.spelling import Spelling, spelling_for
 from service.grading.comparison import Match, entry_matches
 from service.grading.diagnosis.dh_row import MISCONCEPTIONS, WrongRow, has_a_row, violated
 from service.grading.diagnosis.table_cell import diagnose
-from service.grading.diagnosis.wrong_value import UNEXPLAINED, WrongCell
+from service.grading.diagnosis.wrong_value import WrongCell
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.formula_text import value_formula
 from service.grading.judging.content import known_cells, of_one_row
@@ -55,7 +55,8 @@ def judge(part: DhRowSpec, answer: RowOrNone, grading: Grading) -> Judged:
     elif broken:
         cells = _cells(answer, np.full(len(COLUMNS), int(Match.DIFFERENT)), {}, grading)
         known = np.full(len(COLUMNS), True)
-        findings = broken
+        # Only a row that was handed in is told that there is none.
+        findings = broken if all(entry.expression for entry in answer.entries) else []
     else:
         expected = row(transform, part.convention)
         cells, findings = _against_the_row(answer, expected, transform, part, grading)
@@ -93,7 +94,7 @@ def _against_the_row(
         if (expression := written.entries[i].expression) is not None
     }
     if explained is not None:
-        slips = {i: slip for i, slip in slips.items() if slip.code != UNEXPLAINED}
+        slips = {}
     return _cells(written, found, slips, grading), [explained] if explained else []
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from service.catalogue.parts.dh_table import DhTableSpec
+from service.grading.comparison import Match
 from service.grading.diagnosis.column_order import in_other_orders
 from service.grading.diagnosis.intended_table import IntendedTable, with_exchanged_row
 from service.grading.diagnosis.joint_numbering import by_other_numbering
@@ -14,6 +15,7 @@ from service.grading.feedback import Finding
 from service.grading.follow_through import stands_still
 from service.grading.judging.convention import judged_in_convention
 from service.grading.judging.own_frames.best_roles import roles_in, rows_of_mechanism
+from service.grading.judging.own_frames.remarks import OWN_FRAME_CHOICE
 from service.grading.judging.report_rows import Slips, cell_report
 from service.grading.judging.row_places import row_places
 from service.grading.judging.table import JudgedRow, Judgement
@@ -31,7 +33,7 @@ from service.grading.report import (
     row_report,
 )
 from service.grading.samples import Samples
-from service.kinematics.chain import COLUMNS, frames, links
+from service.kinematics.chain import COLUMNS, D, frames, links
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices
 
@@ -39,6 +41,7 @@ from service.kinematics.transforms import Matrices
 COST = 0.25
 COSTS = {"other_convention": 0.5}
 _QUANTITIES = tuple(QUANTITIES.values())
+_EXTRA_ROW = "extra_row"
 # With so many wrong cells two misconceptions at once are looked for.
 WRONG_THROUGHOUT = 3
 
@@ -68,7 +71,8 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     for intended in in_other_orders(answer, grading):
         without = _judged_as_read(part, intended.table, grading)
         if 3 * _wrong_cells(without) <= wrong:
-            return _with_slip(intended, without, judged, grading)
+            # Who writes the columns in another order multiplies the links out as they were meant.
+            return replace(_with_slip(intended, without, judged, grading), chain=without.chain)
     convention = part.convention if part.convention != "either" else answer.convention
     if (intended := with_exchanged_row(answer, convention, grading)) is not None:
         without = _judged_as_read(part, intended.table, grading)
@@ -144,16 +148,48 @@ def _with_rows_too_many(
     rows = tuple(answer.rows[i] for i in kept)
     without = _judged_as_read(part, replace(answer, rows=rows, values=answer.values[kept]), grading)
     extra = [i for i, row in enumerate(answer.rows) if i not in kept and not row.is_zero]
+    is_told = any(message.code == _EXTRA_ROW for message in judged.feedback)
     # Where nothing that was read is wrong, the table may be right.
-    messages = grading.visible(tuple(map(_row_too_many, extra))) if judged.is_wrong else ()
+    tells = judged.is_wrong and not is_told
+    messages = grading.visible(tuple(map(_row_too_many, extra))) if tells else ()
     of_mechanism = {row.label for row in without.rows}
     beside = [row for row in judged.rows if row.label not in of_mechanism]
     wrong = [row for row in beside if row.verdict is not Verdict.CORRECT]
     return replace(
         judged,
-        feedback=(*judged.feedback, *messages),
+        rows=_explained_without(judged.rows, without.rows),
+        feedback=(*(m for m in judged.feedback if m.code != OWN_FRAME_CHOICE), *messages),
         slips=judged.slips + len(wrong),
         at_most=without,
+    )
+
+
+def _explained_without(
+    rows: tuple[RowReport, ...], without: tuple[RowReport, ...]
+) -> tuple[RowReport, ...]:
+    """The rows of a table, silent where only a row too many makes a cell wrong.
+
+    ``without`` are the rows of the table without the rows too many.
+    """
+    right = {
+        (row.label, cell.label): cell
+        for row in without
+        for cell in row.cells
+        if cell.verdict is Verdict.CORRECT
+    }
+    labels = {row.label for row in without}
+
+    def silent(row: RowReport, cell: CellReport) -> CellReport:
+        if cell.verdict is not Verdict.INCORRECT:
+            return cell
+        if row.label not in labels:
+            return replace(cell, feedback=())
+        found = right.get((row.label, cell.label))
+        return cell if found is None else replace(cell, feedback=found.feedback)
+
+    return tuple(
+        row_report(row.label, tuple(silent(row, cell) for cell in row.cells), row.feedback)
+        for row in rows
     )
 
 
@@ -214,7 +250,10 @@ def _of_the_whole(
         combine = judgement.wrong >= WRONG_THROUGHOUT
         found, judgement = explained(part, roles, convention, judgement, grading, combine=combine)
     # An explained table is not the one that the student intended, so its freedom says nothing.
-    return judgement, found, () if found else freedom_lost(roles, convention, grading)
+    # Axes that lie wrong by another slip, such as an offset of θ, are no matter of a and α.
+    of_links = bool((judgement.matches[:, :D] < Match.ROUNDED).any())
+    lost = freedom_lost(roles, convention, grading) if of_links and not found else ()
+    return judgement, found, lost
 
 
 def _chain(
@@ -282,14 +321,14 @@ def _missing(judged: JudgedRow) -> Finding:
 def _row_too_many(i: int) -> Finding:
     return Finding(
         "row_too_many",
-        f"Row {i + 1} of your table belongs to no joint and not to the end effector. A right table "
-        f"may have such a row, but in a wrong one it costs points.",
+        f"Row {i + 1} of your table belongs to no joint and not to the end effector: check whether "
+        f"you need it.",
         severity=Severity.WARNING,
     )
 
 
 def _extra_row(i: int) -> Finding:
     return Finding(
-        "extra_row",
-        f"Row {i + 1} of your table belongs to no joint of this robot, so it is left out.",
+        _EXTRA_ROW,
+        f"Row {i + 1} of your table belongs to no joint and not to the end effector: leave it out.",
     )

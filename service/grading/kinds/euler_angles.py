@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue.parts.euler_angles import EulerAnglesSpec
-from service.expressions import Kind
 from service.grading.comparison import (
     Match,
     SharedDecimals,
@@ -30,6 +29,7 @@ from service.grading.judging.expected import asked_pose, formula_values
 from service.grading.judging.report_rows import value_rows
 from service.grading.judging.value_list import ComparedValues
 from service.grading.part import Content, Grading, Judged
+from service.grading.reading.component_names import names_of_angles
 from service.grading.reading.entry import Entry
 from service.grading.reading.value_list import StudentValues, read_list
 from service.grading.report import Correction, Severity
@@ -43,19 +43,18 @@ from service.kinematics.rotations import (
 )
 from service.kinematics.transforms import Matrices, Numbers
 
-QUANTITIES: tuple[Kind, ...] = ("angle",) * 3
-
 SINGULAR = Finding(
     "singular_orientation",
-    "Here the first and the third axis lie in one line, so that only the sum or the difference of "
-    "the outer angles is determined: any pair that fits is right.",
+    "Here the first and the third axis lie in one line. Only the sum or the difference of the "
+    "outer angles counts: any pair that fits is right.",
     severity=Severity.INFO,
 )
 
 
 def read(part: EulerAnglesSpec, answer: object, grading: Grading) -> StudentValues:
     """The angles in a list or a pasted text."""
-    return read_list(answer, QUANTITIES, grading.reader)
+    names = names_of_angles(part.turns, fixed=part.axes == "fixed")
+    return read_list(answer, names, grading.reader)
 
 
 def judge(part: EulerAnglesSpec, answer: StudentValues, grading: Grading) -> Judged:

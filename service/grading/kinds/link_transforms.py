@@ -20,7 +20,7 @@ from service.grading.judging.own_frames.row_roles import FrameFreedom, Role
 from service.grading.kinds.matrix_rows import matrix_rows
 from service.grading.part import Content, Grading, Judged, StudentChain
 from service.grading.reading.matrix import StudentMatrix, read_matrix, unreadable_matrix
-from service.grading.reading.matrix_list import read_matrices
+from service.grading.reading.matrix_list import places_in_list, read_matrices, with_notes
 from service.grading.reading.table import StudentRow, computed_row
 from service.grading.report import Feedback, RowReport
 from service.grading.samples import SAMPLES, Samples
@@ -65,9 +65,12 @@ def read(part: LinkTransformsSpec, answer: object, grading: Grading) -> StudentL
 def _listed(answer: object, labels: tuple[str, ...], grading: Grading) -> tuple[StudentMatrix, ...]:
     if not isinstance(answer, list) or not 0 < len(answer) <= len(labels):
         raise UnreadableAnswerError(_wrong_shape(labels))
-    absent: list[object] = [[None] * 4] * (len(labels) - len(answer))
+    places, notes = places_in_list(answer, labels)
+    ordered: list[object] = [[None] * 4] * len(labels)
+    for place, matrix in zip(places, answer, strict=True):
+        ordered[place] = matrix
     matrices = []
-    for matrix in (*answer, *absent):
+    for matrix in ordered:
         try:
             matrices.append(read_matrix(matrix, HOMOGENEOUS, grading.reader))
         except UnreadableAnswerError as error:
@@ -75,7 +78,7 @@ def _listed(answer: object, labels: tuple[str, ...], grading: Grading) -> tuple[
                 raise UnreadableAnswerError(_wrong_shape(labels)) from error
             # A pasted text that cannot be read costs only itself.
             matrices.append(unreadable_matrix(error.finding, HOMOGENEOUS, grading.reader))
-    return tuple(matrices)
+    return (with_notes(matrices[0], notes), *matrices[1:])
 
 
 def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> Judged:
@@ -180,8 +183,9 @@ def _row(matrix: Matrices, part: LinkTransformsSpec) -> StudentRow | None:
 
 
 def _wrong_shape(labels: tuple[str, ...]) -> Finding:
+    between = "and" if len(labels) == 2 else "to"
     message = (
-        f"This answer is a list of {len(labels)} matrices, A{labels[0]} to A{labels[-1]}, each "
-        f"with 4 rows of 4 entries."
+        f"Write {len(labels)} matrices, A{labels[0]} {between} A{labels[-1]}, each with 4 rows of "
+        "4 entries."
     )
     return reading_error("wrong_shape", message)

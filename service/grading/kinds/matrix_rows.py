@@ -85,8 +85,16 @@ def matrix_rows(
     wrong = found == Match.DIFFERENT
     search = None
     if (answers := slipped()) is not None:
-        names = grading.symbol_names(chain(*student.entries))
-        search = SlipSearch(answers, grading.samples, actual, right, wrong, scale, name=names)
+        search = SlipSearch(
+            answers,
+            grading.samples,
+            actual,
+            right,
+            wrong,
+            scale,
+            name=grading.symbol_names(chain(*student.entries)),
+            unwritten=grading.unwritten(chain(*student.entries)),
+        )
     case = MatrixCase(
         actual=actual,
         expected=right,

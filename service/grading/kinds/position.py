@@ -4,7 +4,6 @@ import numpy as np
 
 from service.catalogue import Robot
 from service.catalogue.parts.position import PositionSpec
-from service.expressions import Kind
 from service.grading.comparison import Match
 from service.grading.diagnosis.given_motion import GivenMotion
 from service.grading.diagnosis.link_products import chains_of
@@ -19,6 +18,7 @@ from service.grading.judging.expected import as_entries, asked_pose, formula_val
 from service.grading.judging.report_rows import value_places, value_rows
 from service.grading.judging.value_list import ComparedValues, number_corrections
 from service.grading.part import Grading, Judged
+from service.grading.reading.component_names import names_of_coordinates
 from service.grading.reading.value_list import StudentValues, read_list
 from service.grading.report import Place
 from service.kinematics.transforms import Numbers
@@ -28,8 +28,8 @@ def read(part: PositionSpec, answer: object, grading: Grading) -> StudentValues:
     """The coordinates in a list or a pasted text."""
     # In [x, y, 0] for x and z, nobody can say whether z is the second or the third value.
     planar = part.coordinates == "xy"
-    lengths: list[Kind] = ["length"] * len(part.coordinates)
-    return read_list(answer, lengths, grading.reader, planar=planar)
+    names = names_of_coordinates(part.coordinates)
+    return read_list(answer, names, grading.reader, planar=planar)
 
 
 def judge(part: PositionSpec, answer: StudentValues, grading: Grading) -> Judged:

@@ -144,7 +144,8 @@ def _known(axes: Numbers, grading: Grading) -> NDArray[np.bool_]:
 
 REVERSED = Finding(
     "own_direction",
-    "You let this axis point the opposite way; that is a valid choice, if its variable counts so.",
+    "Your axis points the opposite way. This is valid if the joint variable also has the opposite "
+    "sign.",
     severity=Severity.INFO,
 )
 

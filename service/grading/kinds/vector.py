@@ -14,14 +14,17 @@ from service.grading.judging.expected import given_values
 from service.grading.judging.report_rows import value_places, value_rows
 from service.grading.judging.value_list import ComparedValues
 from service.grading.part import Grading, Judged
+from service.grading.reading.component_names import names_of_components
 from service.grading.reading.value_list import StudentValues, read_list
 from service.grading.report import Correction
 
 
 def read(part: VectorSpec, answer: object, grading: Grading) -> StudentValues:
     """The values in a list or a pasted text."""
-    quantities = [component.quantity for component in part.components]
-    return read_list(answer, quantities, grading.reader, planar=len(quantities) == 2)
+    names = names_of_components(
+        tuple((each.name, each.quantity) for each in part.components), grading.reader.vocabulary
+    )
+    return read_list(answer, names, grading.reader, planar=len(part.components) == 2)
 
 
 def judge(part: VectorSpec, answer: StudentValues, grading: Grading) -> Judged:

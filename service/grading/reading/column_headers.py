@@ -4,7 +4,7 @@ import re
 import unicodedata
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 from service.expressions import AngleUnit, Kind
 
@@ -13,6 +13,9 @@ ASIDE: Final = "aside"
 QUANTITIES: Final[Mapping[str, Kind]] = {
     "a": "length", "alpha": "angle", "d": "length", "theta": "angle",
 }  # fmt: skip
+
+# Names for these columns, as they are written in a message.
+SHOWN: Final = {"a": "a", "alpha": "α", "d": "d", "theta": "θ"}
 
 _LONGEST: Final = 60
 # Signs and letters that NFKC leaves alone, or turns into others.
@@ -29,6 +32,8 @@ _SHIFTED: Final = re.compile(r"(?<![a-z])([ijkn])\s?-\s?1(?!\d)|([a-z])([ijkn])\
 _WORD: Final = re.compile(r"[a-z]+~?|#|[^\sa-z#]")
 _GLUED: Final = re.compile(r"(a|r|d|q|th|alpha|theta)([ijkn]~?)")
 _INDEX: Final = re.compile(r"[ijkn]~?")
+# The number of a row behind the name of a parameter: θ_1, a_{2}, d(3); but not a_{i-1}.
+_NUMBER: Final = re.compile(r"(?<=[^\W\d]|[_({])([0-9]{1,2})[)}\s*]*$")
 _IGNORED: Final = frozenset(".,:;()[]{}|'\"/?_")
 _DIGITS_OR_OPERATORS: Final = re.compile(r"[0-9+\-*/=^]")
 
@@ -88,6 +93,23 @@ class Header:
     def metres(self) -> float | None:
         """The unit in metres, where the header names a unit of length."""
         return METRES.get(self.unit)
+
+
+class NamedParameter(NamedTuple):
+    """A parameter by its name: its column, and the number of its row where the name has one."""
+
+    column: str
+    row: int | None
+
+
+def named_parameter(name: str) -> NamedParameter | None:
+    r"""The DH parameter that a name is: a, \alpha_1, θ₁, d_{i}; None for another name."""
+    plain = unicodedata.normalize("NFKC", name[: _LONGEST + 1])
+    number = _NUMBER.search(plain)
+    header = read_header(plain[: number.start()] if number else plain)
+    if header is None or header.column not in QUANTITIES or header.unit:
+        return None
+    return NamedParameter(header.column, int(number[1]) if number else None)
 
 
 def read_header(text: str) -> Header | None:

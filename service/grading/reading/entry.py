@@ -173,9 +173,9 @@ def unreadable(finding: Finding) -> Entry:
 
 
 def _wrong_type(raw: object) -> Finding:
-    names = {bool: "true or false", list: "a list", dict: "an object"}
-    found = names.get(type(raw), "neither")
-    message = f"A cell holds one number or one formula as text; this is {found}."
+    message = "Write one number or one formula here."
+    if isinstance(raw, bool):
+        message = f"The word {str(raw).lower()} stands here. Write a number or a formula."
     return reading_error("wrong_type", message)
 
 

@@ -30,8 +30,7 @@ def in_unit(entry: Entry, header: Header, reader: Reader) -> Entry:
     metres = METRES.get(reader.length_unit or "")
     if metres is None or header.metres is None:
         message = (
-            f"The header says {header.unit}, but this exercise's lengths have no unit that it "
-            "could be converted to; write the number as the exercise does, without a unit above."
+            f"A length in {header.unit} cannot be converted in this exercise. {_without(header)}"
         )
         return unreadable(reading_error("header_unit", message))
     factor = header.metres / metres
@@ -63,9 +62,11 @@ def _of_letters(entry: Entry, expression: Expression, header: Header, reader: Re
         expected = 2 * np.asarray(once)
     if np.allclose(twice, expected, rtol=EXACT_VALUE, atol=EXACT_VALUE, equal_nan=True):
         return entry
-    unit = reader.length_unit or "the exercise’s unit"
-    message = (
-        f"Below the header {header.unit} this mixes letters with a number that may be {header.unit}"
-        f" or {unit}; write the number as the exercise does, without a unit above."
-    )
+    unit = reader.length_unit or "the unit of the exercise"
+    message = f"The number here may be in {header.unit} or in {unit}. {_without(header)}"
     return unreadable(reading_error("header_unit", message))
+
+
+def _without(header: Header) -> str:
+    """The advice to do without the header's unit."""
+    return f"Delete `{header.unit}` from the header, and write lengths as the exercise does."

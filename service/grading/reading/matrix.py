@@ -15,6 +15,7 @@ from service.grading.reading.entry import (
     from_note,
     unreadable,
 )
+from service.grading.reading.matrix_entry_names import misnamed_entry
 from service.grading.reading.pasted import from_grid_error, pasted_grid, place_of, placed
 from service.grading.samples import Samples
 from service.grids import Grid, GridCell, GridError
@@ -84,26 +85,45 @@ def _entries(answer: object, quantities: Quantities, reader: Reader) -> list[lis
     if isinstance(answer, str):
         return _pasted(answer, quantities, reader) if answer.strip() else []
     if not isinstance(answer, list) or not answer or len(answer) > len(quantities):
-        rows, columns = len(quantities), len(quantities[0])
-        message = (
-            f"This answer is a matrix of {rows} rows with {columns} entries each, written as a "
-            f"list of lists."
-        )
-        raise UnreadableAnswerError(reading_error("wrong_shape", message))
-    return [_row(row, kinds, reader) for row, kinds in zip(answer, quantities, strict=False)]
+        raise UnreadableAnswerError(_of_wrong_size("", quantities))
+    return [_row(row, i, quantities, reader) for i, row in enumerate(answer)]
 
 
-def _row(row: object, kinds: Sequence[Kind], reader: Reader) -> list[Entry]:
+def _row(row: object, i: int, quantities: Quantities, reader: Reader) -> list[Entry]:
+    kinds = quantities[i]
     if row is None:
         return [MISSING] * len(kinds)
     if not isinstance(row, list) or len(row) != len(kinds):
-        found = f"{len(row)} entries" if isinstance(row, list) else "no list"
-        return _of_wrong_length(found, len(kinds))
-    return [reader.read(raw, kind) for raw, kind in zip(row, kinds, strict=True)]
+        return _of_wrong_length(len(row) if isinstance(row, list) else None, len(kinds))
+    return [_entry(raw, (i, j), quantities, reader) for j, raw in enumerate(row)]
 
 
-def _of_wrong_length(found: str, wanted: int, span: tuple[int, int] | None = None) -> list[Entry]:
-    message = f"A row has {wanted} entries; this is {found}."
+def _entry(raw: object, place: tuple[int, int], quantities: Quantities, reader: Reader) -> Entry:
+    """The entry in a place; unreadable where it is named after another."""
+    i, j = place
+    entry = reader.read(raw, quantities[i][j])
+    if entry.findings:
+        size = len(quantities), len(quantities[0])
+        wrong = misnamed_entry(raw, place, size, reader.vocabulary)
+        return unreadable(wrong) if wrong else entry
+    return entry
+
+
+def _of_wrong_size(
+    found: str, quantities: Quantities, span: tuple[int, int] | None = None
+) -> Finding:
+    """The finding on a matrix of the size ``found``, "" where there is none."""
+    size = f"; yours is {found}" if found else ""
+    message = f"Write {len(quantities)} rows with {len(quantities[0])} entries each{size}."
+    return reading_error("wrong_shape", message, span)
+
+
+def _of_wrong_length(
+    found: int | None, wanted: int, span: tuple[int, int] | None = None
+) -> list[Entry]:
+    """The row of ``found`` entries, None where it is no list."""
+    counted = "" if found is None else f"; it has {found}"
+    message = f"Write {wanted} entries in this row{counted}."
     return _unreadable_row(reading_error("row_length", message, span), [""] * wanted)
 
 
@@ -124,24 +144,21 @@ def _pasted(text: str, quantities: Quantities, reader: Reader) -> list[list[Entr
 def _of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
     height, width = len(quantities), len(quantities[0])
     if len(grid.rows) > height or all(len(row) != width for row in grid.rows):
-        message = (
-            f"This answer is a matrix of {height} rows with {width} entries each; what was pasted "
-            f"is {grid.size}."
-        )
         span = grid.rows[0][0].whole[0], grid.rows[-1][-1].whole[1]
-        raise UnreadableAnswerError(reading_error("wrong_shape", message, span))
-    entries = [
-        _pasted_row(row, kinds, reader) for row, kinds in zip(grid.rows, quantities, strict=False)
-    ]
+        raise UnreadableAnswerError(_of_wrong_size(grid.size, quantities, span))
+    entries = [_pasted_row(row, i, quantities, reader) for i, row in enumerate(grid.rows)]
     first = entries[0][0]
     notes = tuple(map(from_note, grid.notes))
     entries[0][0] = replace(first, findings=(*first.findings, *notes))
     return entries
 
 
-def _pasted_row(row: Sequence[GridCell], kinds: Sequence[Kind], reader: Reader) -> list[Entry]:
-    if len(row) != len(kinds):
-        return _of_wrong_length(f"{len(row)} entries", len(kinds), place_of(row))
+def _pasted_row(
+    row: Sequence[GridCell], i: int, quantities: Quantities, reader: Reader
+) -> list[Entry]:
+    width = len(quantities[i])
+    if len(row) != width:
+        return _of_wrong_length(len(row), width, place_of(row))
     return [
-        placed(reader.read(cell.text, kind), cell) for cell, kind in zip(row, kinds, strict=True)
+        placed(_entry(cell.text, (i, j), quantities, reader), cell) for j, cell in enumerate(row)
     ]

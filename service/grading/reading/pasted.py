@@ -36,7 +36,7 @@ def _charge(text: str, reader: Reader) -> None:
     if len(text) <= GRID_LIMITS.characters:
         reader.budget.pasted -= len(text)
     if reader.budget.pasted < 0:
-        message = f"The pasted texts have more than {MAX_PASTED} characters together."
+        message = f"The pasted texts have more than {MAX_PASTED:,} characters together."
         raise GridError("too_long", message, (0, len(text)))
 
 
@@ -64,5 +64,6 @@ def place_of(cells: Sequence[GridCell]) -> tuple[int, int]:
 
 def quoted(text: str) -> str:
     """A cell's text, so that it can be quoted in a message."""
-    short = text if len(text) <= 30 else text[:29] + "…"
-    return f"`{short}`" if short.isprintable() else "a cell with invisible characters"
+    shown = "".join(filter(str.isprintable, text))
+    short = shown if len(shown) <= 30 else shown[:29] + "…"
+    return f"`{short}`" if shown == text else f"`{short}` (with an invisible character in it)"

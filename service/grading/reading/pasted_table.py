@@ -2,20 +2,25 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Final
 
 from service.grading.feedback import Finding, reading_error, reading_note
 from service.grading.reading import column_headers
-from service.grading.reading.column_headers import METRES, QUANTITIES, Header, is_wordy, read_header
+from service.grading.reading.cell_names import arranged_row, first_number, row_entries
+from service.grading.reading.column_headers import (
+    METRES,
+    QUANTITIES,
+    SHOWN,
+    Header,
+    is_wordy,
+    read_header,
+)
 from service.grading.reading.entry import Entry, Reader, from_note, unreadable
 from service.grading.reading.length_units import in_unit
 from service.grading.reading.pasted import pasted_grid, place_of, placed, quoted
 from service.grading.reading.row_labels import in_order, is_label
+from service.grading.reading.written_names import Arrangement
 from service.grids import Grid, GridCell, GridError
 from service.kinematics.chain import COLUMNS
-
-# Names for these columns, as they are written in a message.
-SHOWN: Final = {"a": "a", "alpha": "α", "d": "d", "theta": "θ"}
 
 ColumnOrder = tuple[int | None, Header]
 
@@ -24,11 +29,18 @@ ColumnOrder = tuple[int | None, Header]
 class PastedRow:
     """The cells of one row in the order a, α, d, θ.
 
-    A row of the wrong length has a ``problem``, and each of its cells is the whole row.
+    A row of the wrong length has a ``problem``, and each of its cells is the whole row. ``named``
+    tells how the names in the cells gave them another order, or contradict it.
     """
 
     cells: tuple[GridCell, ...]
     problem: Finding | None = None
+    named: Arrangement | None = None
+
+    @property
+    def texts(self) -> list[str]:
+        """What is written in the cells."""
+        return [cell.text for cell in self.cells]
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +80,7 @@ def read_pasted_table(text: str, reader: Reader, order: Sequence[str] = COLUMNS)
             "no_rows", "There are headers here, but no rows below them.", place_of(grid.rows[0])
         )
     width = len(grid.rows[0]) if found is not None else max(map(len, body))
-    rows = tuple(_row(row, columns, width) for row in body)
+    rows = tuple(_row(row, columns, width, reader) for row in body)
     if labels is not None:
         labelled, more = in_order([row[labels] if labels < len(row) else row[0] for row in body])
         rows = tuple(rows[i] for i in labelled)
@@ -96,18 +108,30 @@ def _turned(grid: Grid) -> tuple[Grid, tuple[Finding, ...]]:
 
 def entries_of(table: PastedTable, reader: Reader) -> list[tuple[Entry, ...]]:
     """The entries of each row."""
+    first = first_number([row.texts for row in table.rows], reader.vocabulary)
     return [
-        (unreadable(row.problem),) * len(COLUMNS)
-        if row.problem
-        else tuple(
-            table_entry(cell, column, header, reader)
-            for cell, column, header in zip(row.cells, COLUMNS, table.headers, strict=True)
-        )
-        for row in table.rows
+        _row_entries(row, None if first is None else first + i, table.headers, reader)
+        for i, row in enumerate(table.rows)
     ]
 
 
-def table_entry(cell: GridCell, column: str, header: Header, reader: Reader) -> Entry:
+def _row_entries(
+    row: PastedRow, number: int | None, headers: Sequence[Header], reader: Reader
+) -> tuple[Entry, ...]:
+    if row.problem:
+        return (unreadable(row.problem),) * len(COLUMNS)
+    cells = row.cells
+    return row_entries(
+        row.texts,
+        row.named,
+        number,
+        lambda i: _entry(cells[i], COLUMNS[i], headers[i], reader),
+        lambda i, entry: placed(entry, cells[i]),
+        reader.vocabulary,
+    )
+
+
+def _entry(cell: GridCell, column: str, header: Header, reader: Reader) -> Entry:
     """One cell of a table, in the unit that its header names."""
     if header.angle_unit:
         reader = replace(reader, angle_unit=header.angle_unit)
@@ -156,7 +180,8 @@ def _columns_by_headers(
             raise GridError(
                 "two_headers",
                 f"Two columns are {SHOWN[header.column]}: "
-                f"{quoted(row[places[header.column]].text)} and {quoted(row[i].text)}.",
+                f"{quoted(row[places[header.column]].text)} and {quoted(row[i].text)}. "
+                "Each parameter has one column.",
                 row[i].whole,
             )
         places[header.column] = i
@@ -164,7 +189,7 @@ def _columns_by_headers(
     if missing:
         raise GridError(
             "missing_header",
-            f"No column is {' or '.join(missing)}; a DH table has a, α, d and θ.",
+            f"No header is {' or '.join(missing)}. A DH table has the columns a, α, d and θ.",
             place_of(row),
         )
     columns = tuple((places[column], _header(found, places[column])) for column in COLUMNS)
@@ -190,14 +215,14 @@ def _check_unit(header: Header, column: str, cell: GridCell) -> None:
         raise GridError(
             "header_unit",
             f"{SHOWN[column]} is {'an angle' if is_angle else 'a length'}, but its header says "
-            f"{header.unit}.",
+            f"{header.unit}. Correct the header.",
             cell.whole,
         )
 
 
 def _left_aside(row: Sequence[GridCell], found: Sequence[Header | None]) -> tuple[Finding, ...]:
     return tuple(
-        _note("column_left_aside", f"The column {quoted(cell.text)} was left aside.", cell)
+        _note("column_left_aside", f"The column {quoted(cell.text)} was ignored.", cell)
         for cell, header in zip(row, found, strict=True)
         if header and header.column == column_headers.ASIDE
     )
@@ -211,8 +236,8 @@ def _convention_hint(
         return ()
     names = " and ".join(quoted(cell.text) for cell in shifted)
     message = (
-        f"Headers such as {names} belong to the modified (proximal) convention. Headers do not "
-        "decide in which convention the table is read."
+        f"Headers such as {names} belong to the modified convention, but they do not decide how "
+        "the table is read. Check which convention the exercise asks for."
     )
     return (_note("convention_hint", message, shifted[0]),)
 
@@ -226,27 +251,33 @@ def _columns_in_order(
     if width != len(COLUMNS) and not has_labels:
         raise GridError(
             "wrong_shape",
-            f"This is {grid.size}; a DH table without headers has the 4 columns a, α, d, θ, or 5 "
-            "with the numbers of the rows in front. With headers the columns may stand in any "
-            "order.",
+            "Without headers, a DH table has the columns a, α, d, θ in this order, with or "
+            f"without row numbers before them; yours is {grid.size}.",
             place_of(grid.rows[0]),
         )
     first = 1 if has_labels else 0
     columns = tuple((first + order.index(column), Header(column)) for column in COLUMNS)
     message = (
-        "The columns have no headers and were read in the order a, α, d, θ. If yours is another, "
+        "The columns have no headers and were read in the order a, α, d, θ. If yours is different, "
         "such as θ, d, a, α in the Robotics Toolbox, put headers above them."
     )
     finding = _note("column_order", message, grid.rows[0][0])
     return columns, 0 if has_labels else None, (finding,)
 
 
-def _row(row: Sequence[GridCell], columns: Sequence[ColumnOrder], width: int) -> PastedRow:
+def _row(
+    row: Sequence[GridCell], columns: Sequence[ColumnOrder], width: int, reader: Reader
+) -> PastedRow:
     if len(row) != width:
-        message = f"This row has {len(row)} values, and the table {width} columns."
+        message = (
+            f"This row has {len(row)} values, but the table has {width} columns. Write one value "
+            "in each column; where a parameter is 0, write 0."
+        )
         finding = reading_error("row_length", message, place_of(row))
         return PastedRow((row[0],) * len(COLUMNS), finding)
-    return PastedRow(tuple(row[place or 0] for place, _ in columns))
+    cells = tuple(row[place or 0] for place, _ in columns)
+    named = arranged_row([cell.text for cell in cells], reader.vocabulary)
+    return PastedRow(tuple(cells[i] for i in named.order) if named else cells, named=named)
 
 
 def _note(code: str, message: str, cell: GridCell) -> Finding:

@@ -11,7 +11,7 @@ from service.grading.feedback import Finding, UnreadableAnswerError
 from service.grading.reading.entry import Entry, Reader
 from service.grading.reading.matrix_list import grids_in_order
 from service.grading.reading.pasted import pasted_grid, placed
-from service.grading.reading.pasted_table import read_pasted_table, table_entry
+from service.grading.reading.pasted_table import entries_of, read_pasted_table
 from service.grading.samples import draw
 from service.grids import Grid, GridCell, GridError
 from service.kinematics.chain import COLUMNS
@@ -96,18 +96,19 @@ def preview_pasted(
 def _table(text: str, reader: Reader) -> PastedPreview:
     table = read_pasted_table(text, reader)
     rows: list[tuple[CellPreview, ...]] = []
-    for i, row in enumerate(table.rows):
+    for i, (row, entries) in enumerate(zip(table.rows, entries_of(table, reader), strict=True)):
         if row.problem:
             span = row.problem.span or row.cells[0].whole
             problem = Problem(row.problem.code, row.problem.hint, span)
             typed = text[slice(*span)]
             rows.append((CellPreview(str(i + 1), "", span, typed, problem=problem),))
             continue
-        cells = []
-        for cell, column, header in zip(row.cells, COLUMNS, table.headers, strict=True):
-            entry = table_entry(cell, column, header, reader)
-            cells.append(_cell(entry, cell, (str(i + 1), column)))
-        rows.append(tuple(cells))
+        rows.append(
+            tuple(
+                _cell(entry, cell, (str(i + 1), column))
+                for entry, cell, column in zip(entries, row.cells, COLUMNS, strict=True)
+            )
+        )
     return PastedPreview(tuple(rows), _notes(table.findings))
 
 

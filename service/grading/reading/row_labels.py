@@ -53,18 +53,20 @@ def in_order(labels: Sequence[GridCell]) -> tuple[list[int], tuple[Finding, ...]
         if not any(label.text for label in labels):
             return typed, ()
         unknown = next(i for i in typed if places[i] is None)
-        message = "Not all rows have a number in front, so they were read in the order as pasted."
+        message = (
+            "Not all rows have a number, so the rows were read in the order in which they stand."
+        )
         return typed, (reading_note("row_labels", message, labels[unknown].whole),)
     if len(set(known)) < len(known):
         again = next(i for i in typed if known[i] in known[:i])
         raise GridError(
             "duplicate_row",
-            f"Two rows are labelled {labels[again].text[:_LONGEST]}.",
+            f"Two rows have the label {labels[again].text[:_LONGEST]}. Give each row its own.",
             labels[again].whole,
         )
     order = sorted(typed, key=known.__getitem__)
     if order == typed:
         return typed, ()
     moved = next(i for i in typed if order[i] != i)
-    message = "The rows were put into the order of their labels."
+    message = "The rows were put in the order of their labels."
     return order, (reading_note("rows_reordered", message, labels[moved].whole),)

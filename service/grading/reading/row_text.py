@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from itertools import accumulate
 from typing import Final, NamedTuple
 
-from service.grading.reading.column_headers import QUANTITIES, read_header
+from service.grading.reading.column_headers import QUANTITIES, named_parameter
 
 _LONGEST: Final = 2_000
 # A name in front of = or a colon, with an index or without: a, \alpha_1, θ₁.
@@ -47,12 +47,12 @@ def named_cells(text: str) -> Mapping[str, NamedCell] | None:
     cells: dict[str, NamedCell] = {}
     ends = [name.start() for name in names[1:]] + [len(text)]
     for name, end in zip(names, ends, strict=True):
-        header = read_header(name[1])
-        if header is None or header.column not in QUANTITIES:
+        named = named_parameter(name[1])
+        if named is None:
             return None
-        if header.column in cells:
+        if named.column in cells:
             return {}
-        cells[header.column] = _trimmed(text, name.end(), end)
+        cells[named.column] = _trimmed(text, name.end(), end)
     return cells
 
 

@@ -10,6 +10,7 @@ from service.expressions import Expression, Vocabulary
 from service.expressions import read as read_expression
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.reading.absent_variables import absent_names
+from service.grading.reading.cell_names import arranged_row, first_number, row_entries
 from service.grading.reading.column_headers import QUANTITIES
 from service.grading.reading.entry import Entry, Reader, entry_values, unreadable
 from service.grading.reading.pasted import from_grid_error
@@ -133,17 +134,12 @@ def read_table(
         table = _table(rows, convention, (*findings, *pasted.findings), reader)
         return table if pasted.is_named else replace(table, reread=reread)
     if not isinstance(answer, Mapping) or not isinstance(answer.get("rows"), list):
-        raise UnreadableAnswerError(
-            reading_error(
-                "wrong_shape",
-                'A DH table is written {"rows": [{"a": …, "alpha": …, "d": …, "theta": …}, …]}.',
-            )
-        )
+        raise UnreadableAnswerError(_NO_TABLE if isinstance(answer, Mapping) else _NOT_ROWS)
     rows = answer["rows"]
     if len(rows) > MAX_ROWS:
         raise UnreadableAnswerError(_too_many_rows(len(rows)))
     convention, findings = _convention(answer.get("convention"))
-    entries = [_with_empty_cells(_entries(row, reader), empty_is_zero) for row in rows]
+    entries = [_with_empty_cells(row, empty_is_zero) for row in _entries(rows, reader)]
     table = _table(entries, convention, findings, reader)
     return replace(table, reread=reread) if is_unnamed else table
 
@@ -229,7 +225,7 @@ def _values(rows: Sequence[tuple[Entry, ...]], samples: Samples) -> Table:
 
 
 def _too_many_rows(found: int) -> Finding:
-    message = f"A table has at most {MAX_ROWS} rows; this one has {found}."
+    message = f"A table has at most {MAX_ROWS} rows; yours has {found}."
     return reading_error("too_many_rows", message)
 
 
@@ -241,30 +237,56 @@ def _convention(stated: object) -> tuple[Convention | None, tuple[Finding, ...]]
         return CONVENTION_NAMES[name], ()
     unknown = Finding(
         "unknown_convention",
-        'The convention is "standard" (distal) or "modified" (proximal): this name is neither, and '
-        "is left aside.",
+        'This convention is not known, so it was ignored. Write "standard" or "modified".',
         severity=Severity.WARNING,
         reading=True,
     )
     return None, (unknown,)
 
 
-def _entries(row: object, reader: Reader) -> tuple[Entry, ...]:
+def _entries(rows: Sequence[object], reader: Reader) -> list[tuple[Entry, ...]]:
+    """The entries of each row."""
+    cells = [_cells(row) for row in rows]
+    first = first_number(cells, reader.vocabulary)
+    return [
+        _row_entries(row, None if first is None else first + i, reader)
+        for i, row in enumerate(cells)
+    ]
+
+
+def _cells(row: object) -> list[object]:
+    """The values of a, α, d, θ; a finding where nobody can say what the value is."""
     if row is None:
-        return (EMPTY,) * len(COLUMNS)
+        return [None] * len(COLUMNS)
     if not isinstance(row, Mapping):
-        return (unreadable(_NO_ROW),) * len(COLUMNS)
+        return [_NOT_VALUES] * len(COLUMNS)
     # A value under an unknown name must not pass for a missing one.
-    stray = not row.keys() <= QUANTITIES.keys()
-    return tuple(
-        unreadable(_NO_ROW)
-        if stray and column not in row
-        else reader.read(row.get(column), QUANTITIES[column], in_table=True)
-        for column in COLUMNS
-    )
+    absent = None if row.keys() <= QUANTITIES.keys() else _NO_ROW
+    return [row.get(column, absent) for column in COLUMNS]
 
 
+def _row_entries(cells: list[object], number: int | None, reader: Reader) -> tuple[Entry, ...]:
+    found = arranged_row(cells, reader.vocabulary)
+    ordered = [cells[i] for i in found.order] if found else cells
+
+    def read(column: int) -> Entry:
+        raw = ordered[column]
+        if isinstance(raw, Finding):
+            return unreadable(raw)
+        return reader.read(raw, QUANTITIES[COLUMNS[column]], in_table=True)
+
+    return row_entries(ordered, found, number, read, lambda _, entry: entry, reader.vocabulary)
+
+
+# An object is answered with the one that is asked for, a list or a single value in words.
+_NO_TABLE = reading_error(
+    "wrong_shape", 'A DH table is written {"rows": [{"a": …, "alpha": …, "d": …, "theta": …}, …]}.'
+)
+_NOT_ROWS = reading_error(
+    "wrong_shape", "Write the rows of the table, each with its four values a, α, d, θ."
+)
 _NO_ROW = reading_error("wrong_shape", 'A row is written {"a": …, "alpha": …, "d": …, "theta": …}.')
+_NOT_VALUES = reading_error("wrong_shape", "Write the four values a, α, d, θ in this row.")
 
 
 def table_values(rows: Sequence[StudentRow], samples: Samples) -> Table:

@@ -1,13 +1,17 @@
 """A list of values as handed in, JSON or pasted text -> its entries and their numbers."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
-from service.expressions import Expression, Kind
+from service.expressions import LIMITS, Expression, Kind, LeftSide
+from service.expressions.errors import counted
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error, reading_note
-from service.grading.reading.entry import MISSING, Entry, Reader, entry_values
+from service.grading.reading.component_names import ListNames
+from service.grading.reading.entry import MISSING, Entry, Reader, entry_values, unreadable
 from service.grading.reading.pasted import from_grid_error, pasted_grid, placed
+from service.grading.reading.written_names import arranged, name_of, with_order_note
 from service.grids import GridCell, GridError
 from service.kinematics.transforms import Numbers
 
@@ -27,40 +31,96 @@ class StudentValues:
 
 
 def read_list(
-    answer: object, quantities: Sequence[Kind], reader: Reader, *, planar: bool = False
+    answer: object, names: ListNames, reader: Reader, *, planar: bool = False
 ) -> StudentValues:
-    """The values of a list, one for each quantity asked for.
+    """The values of a list, one for each of the ``names`` asked for.
 
     A list may also be a column (a list of lists of one), a row in a list of its own, or pasted
-    text. Values that were left off at the end are missing. A ``planar`` answer may have one 0 more,
-    as in [x, y, 0]: it is left aside, with a note. Raises UnreadableAnswerError where there is no
-    list of the length asked for.
+    text. Values that were left off at the end are missing. Values with names in front, as in
+    y = l1 s1, are put into the order of these; one with the name of another place is unreadable. A
+    ``planar`` answer may have one 0 more, as in [x, y, 0]: it is left aside, with a note. Raises
+    UnreadableAnswerError where there is no list of the length asked for.
     """
+    if isinstance(answer, dict):
+        answer = _by_keys(answer, names, reader)
     if isinstance(answer, str):
-        entries = _pasted(answer, quantities, reader, planar=planar)
+        # Of the same length, so that a place in the text stays where it is.
+        answer = _NAME_WITH_COLON.sub(r"\1=", answer)
+        entries = _pasted(answer, names, reader, planar=planar)
     else:
-        entries = _listed(answer, quantities, reader, planar=planar)
+        entries = _listed(answer, names, reader, planar=planar)
+    quantities = names.quantities
     return StudentValues(entries, quantities, entry_values(entries, quantities, reader.samples))
 
 
-def _listed(
-    answer: object, quantities: Sequence[Kind], reader: Reader, *, planar: bool
-) -> list[Entry]:
-    values = _flat(answer)
-    left_aside = planar and len(values) == len(quantities) + 1 and _is_zero(values[-1])
+def _by_keys(answer: Mapping[str, object], names: ListNames, reader: Reader) -> list[object]:
+    """The values of an object in the order that is asked for, by their keys: {"x": …, "y": …}.
+
+    Raises UnreadableAnswerError where a key has not exactly one place of its own.
+    """
+    count = len(names.quantities)
+    if not 0 < len(answer) <= count:
+        raise UnreadableAnswerError(_wrong_shape(count, 0))
+    keys = [LeftSide(key[: LIMITS.characters], (0, 0)) for key in answer]
+    values: list[object] = [None] * count
+    taken: set[int] = set()
+    for places, value in zip(
+        names.places_of(keys, reader.vocabulary), answer.values(), strict=True
+    ):
+        if places is None or len(places) != 1 or places[0] in taken:
+            raise UnreadableAnswerError(_wrong_shape(count, 0))
+        values[places[0]] = value
+        taken.add(places[0])
+    return values
+
+
+# A value to be read, and what becomes of its entry: a cell's is moved to its place in the text.
+_Written = tuple[object, Callable[[Entry], Entry]]
+
+
+def _read(written: Sequence[_Written], names: ListNames, reader: Reader) -> list[Entry]:
+    """The entries of values as they were written, in the order of their names if they have any."""
+    quantities = names.quantities
+    written = [*written, *[_LEFT_OFF] * (len(quantities) - len(written))]
+    raws = [raw for raw, _ in written]
+    found = arranged(raws, names.labels, names.places_of, reader.vocabulary)
+    if found is None:
+        return [
+            place(reader.read(raw, quantity))
+            for (raw, place), quantity in zip(written, quantities, strict=True)
+        ]
+    entries = []
+    for i, quantity in zip(found.order, quantities, strict=True):
+        raw, place = written[i]
+        wrong = found.misnamed.get(i)
+        entries.append(place(unreadable(wrong) if wrong else reader.read(raw, quantity)))
+    return entries if found.misnamed else [*with_order_note(entries, "The values")]
+
+
+def _as_it_is(entry: Entry) -> Entry:
+    return entry
+
+
+_LEFT_OFF: _Written = (None, _as_it_is)
+
+
+def _listed(answer: object, names: ListNames, reader: Reader, *, planar: bool) -> list[Entry]:
+    values, count = _flat(answer), len(names.quantities)
+    left_aside = planar and len(values) == count + 1 and _is_zero(values[-1], reader)
     if left_aside:
         values = values[:-1]
     is_nested = all(isinstance(value, list) for value in values)
-    if is_nested or len(values) > len(quantities):
-        raise UnreadableAnswerError(_wrong_shape(len(quantities), 0 if is_nested else len(values)))
-    padded = [*values, *[None] * (len(quantities) - len(values))]
-    entries = [reader.read(raw, quantity) for raw, quantity in zip(padded, quantities, strict=True)]
+    if is_nested or len(values) > count:
+        raise UnreadableAnswerError(_wrong_shape(count, 0 if is_nested else len(values)))
+    entries = _read([(raw, _as_it_is) for raw in values], names, reader)
     return _with_note(entries) if left_aside else entries
 
 
-def _is_zero(raw: object) -> bool:
+def _is_zero(raw: object, reader: Reader) -> bool:
+    """Whether a value is 0, with a name in front or without: z = 0."""
     if isinstance(raw, str):
-        return raw.strip() == "0"
+        name = name_of(raw, reader.vocabulary)
+        return (raw[name.span[1] :] if name else raw).strip() == "0"
     return isinstance(raw, int | float) and not isinstance(raw, bool) and raw == 0
 
 
@@ -82,52 +142,47 @@ def _flat(answer: object) -> list[object]:
     return answer
 
 
-def _pasted(text: str, quantities: Sequence[Kind], reader: Reader, *, planar: bool) -> list[Entry]:
+def _pasted(text: str, names: ListNames, reader: Reader, *, planar: bool) -> list[Entry]:
+    count = len(names.quantities)
     if not text.strip():
-        return [MISSING] * len(quantities)
+        return [MISSING] * count
     try:
         rows = pasted_grid(text, reader).rows
     except GridError as error:
         entries = None
         if error.code in _OF_TABLES:
-            entries = _taken_apart(text, quantities, reader, planar=planar)
+            entries = _taken_apart(text, names, reader, planar=planar)
         if entries is None:
-            raise UnreadableAnswerError(_from_grid_error(error, len(quantities))) from error
+            raise UnreadableAnswerError(_from_grid_error(error, count)) from error
         return entries
     cells: Sequence[GridCell] = rows[0] if len(rows) == 1 else [row[0] for row in rows]
     is_list = len(rows) == 1 or all(len(row) == 1 for row in rows)
-    left_aside = planar and len(cells) == len(quantities) + 1 and _is_zero(cells[-1].text)
-    if not is_list or len(cells) > len(quantities) + left_aside:
-        entries = None if is_list else _taken_apart(text, quantities, reader, planar=planar)
+    left_aside = planar and len(cells) == count + 1 and _is_zero(cells[-1].text, reader)
+    if not is_list or len(cells) > count + left_aside:
+        entries = None if is_list else _taken_apart(text, names, reader, planar=planar)
         if entries is None:
-            found = len(cells) if is_list else 0
-            raise UnreadableAnswerError(_wrong_shape(len(quantities), found))
+            raise UnreadableAnswerError(_wrong_shape(count, len(cells) if is_list else 0))
         return entries
-    entries = [
-        placed(reader.read(cell.text, quantity), cell)
-        for cell, quantity in zip(cells, quantities, strict=False)
-    ]
-    if left_aside:
-        return _with_note(entries, cells[-1].whole)
-    return entries + [MISSING] * (len(quantities) - len(entries))
+    written = [(cell.text, partial(placed, cell=cell)) for cell in cells[:count]]
+    entries = _read(written, names, reader)
+    return _with_note(entries, cells[-1].whole) if left_aside else entries
 
 
 def _taken_apart(
-    text: str, quantities: Sequence[Kind], reader: Reader, *, planar: bool
+    text: str, names: ListNames, reader: Reader, *, planar: bool
 ) -> list[Entry] | None:
     """The values of a text with one on each line, or with semicolons or commas between them.
 
     None where there are not as many as asked for, or nothing can be read of any.
     """
+    count = len(names.quantities)
     for pieces in (_lines(text), _split(text, ";"), _split(text, ",")):
         parts = [_stripped(at, piece) for at, piece in pieces if piece.strip()]
-        left_aside = planar and len(parts) == len(quantities) + 1 and _is_zero(parts[-1][1])
-        if len(parts) != len(quantities) + left_aside:
+        left_aside = planar and len(parts) == count + 1 and _is_zero(parts[-1][1], reader)
+        if len(parts) != count + left_aside:
             continue
-        entries = [
-            _shifted(reader.read(part, quantity), at)
-            for (at, part), quantity in zip(parts, quantities, strict=False)
-        ]
+        written = [(part, partial(_shifted, by=at)) for at, part in parts[:count]]
+        entries = _read(written, names, reader)
         if any(entry.readable or entry.findings[0].suggestion for entry in entries):
             at, zero = parts[-1]
             return _with_note(entries, (at, at + len(zero))) if left_aside else entries
@@ -186,6 +241,9 @@ def _shifted(entry: Entry, by: int) -> Entry:
     return replace(entry, findings=findings)
 
 
+# A name at the begin of a line, with a colon behind it: "x: l1 c1".
+_NAME_WITH_COLON = re.compile(r"(?m)^([ \t]*[^\W\d][\w{}^]{0,20}[ \t]{0,3}):(?![:=])")
+
 # A blank and a sign with none behind it: in MATLAB's brackets a new value begins there.
 _NEW_VALUE = re.compile(r"[^\s,;(\[{*/^+-]\s+[-+−–][^\s]")
 
@@ -196,13 +254,12 @@ _OF_TABLES = {
     "too_many_rows": "",
     "too_many_columns": "",
     "ambiguous_separators": "",
-    "ambiguous_columns": "Here blanks may separate two values or stand inside one.",
-    "mixed_separators": "Here blanks may separate values, too: write a*b and a - b, not a b "
-    "and a -b.",
+    "ambiguous_columns": "Here a space may separate two values or stand inside one.",
+    "mixed_separators": "Inside a value, write a*b and a - b, not a b and a -b.",
 }
 
 _ZERO_LEFT_ASIDE = reading_note(
-    "zero_left_aside", "Only two values are asked for; the third, 0, was left aside."
+    "zero_left_aside", "Only two values are asked for; the third, 0, was ignored."
 )
 
 
@@ -210,8 +267,7 @@ def _wrong_shape(count: int, found: int) -> Finding:
     """The finding that an answer is no such list; ``found`` counts the values of one too long."""
     return reading_error(
         "wrong_shape",
-        f"This answer is a list of {count} values, such as [{', '.join(['…'] * count)}]"
-        f"{f'; this one has {found}' if found else ''}.",
+        f"Write a list of {counted(count)}{f'; yours has {found}' if found else ''}.",
     )
 
 
@@ -221,7 +277,7 @@ def _from_grid_error(error: GridError, count: int) -> Finding:
     if error.code not in _OF_TABLES:
         return finding
     message = (
-        f"This answer is a list of {count} values: write them with commas between them, or one on "
-        f"each line. {_OF_TABLES[error.code]}"
+        f"Write a list of {counted(count)}, with commas between them or one on each line. "
+        f"{_OF_TABLES[error.code]}"
     )
     return replace(finding, hint=message.strip())

@@ -34,6 +34,7 @@ BAXTER = [
     ("0", "0", "0.229525", "theta7"),
 ]
 TOOLBOX, CRAIG = (3, 2, 0, 1), (1, 0, 2, 3)
+LAST = [[0, 0, 1, 0], [0, 0, 0, 1]]
 
 
 def in_order(rows: Sequence[Sequence[str]], order: Sequence[int]) -> list[list[str]]:
@@ -103,3 +104,24 @@ def test_a_right_table_and_one_wrong_cell_are_left_alone(catalogue: Mapping[str,
     rows = [list(row) for row in SCARA]
     rows[1][1] = "0"
     assert "columns_permuted" not in told(graded(catalogue["scara"], rows))
+
+
+def test_the_links_follow_from_the_table_as_it_was_meant(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    # The last link has L1 for L2: a slip of its own, which the links repeat.
+    rows = in_order(
+        [("R", "90deg", "0", "theta1"), *(("L1", "0", "0", f"theta{i}") for i in (2, 3))], TOOLBOX
+    )
+    links = [
+        [["c1", 0, "s1", "R c1"], ["s1", 0, "-c1", "R s1"], [0, 1, 0, 0], LAST[1]],
+        *(
+            [[f"c{i}", f"-s{i}", 0, f"L1 c{i}"], [f"s{i}", f"c{i}", 0, f"L1 s{i}"], *LAST]
+            for i in (2, 3)
+        ),
+    ]
+    report = handed_in(catalogue["spatial-rrr"], {"table": rows, "links": links})
+    assert "columns_permuted" in told(part(report, "table"))
+    follows = part(report, "links")
+    assert follows.follow_through
+    assert follows.points == follows.max_points

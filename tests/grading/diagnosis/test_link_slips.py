@@ -29,6 +29,9 @@ STANDARD = LinkAmongOthers(LINKS, ANGLES, Convention.STANDARD)
 # The third row of a modified table: about and along x first.
 THIRD = screw_x(*TABLE[2, :2]) @ screw_z(*TABLE[2, 2:])
 MODIFIED = LinkAmongOthers(np.array([A1, A2, THIRD]), ANGLES, Convention.MODIFIED)
+# The rotation of a link with its length and offset beside it, as they stand in the table.
+BESIDE = A3.copy()
+BESIDE[:, :3, 3] = np.stack([TABLE[2, 0], ZERO, TABLE[2, 2]], axis=-1)
 PAIRS = [
     Pair(
         link_slips.absolute_angle,
@@ -46,6 +49,12 @@ PAIRS = [
         link_slips.pose_for_link,
         wrong_matrix(A1 @ A2 @ A3, A3),
         wrong_matrix(A2 @ A3, A3),
+        source=lambda _: STANDARD,
+    ),
+    Pair(
+        link_slips.translation_not_turned,
+        wrong_matrix(BESIDE, A3),
+        wrong_matrix(BESIDE @ screw_x(TABLE[2, 0], ZERO), A3),
         source=lambda _: STANDARD,
     ),
 ]

@@ -56,8 +56,10 @@ def wrong(column: str, number: int, written: str, right: str) -> WrongCell:
     )
 
 
+# The codes of those that have another name.
+CODES = {"joint_variable_converted": "degrees_as_radians"}
 PAIRS = [
-    Pair(function, wrong(*explained), wrong(*left_alone))
+    Pair(function, wrong(*explained), wrong(*left_alone), CODES.get(function.__name__, ""))
     for function, explained, left_alone in (
         (table_cell.joint_variable_absent, ("theta", 3, "theta3", "0"), ("theta", 3, "q2", "0")),
         (undefined, ("d", 1, "a1/0", "a1"), ("d", 1, "a2", "a1")),
@@ -76,6 +78,11 @@ PAIRS = [
             table_cell.joint_variable_doubled,
             ("theta", 2, "2*q2", "q2"),
             ("theta", 2, "-q2", "q2"),
+        ),
+        (
+            table_cell.joint_variable_converted,
+            ("theta", 2, "180*q2/pi + 90deg", "q2 + 90deg"),
+            ("theta", 2, "90*q2/pi + 90deg", "q2 + 90deg"),
         ),
         (table_cell.joint_variable_column, ("alpha", 1, "q1", "0"), ("alpha", 1, "q2", "0")),
         (
@@ -119,7 +126,7 @@ def test_a_misconception(pair: Pair) -> None:
 
 @each_pair(PAIRS)
 def test_it_is_the_first_that_explains_its_cell(pair: Pair) -> None:
-    assert diagnose(pair.explained).code == pair.function.__name__
+    assert diagnose(pair.explained).code == (pair.code or pair.function.__name__)
 
 
 def test_what_no_misconception_explains_shows_a_counterexample() -> None:

@@ -1,10 +1,13 @@
 """The explanation of a whole table, beside the judgement of its cells."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+
+import pytest
 
 from service.catalogue import Exercise
-from service.grading import Verdict
-from tests.grading.support.submitting import handed_in, part, table
+from service.grading import PartReport, Verdict
+from service.grading.report import messages_of
+from tests.grading.support.submitting import graded_table, handed_in, part, table
 
 SKEW_RPR = """
 title = "Skew RPR"
@@ -44,3 +47,62 @@ def test_an_explanation_of_more_rows_than_were_judged(
     ]
     report = part(handed_in(make_exercise(SKEW_RPR), {"table": table(rows)}, "degrees"), "table")
     assert report.verdict is Verdict.PARTIAL
+
+
+PLANAR = [("a1", "0", "0", "theta1"), ("a2", "0", "0", "theta2")]
+
+
+def errors(report: PartReport) -> list[str]:
+    return [message.code for message, _, _ in messages_of(report) if message.severity == "error"]
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        # The link of joint 2 has fallen off the end.
+        (("0", "0"), ("a1", "0")),
+        # It stands at the other end.
+        (("a2", "0"), ("a1", "0")),
+    ],
+)
+def test_links_one_row_too_late(
+    catalogue: Mapping[str, Exercise], first: tuple[str, str], second: tuple[str, str]
+) -> None:
+    rows = [(*first, *PLANAR[0][2:]), (*second, *PLANAR[1][2:])]
+    report = graded_table(catalogue["planar-rr"], rows)
+    assert "value" not in errors(report)
+    # A slip of the whole table costs a quarter.
+    assert report.points == 3
+
+
+@pytest.mark.parametrize(
+    ("name", "rows"),
+    [
+        ("planar-rr", [("7", "33deg", "0", "theta1"), ("a1", "0", "0", "theta2")]),
+        ("planar-rr", [("7", "0", "0", "theta1"), ("a1", "0", "0", "theta2")]),
+        ("planar-rr", [("a2", "0", "0", "theta1"), ("a1", "-90deg", "0", "theta2")]),
+        (
+            "scara",
+            [
+                ("0", "77deg", "0", "theta1"),
+                ("a1", "0", "0", "theta2"),
+                ("a2", "180deg", "d3", "0"),
+                ("0", "0", "d4", "theta4"),
+            ],
+        ),
+    ],
+)
+def test_a_shift_explains_no_invented_link(
+    catalogue: Mapping[str, Exercise], name: str, rows: Sequence[Sequence[str]]
+) -> None:
+    report = graded_table(catalogue[name], rows)
+    assert "link_columns_shifted" not in errors(report)
+    assert report.points < report.max_points / 2
+
+
+def test_freedom_lost_by_an_angle_about_z_is_no_matter_of_the_links(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    # Only θ of row 2 is wrong: it should be -90deg.
+    rows = [("0", "-90deg", "d1", "0"), ("0", "-90deg", "d2", "0"), ("0", "0", "d3", "0")]
+    assert errors(graded_table(catalogue["three-link-cartesian"], rows)) == ["quarter_turn"]

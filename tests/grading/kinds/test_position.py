@@ -51,7 +51,7 @@ def test_a_wrong_position(
     assert all_codes(report) == codes
 
 
-@pytest.mark.parametrize("answer", [[], ["0"] * 4, [["0", "0", "0"]] * 2, {"x": "0"}, 1, None])
+@pytest.mark.parametrize("answer", [[], ["0"] * 4, [["0", "0", "0"]] * 2, {"u": 1}, 1, None])
 def test_a_position_of_another_shape(answer: object, make_exercise: Make) -> None:
     report = graded(make_exercise(POSITION), answer)
     assert report.points == 0
@@ -75,7 +75,7 @@ def test_three_values_with_a_zero_behind_them_are_refused(make_exercise: Make) -
     report = graded(make_exercise(POSITION), [*SPATIAL, 0])
     assert all_codes(report) == {"wrong_shape"}
     [message] = report.feedback
-    assert message.message.endswith("; this one has 4.")
+    assert message.message == "Write a list of 3 values; yours has 4."
 
 
 def test_two_coordinates_leave_the_third_missing(make_exercise: Make) -> None:

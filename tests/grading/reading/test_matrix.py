@@ -131,7 +131,7 @@ def test_a_row_of_another_length_costs_that_row(arm: Exercise) -> None:
     [feedback] = cell(report, "4", "1").feedback
     assert (feedback.code, feedback.message) == (
         "row_length",
-        "A row has 4 entries; this is 3 entries.",
+        "Write 4 entries in this row; it has 3.",
     )
 
 
@@ -149,7 +149,7 @@ def test_another_size_is_refused_and_told(text: str, size: str, arm: Exercise) -
     assert (report.verdict, report.points, report.rows) == (Verdict.UNREADABLE, 0.0, ())
     [feedback] = report.feedback
     assert feedback.code == "wrong_shape"
-    assert feedback.message.endswith(f"what was pasted is {size}.")
+    assert feedback.message.endswith(f"yours is {size}.")
 
 
 @pytest.mark.parametrize(

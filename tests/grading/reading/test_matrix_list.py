@@ -35,6 +35,11 @@ def pasted(arm: Exercise, answer: object) -> PartReport:
         (f"T01 = {A1}\nT12 = {A2}\nT02 = {A1}", {"matrix_left_aside"}),
         (f"A1 = {A1}\n{A2}", set()),
         (f"T = {A1}\nR = {A2}", set()),
+        (f"theta1 = pi/2\nA1 = {A1}\nA2 = {A2}", {"matrix_left_aside"}),
+        (f"H1 = {A1}, H2 = {A2}, H1*H2 = T", {"matrix_left_aside"}),
+        (f"H1 = {A1}\nH2 = {A2}\nH1*H2 = {A1}", {"matrix_left_aside"}),
+        (f"A1 = {A1}\nA2 = {A2}\ninv(A1) = {A1}", {"matrix_left_aside"}),
+        (f"T12 = {A1}\nT23 = {A2}", {"matrix_names"}),
     ],
 )
 def test_full_marks_with_a_note_where_the_order_is_another(
@@ -51,6 +56,9 @@ def test_full_marks_with_a_note_where_the_order_is_another(
         (f"A1 = {A1}\nA1 = {A2}", "duplicate_matrix", "A1"),
         (f"A1 = {A1}\nA7 = {A2}", "unknown_matrix", "A7"),
         (f"A1 = {A1}\nT = {A2}\nB = {A2}", "unknown_matrix", "B"),
+        (f"inv(A1) = {A1}\nA2 = {A2}", "unknown_matrix", "inv(A1)"),
+        (f"A1' = {A1}\nA2 = {A2}", "unknown_matrix", "A1'"),
+        (f"A1 = {A1}\nA2.T = {A2}", "unknown_matrix", "A2.T"),
         (f"{A1}\n{A2}\n{A1}", "wrong_shape", A1[1:-1]),
         ("see the attached file", "wrong_shape", "see the attached file"),
         (f"A1 = {A1[:-1]}\nA2 = {A2}", "unbalanced_bracket", "["),
@@ -62,6 +70,49 @@ def test_what_cannot_be_told_is_refused(text: str, code: str, marked: str, arm: 
     assert (report.verdict, feedback.code) == (Verdict.UNREADABLE, code)
     assert feedback.span is not None
     assert text[slice(*feedback.span)] == marked
+
+
+@pytest.mark.parametrize(
+    ("answer", "notes"),
+    [
+        ([f"A2 = {A2}", f"A1 = {A1}"], {"matrix_order"}),
+        ([f"A1 = {A1}", f"A2 = {A2}"], set()),
+        ([f"T = {A1}", f"R = {A2}"], set()),
+        ([f"T12 = {A1}", f"T23 = {A2}"], {"matrix_names"}),
+    ],
+)
+def test_a_list_of_texts_goes_by_their_names(
+    answer: list[str], notes: set[str], arm: Exercise
+) -> None:
+    report = pasted(arm, answer)
+    assert full_marks(report), report
+    assert all_codes(report) == notes | {"blank_before_sign"}
+
+
+def test_a_list_of_texts_under_the_wrong_names_is_wrong(arm: Exercise) -> None:
+    report = pasted(arm, [f"A2 = {A1}", f"A1 = {A2}"])
+    assert (report.verdict, report.points) == (Verdict.INCORRECT, 0)
+
+
+@pytest.mark.parametrize(
+    ("answer", "code"),
+    [
+        ([f"A1 = {A1}", f"A1 = {A2}"], "duplicate_matrix"),
+        ([f"inv(A1) = {A1}", f"A2 = {A2}"], "unknown_matrix"),
+        ([f"A1 = {A1}", f"A5 = {A2}"], "unknown_matrix"),
+    ],
+)
+def test_names_in_a_list_that_contradict_are_refused(
+    answer: list[str], code: str, arm: Exercise
+) -> None:
+    report = pasted(arm, answer)
+    [feedback] = report.feedback
+    assert (report.verdict, feedback.code, feedback.span) == (Verdict.UNREADABLE, code, None)
+
+
+def test_a_product_stands_in_the_place_of_no_link(arm: Exercise) -> None:
+    report = pasted(arm, f"A1 = {A1}\nA1*A2 = {A2}")
+    assert [row.verdict for row in report.rows] == [Verdict.CORRECT] * 4 + [Verdict.MISSING] * 4
 
 
 def test_one_matrix_that_cannot_be_read_costs_itself(arm: Exercise) -> None:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from service.grading.reading.matrix_names import indices_of, places_of
+from service.grading.reading.matrix_names import indices_of, is_changed, is_product, places_of
 
 
 def places(names: str, count: int) -> list[int | None]:
@@ -19,7 +19,7 @@ def places(names: str, count: int) -> list[int | None]:
         "T_1^0 | T_2^1 | T_3^2", r"\mathbf{A}^0_1 | \mathbf{A}^1_2 | \mathbf{A}^2_3",
         "A(:,:,1) | A(:,:,2) | A(:,:,3)", "T0_1 | T1_2 | T2_3", "Link 1 | Link 2 | Link 3",
         "A[0] | A[1] | A[2]", "A0 | A1 | A2", "T_1 | T_2 | T_e", "A1 | A2 | An", "A1 | A2 | Ae",
-        "T01 | T12 | T_{2,tool}", "T01 | T02 | T03", "H10 | H21 | H32",
+        "T01 | T12 | T_{2,tool}", "T01 | T02 | T03", "T12 | T23 | T34", "H10 | H21 | H32",
     ],
 )  # fmt: skip
 def test_three_names_in_order(names: str) -> None:
@@ -48,9 +48,29 @@ def test_other_names(names: str, count: int, expected: list[int | None]) -> None
 
 
 def test_names_that_count_from_zero_are_told_from_those_that_do_not() -> None:
-    def from_zero(*names: str) -> bool:
+    def unusual(*names: str) -> str:
         return places_of([indices_of(name) for name in names], len(names))[1]
 
-    assert from_zero("A0", "A1")
-    assert not from_zero("A1", "A2")
-    assert not from_zero("T01", "T12")
+    assert unusual("A0", "A1")
+    assert not unusual("A1", "A2")
+    assert not unusual("T01", "T12")
+
+
+@pytest.mark.parametrize(
+    "name", ["inv(A1)", "A1'", "A1.T", "A1inv", "A_1^T", "A_1^{-1}", "A_1^{T}", r"A_1^\top"]
+)
+def test_names_of_inverses_and_transposes(name: str) -> None:
+    assert is_changed(name)
+
+
+@pytest.mark.parametrize(
+    "name", ["A1", "^0T_1", "{}^{0}T_{1}", "{}^T_2 T", r"A_1(\theta_1)", "T_1^0", "Link 2", "A1.m"]
+)
+def test_names_of_links(name: str) -> None:
+    assert not is_changed(name)
+    assert not is_product(name)
+
+
+@pytest.mark.parametrize("name", ["A1*A2", "A_1 A_2", "A1 @ A2", r"A_1 \cdot A_2", "A1A2"])
+def test_names_of_products(name: str) -> None:
+    assert is_product(name)

@@ -1,6 +1,7 @@
 """Remarks on frames that are valid but not the reference's, so that nobody wonders."""
 
 from itertools import compress
+from typing import Final
 
 import numpy as np
 
@@ -10,6 +11,8 @@ from service.grading.report import Severity
 from service.kinematics.dh import Convention
 from service.kinematics.tolerances import SAME_POSE
 from service.kinematics.transforms import Matrices
+
+OWN_FRAME_CHOICE: Final = "own_frame_choice"
 
 
 def remarks_on(
@@ -31,7 +34,7 @@ def remarks_on(
         if departures:
             findings.append(
                 Finding(
-                    "own_frame_choice",
+                    OWN_FRAME_CHOICE,
                     f"You {' and '.join(departures)}; that is a valid choice.",
                     severity=Severity.INFO,
                 )
@@ -43,11 +46,11 @@ def _departures(pose: Matrices, frame: int, joint: Joint, length_scale: float) -
     departures = []
     rotation, origin = pose[:, :3, :3], pose[:, :3, 3]
     if (rotation[:, 2, 2] < 0).all():
-        departures.append(f"turned z{frame} over")
+        departures.append(f"let z{frame} point the opposite way")
     if np.abs(rotation[:, 1, 0]).max() > SAME_POSE:
         departures.append(f"turned x{frame} about z{frame}")
     elif (rotation[:, 0, 0] < 0).all():
-        departures.append(f"let x{frame} point the other way")
+        departures.append(f"let x{frame} point the opposite way")
     if np.abs(origin[:, :2]).max() > SAME_POSE * length_scale:
         departures.append(f"moved the axis of the sliding joint {joint.index} sideways")
     elif np.abs(origin[:, 2]).max() > SAME_POSE * length_scale:

@@ -22,6 +22,6 @@ def test_a_table_in_the_other_convention_is_judged_by_the_intended_one(
         ],
     )
     assert [m.code for m in report.feedback] == ["other_convention", "own_frame_choice"]
-    assert "turned z2 over" in report.feedback[1].message
+    assert "let z2 point the opposite way" in report.feedback[1].message
     # Row i should have the α that was written in row i + 1.
     assert set(not_correct(report)) == {(row, "alpha") for row in ("1", "3", "4", "5", "6")}

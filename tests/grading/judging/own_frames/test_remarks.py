@@ -25,7 +25,7 @@ DEPARTURES: list[tuple[str, str, tuple[Row, ...]]] = [
     ),
     (
         "planar-rrr",
-        "You let x2 point the other way; that is a valid choice.",
+        "You let x2 point the opposite way; that is a valid choice.",
         (
             ("0", "0", "0", "q1"),
             ("l1", "0", "0", "q2 + pi"),
@@ -45,7 +45,7 @@ DEPARTURES: list[tuple[str, str, tuple[Row, ...]]] = [
     ),
     (
         "stanford-arm",
-        "You turned z2 over; that is a valid choice.",
+        "You let z2 point the opposite way; that is a valid choice.",
         (
             ("0", "-90deg", "0", "theta1"),
             ("0", "-90deg", "d2", "theta2"),

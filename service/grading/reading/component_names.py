@@ -1,0 +1,167 @@
+"""The names of a list's values, such as x, p_y, φ or pitch -> the places that they may have."""
+
+import re
+import unicodedata
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import Final
+
+from service.expressions import Kind, LeftSide, Symbol, Vocabulary
+from service.expressions.characters import greek
+from service.expressions.vocabulary.symbols import normal_form
+from service.grading.reading.written_names import Places
+
+_STYLE: Final = re.compile(
+    r"\\(?:mathrm|mathbf|mathit|mathsf|text|boldsymbol|bm|vec)(?![a-z])|\\begin\{[a-z]+\*?\}"
+    r"|\b(?:let|const|var|double|float|auto)\s"
+)
+# The arguments of x(q1, q2) are no part of its name.
+_ARGUMENTS: Final = re.compile(r"[(\[][^()\[\]]*[^\W\d][^()\[\]]*[)\]]")
+_GREEK: Final = re.compile(f"[{greek.CLASS}]")
+_WORD: Final = re.compile(r"[a-z]+|[0-9]+")
+# x, p_x, px, x_e, x_{ee}; but xy is no coordinate.
+_COORDINATE: Final = re.compile(
+    r"(?:[a-w]|pos)?([xyz])|([xyz])(?:e|ee|ef|eff|end|p|o|n|t|tcp|tip|tool)"
+)
+_NO_MARKS: Final = str.maketrans("", "", "{}$*^' ")
+
+
+@dataclass(frozen=True, slots=True)
+class ListNames:
+    """The names in a list: ``labels`` say what is asked for in each place, of which quantity.
+
+    ``places`` has the names by their key, ``coordinates`` those that end in x, y or z.
+    """
+
+    labels: tuple[str, ...]
+    quantities: tuple[Kind, ...]
+    places: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    coordinates: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+
+    def places_of(self, names: Sequence[LeftSide | None], vocabulary: Vocabulary) -> list[Places]:
+        """The places that each of these names may have; None where a name tells none."""
+        words = [_words(name.name) if name else [] for name in names]
+        letters = [letter for each in words if (letter := _coordinate(each))]
+        # x_1 and y_1 are those of frame 1, but x_1 and x_2 the first and the second of something.
+        of_frames = 1 < len(letters) == len(set(letters))
+        return [
+            self._places(name.name, each, self.quantities[i], vocabulary, of_frames=of_frames)
+            if name
+            else None
+            for i, (name, each) in enumerate(zip(names, words, strict=True))
+        ]
+
+    def _places(
+        self,
+        name: str,
+        words: Sequence[str],
+        quantity: Kind,
+        vocabulary: Vocabulary,
+        *,
+        of_frames: bool,
+    ) -> Places:
+        key = _key(words)
+        if key in self.places:
+            return self.places[key]
+        symbol = _symbol(name, vocabulary)
+        if symbol is not None and symbol.name in self.places:
+            return self.places[symbol.name]
+        letter = _coordinate(words)
+        if letter and letter in self.coordinates and (of_frames or not words[-1].isdigit()):
+            return self.coordinates[letter]
+        return () if symbol is not None and _is_another(symbol, quantity) else None
+
+
+@lru_cache(maxsize=256)
+def names_of_coordinates(letters: str) -> ListNames:
+    """The names of a point's coordinates, which are asked for in the order of ``letters``."""
+    lengths: tuple[Kind, ...] = tuple("length" for _ in letters)
+    return ListNames((*letters,), lengths, coordinates=_by_letter(letters))
+
+
+@lru_cache(maxsize=256)
+def names_of_components(
+    components: tuple[tuple[str, Kind], ...], vocabulary: Vocabulary
+) -> ListNames:
+    """The names of the components of a vector, as an exercise has them, with their quantities."""
+    names = tuple(name for name, _ in components)
+    keys: dict[str, list[int]] = {}
+    for i, name in enumerate(names):
+        symbol = _symbol(name, vocabulary)
+        for key in {_key(_words(name)), symbol.name if symbol else ""} - {""}:
+            keys.setdefault(key, []).append(i)
+    letters = [_coordinate(_words(name)) for name in names]
+    known = [letter for letter in letters if letter]
+    # Of (v_x, ω_x) nobody can say which is meant by x; and one z alone is no point.
+    is_point = len(known) > 1 and len(set(known)) == len(known)
+    return ListNames(
+        names,
+        tuple(quantity for _, quantity in components),
+        {key: tuple(places) for key, places in keys.items()},
+        _by_letter(letters) if is_point else {},
+    )
+
+
+@lru_cache(maxsize=256)
+def names_of_angles(turns: str, *, fixed: bool) -> ListNames:
+    """The names of three angles about the axes ``turns``, about fixed axes or moving ones.
+
+    Textbooks differ on α, γ about fixed axes, on φ, ψ about three different axes, and on roll and
+    yaw: these may stand at either end.
+    """
+    is_euler = turns[0] == turns[2]
+    inner, outer = (1,), (0, 2)
+    places: dict[str, tuple[int, ...]] = {"beta": inner, "theta": inner}
+    places |= dict.fromkeys(("alpha", "gamma"), outer) if fixed else {"alpha": (0,), "gamma": (2,)}
+    places |= {"phi": (0,), "psi": (2,)} if is_euler else dict.fromkeys(("phi", "psi"), outer)
+    if not is_euler:
+        about_y = turns.index("Y")
+        others = tuple(i for i in range(3) if i != about_y)
+        places |= {"pitch": (about_y,), "roll": others, "yaw": others}
+    labels = tuple(
+        f"the {number} angle, about {axis.lower()},"
+        for number, axis in zip(("first", "second", "third"), turns, strict=True)
+    )
+    coordinates = {} if is_euler else _by_letter(turns.lower())
+    return ListNames(labels, ("angle",) * 3, places, coordinates)
+
+
+def _by_letter(letters: Iterable[str | None]) -> dict[str, tuple[int, ...]]:
+    """The places of x, y and z, none for one that is not asked for."""
+    listed = list(letters)
+    return {axis: tuple(i for i, each in enumerate(listed) if each == axis) for axis in "xyz"}
+
+
+def _is_another(symbol: Symbol, quantity: Kind) -> bool:
+    """Whether a declared symbol is of another quantity: θ1 where a length is asked for."""
+    return quantity != "number" and symbol.kind != "number" and symbol.kind != quantity
+
+
+def _words(name: str) -> list[str]:
+    """The words and numbers of a name in small letters, with Greek letters by their names."""
+    plain = _GREEK.sub(lambda found: f" {greek.NAMES[found[0]]} ", _plain(name)).lower()
+    words = _WORD.findall(plain.replace("\\var", "\\"))
+    # A script in front names the frame: {}^0 p_x.
+    return words[1:] if len(words) > 1 and words[0].isdigit() else words
+
+
+def _key(words: Sequence[str]) -> str:
+    return "".join(words)
+
+
+def _plain(name: str) -> str:
+    """A name without styles and arguments."""
+    return unicodedata.normalize("NFKC", _ARGUMENTS.sub(" ", _STYLE.sub(" ", name)))
+
+
+def _symbol(name: str, vocabulary: Vocabulary) -> Symbol | None:
+    """The declared symbol of this name."""
+    plain = _plain(name)
+    return vocabulary.by_name.get(normal_form(plain.translate(_NO_MARKS)))
+
+
+def _coordinate(words: Sequence[str]) -> str | None:
+    """The one coordinate that a name has: x of p_x and of x_e."""
+    found = [match[1] or match[2] for word in words if (match := _COORDINATE.fullmatch(word))]
+    return found[0] if len(found) == 1 else None

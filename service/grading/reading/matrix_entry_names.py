@@ -1,0 +1,48 @@
+"""Names in front of a matrix's entries (T(1,4) = l1 c1, r_12 = -s1): the entries they name."""
+
+import re
+import unicodedata
+from typing import Final
+
+from service.expressions import LeftSide, Vocabulary
+from service.expressions.vocabulary.symbols import normal_form
+from service.grading.feedback import Finding
+from service.grading.reading.written_names import misnamed_value, name_of
+
+# Letters of whole matrices: a p_12 or l_12 is no entry of one. Frames may stand at the letter where
+# the index is in brackets: T_0^4(1,4).
+_LETTER: Final = r"\\?(?:[a-z]+\s*\{\s*)?(?<![a-z])[aghjmrt]\s*\}?"
+_GLUED: Final = re.compile(rf"{_LETTER}_?\{{?\s*([1-9])\s*,?\s*([1-9])\s*\}}?")
+_IN_BRACKETS: Final = re.compile(
+    rf"{_LETTER}[\s_^{{}}0-9]*(?:[({{]\s*([0-9]{{1,2}})\s*,\s*([0-9]{{1,2}})\s*[)}}]"
+    r"|\[\s*([0-9]{1,2})\s*(?:,|\]\s*\[)\s*([0-9]{1,2})\s*\])"
+)
+
+
+def misnamed_entry(
+    raw: object, place: tuple[int, int], size: tuple[int, int], vocabulary: Vocabulary
+) -> Finding | None:
+    """The finding that a value is named after another entry than that in ``place``, from 0.
+
+    ``size`` is the matrix's, in rows and columns. Indices in square brackets may count from 0.
+    """
+    name = name_of(raw, vocabulary)
+    if name is None or normal_form(name.name) in vocabulary.by_name:
+        return None
+    named = _places_of(name)
+    if place in named or not any(i < size[0] and j < size[1] for i, j in named):
+        return None
+    row, column = place
+    return misnamed_value(name, f"row {row + 1}, column {column + 1}")
+
+
+def _places_of(name: LeftSide) -> list[tuple[int, int]]:
+    """The entries that a name may mean, counted from 0."""
+    plain = unicodedata.normalize("NFKC", name.name).lower()
+    found = _GLUED.fullmatch(plain) or _IN_BRACKETS.fullmatch(plain)
+    if found is None:
+        return []
+    row, column = (int(each) for each in found.groups() if each is not None)
+    from_one = (row - 1, column - 1)
+    counts = [from_one, (row, column)] if name.name.endswith("]") else [from_one]
+    return [(i, j) for i, j in counts if i >= 0 and j >= 0]
