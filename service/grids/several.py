@@ -62,6 +62,8 @@ def read_grids(text: str) -> tuple[NamedGrid, ...]:
     """
     source = pasted_source(text, named=True)
     pieces = latex_list.several(source) if latex.FORMAT.matches(source.text) else _several(source)
+    # Names and products alone are no matrix: the text itself is refused as one.
+    pieces = pieces or [(source.cut(0, 0), source)]
     if len(pieces) > GRID_LIMITS.rows:
         raise too_many_matrices(source.whole)
     found = [NamedGrid(name, _read(piece)) for name, piece in pieces]

@@ -90,6 +90,7 @@ def check(text: str) -> None:
 @example("list(" * 3000)
 @example("[" * 16_000)
 @example("<td>" * 4000)
+@example("0=A@A")
 def test_any_text(text: str) -> None:
     check(text)
 
