@@ -9,7 +9,7 @@ as rounding may have moved it, once for all samples, so that the entry is what w
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from enum import IntEnum
 
 import numpy as np
@@ -123,8 +123,10 @@ def is_rounded(
     if not 0 < count <= MAX_DECIMALS:
         return False
 
+    symbol_values = samples.values_for(expression)
+
     def errors(shifts: Numbers) -> Numbers:
-        values = decimals.shifted(shifts, samples.values)
+        values = decimals.shifted(shifts, symbol_values)
         return np.asarray(difference(values, expected[None], angle))
 
     tolerance = float(_tolerance(expected, scale))
@@ -180,7 +182,8 @@ def rounding_slack(expression: Expression, samples: Samples) -> float:
     if not 0 < count <= MAX_DECIMALS:
         return 0.0
     steps = np.eye(count) / 2
-    rates = decimals.shifted(steps, samples.values) - decimals.shifted(-steps, samples.values)
+    values = samples.values_for(expression)
+    rates = decimals.shifted(steps, values) - decimals.shifted(-steps, values)
     return float(np.nan_to_num(np.abs(rates).sum(axis=0).max()))
 
 
@@ -257,8 +260,7 @@ class SharedDecimals:
 
     def __init__(self, expressions: Sequence[Expression | None], samples: Samples) -> None:
         """``expressions`` are those of the entries, None where there is none."""
-        self._samples = samples
-        self._parts: list[tuple[int, Decimals, slice]] = []
+        self._parts: list[tuple[int, Decimals, slice, Mapping[str, Numbers]]] = []
         self.count = 0
         self.units = np.zeros(0)
         for i, expression in enumerate(expressions):
@@ -267,7 +269,7 @@ class SharedDecimals:
             decimals = decimals_of(expression)
             if 0 < len(decimals.units) <= MAX_DECIMALS:
                 places = slice(self.count, self.count + len(decimals.units))
-                self._parts.append((i, decimals, places))
+                self._parts.append((i, decimals, places, samples.values_for(expression)))
                 self.count = places.stop
                 self.units = np.append(self.units, decimals.units)
         if self.count > MAX_SHARED_DECIMALS:
@@ -279,8 +281,8 @@ class SharedDecimals:
         ``shifts`` is ``(K, count)``.
         """
         moved = np.repeat(values[None], len(shifts), axis=0)
-        for i, decimals, places in self._parts:
-            moved[:, i] = decimals.shifted(shifts[:, places], self._samples.values)
+        for i, decimals, places, symbol_values in self._parts:
+            moved[:, i] = decimals.shifted(shifts[:, places], symbol_values)
         return moved
 
 
