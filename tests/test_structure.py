@@ -41,7 +41,7 @@ GRADING_ROOMS = 16
 LINES = 400
 
 # Folders of tests that are about something else than a package of service/.
-SUITES = {"docs", "exercises", "frame_choice", "pose_slips", "benchmarks", "attack"}
+SUITES = {"docs", "exercises", "frame_choice", "pose_slips", "benchmarks", "attack", "worst"}
 
 
 def module_name(file: Path) -> str:
