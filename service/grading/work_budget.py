@@ -21,6 +21,8 @@ MAX_PASTED = 36_000
 
 # In units of the least work that a grading can be: six links multiplied out at all samples.
 MAX_EXPLANATIONS = 150.0
+# Enough to look for a dozen unread cells, or to judge a table of six rows in five ways.
+MAX_SEARCHES = 150.0
 
 
 @dataclass(slots=True)
@@ -30,18 +32,25 @@ class WorkBudget:
     ``characters`` counts those that may still be read, ``repairs`` the unreadable texts for which
     a repaired one may still be looked for. ``pasted`` counts the characters of texts that may
     still be cut into cells. ``explanations`` is the work that may still be spent on what is wrong
-    and why; verdicts and points draw on nothing.
+    and why: no verdict depends on it. ``searches`` is that for what a table may have been meant to
+    be: with what was not read, in another order of its columns.
     """
 
     characters: int = MAX_CHARACTERS
     repairs: int = MAX_REPAIRS
     pasted: int = MAX_PASTED
     explanations: float = MAX_EXPLANATIONS
+    searches: float = MAX_SEARCHES
 
     def affords(self, work: float) -> bool:
         """Whether there is so much left for explanations. It is taken, and what is gone is gone."""
         self.explanations -= work
         return self.explanations >= 0
+
+    def affords_search(self, work: float) -> bool:
+        """Whether there is so much left for searches. It is taken, and what is gone is gone."""
+        self.searches -= work
+        return self.searches >= 0
 
     def charge_unreadable(self, characters: int) -> None:
         """Count a text that could not be read, whose characters were counted once before."""

@@ -16,6 +16,7 @@ from service.grading.follow_through import stands_still
 from service.grading.judging.convention import judged_in_convention
 from service.grading.judging.own_frames.best_roles import roles_in, rows_of_mechanism
 from service.grading.judging.own_frames.remarks import OWN_FRAME_CHOICE
+from service.grading.judging.own_frames.row_roles import FrameFreedom, freedom_of
 from service.grading.judging.report_rows import Slips, cell_report
 from service.grading.judging.row_places import row_places
 from service.grading.judging.table import JudgedRow, Judgement
@@ -44,6 +45,8 @@ _QUANTITIES = tuple(QUANTITIES.values())
 _EXTRA_ROW = "extra_row"
 # The work of finding a freedom that the joints have lost, as the budget counts it.
 FREEDOM_WORK = 8.0
+# The work of judging a row of a wrong table, with frames that are given or free.
+ROW_WORK, FREE_ROW_WORK = 6.0, 12.0
 # With so many wrong cells two misconceptions at once are looked for.
 WRONG_THROUGHOUT = 3
 
@@ -73,16 +76,26 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     # What was not read is not read in any order.
     unread = int(np.isnan(answer.values).any(axis=-1).sum())
     for intended in in_other_orders(answer, grading) if 3 * unread <= wrong else ():
+        if not _affords_another(part, answer, grading):
+            return judged
         without = _judged_as_read(part, intended.table, grading)
         if 3 * _wrong_cells(without) <= wrong:
             # Who writes the columns in another order multiplies the links out as they were meant.
             return replace(_with_slip(intended, without, judged, grading), chain=without.chain)
     convention = part.convention if part.convention != "either" else answer.convention
-    if (intended := with_exchanged_row(answer, convention, grading)) is not None:
+    intended_row = with_exchanged_row(answer, convention, grading)
+    if intended_row is not None and _affords_another(part, answer, grading):
+        intended = intended_row
         without = _judged_as_read(part, intended.table, grading)
         if 1 < wrong > _wrong_cells(without):
             return _with_slip(intended, without, judged, grading)
     return judged
+
+
+def _affords_another(part: DhTableSpec, answer: StudentTable, grading: Grading) -> bool:
+    """Whether the budget allows to judge the table once more, as it may have been intended."""
+    of_row = ROW_WORK if freedom_of(part) == FrameFreedom() else FREE_ROW_WORK
+    return grading.reader.budget.affords_search(of_row * len(answer.rows))
 
 
 def _wrong_cells(judged: Judged) -> int:

@@ -25,6 +25,7 @@ from service.grading.judging.own_frames.row_roles import (
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE
 from service.grading.samples import HALF, SAMPLES, Samples
+from service.grading.work_budget import WorkBudget
 from service.kinematics.chain import A, D, Table, frames
 from service.kinematics.dh import Convention
 from service.kinematics.frame_choice import WRONG_CELL
@@ -36,9 +37,12 @@ STARTS, POSTURES, STEPS = 32, 6, 25
 SIFTED_AT, KEPT = 8, 12
 # From this step on the search ends where no start can lessen its error by such a share in one step:
 # all are in valleys that lead nowhere. Of 300 searches that found values none came below a tenth.
-PATIENCE, LEAST_PROMISE = 5, 0.05
+PATIENCE, LEAST_PROMISE = 5, 0.3
+# The work of a step, and of each unknown of each start in it, as the budget counts it.
+STEP_WORK, CELL_WORK = 1.5, 0.01
 # Poses are equal where they differ by less, in the exercise's typical length.
 SAME = 1e-9
+NO_SINE = 1e-12
 _DAMPING = 1e-3
 _LEAST_DAMPING = 1e-12
 
@@ -85,7 +89,7 @@ def completed(
     if any(role.row is None for role in roles):
         return None
     case = _case(roles, convention, freedom, grading)
-    if not len(case.unread) or not _can_be_completed(case):
+    if not len(case.unread) or not _can_be_completed(case, grading.reader.budget):
         return None
     values = handed_in_values(roles)
     expected = np.where(np.isfinite(values).all(axis=-1, keepdims=True), values, 0.0)
@@ -131,8 +135,8 @@ def _values_at(role: Role, samples: Samples) -> Table:
     return np.asarray(role.row.values_at(samples) + made_exact)
 
 
-def _can_be_completed(case: _Case) -> bool:
-    """Whether one of the starts leads to a valid table."""
+def _can_be_completed(case: _Case, budget: WorkBudget) -> bool:
+    """Whether one of the starts leads to a valid table before the budget is used up."""
     rng = np.random.default_rng(HALF)
     count = len(case.unread)
     angle = IS_ANGLE[case.unread[:, 1]]
@@ -160,6 +164,8 @@ def _can_be_completed(case: _Case) -> bool:
             constants, signs, base, tool, damping, error, columns, size = (
                 each[kept] for each in (constants, signs, base, tool, damping, error, columns, size)
             )
+        if not budget.affords_search(STEP_WORK + columns.shape[0] * columns.shape[1] * CELL_WORK):
+            return False
         change = _step(error, columns, damping)
         if step > PATIENCE and _promise(change, error, columns).max() < LEAST_PROMISE:
             return False
@@ -186,12 +192,12 @@ def _signs(holds_variable: Sequence[bool]) -> Numbers:
 def _linearised(
     case: _Case, constants: Numbers, signs: Numbers, base: Matrices, tool: Matrices
 ) -> tuple[Numbers, Numbers]:
-    """How far the tool is from the reference's, ``(S, 12 L)``, and how that changes ``(S, U, …)``.
+    """How far the tool is from the reference's, ``(S, 6 L)``, and how that changes ``(S, U, …)``.
 
-    A cell turns all that follows about its axis, or moves it along: the derivative of each column
-    of the pose is ω × column, that of its origin ω × (p - point) or v.
+    The error is the rotation vector to the reference's tool and the way there. A cell turns all
+    that follows about its axis, ω and ω × (p - point), or moves it along.
     """
-    starts, postures = len(constants), case.target.shape[0]
+    starts, postures = len(constants), len(case.target)
     table = np.repeat(case.table[:, :, None], starts, axis=2)
     rows, columns = case.unread.T
     table[rows, columns] = constants.T[..., None] + signs.T[..., None] * case.variables[:, None]
@@ -203,17 +209,29 @@ def _linearised(
         if is_free:
             axes.append(np.moveaxis(np.tile(frame[..., :3, :3], 2), -1, 0))
             points.append(np.broadcast_to(frame[..., :3, 3], axes[-1].shape))
-    shape = (-1, starts, postures, 3)
-    axis = np.concatenate([np.broadcast_to(each, (len(each), *shape[1:])) for each in axes])
-    point = np.concatenate([np.broadcast_to(each, (len(each), *shape[1:])) for each in points])
-    turned = np.broadcast_to(pose[..., :3, :].swapaxes(-1, -2), (len(axis), *shape[1:3], 4, 3))
-    turned = turned.copy()
-    turned[..., 3, :] -= point
-    motion = _cross(axis[..., None, :], turned)
-    motion[case.slides, ..., :3, :] = 0.0
-    motion[case.slides, ..., 3, :] = axis[case.slides]
-    error = (case.target - pose)[..., :3, :].swapaxes(-1, -2)
+    shape = (starts, postures, 3)
+    axis = np.concatenate([np.broadcast_to(each, (len(each), *shape)) for each in axes])
+    point = np.concatenate([np.broadcast_to(each, (len(each), *shape)) for each in points])
+    motion = np.zeros((*axis.shape[:-1], 6))
+    motion[..., :3] = axis
+    motion[..., 3:] = _cross(axis, pose[..., :3, 3] - point)
+    motion[case.slides, ..., :3], motion[case.slides, ..., 3:] = 0.0, axis[case.slides]
+    error = np.empty((*shape[:2], 6))
+    error[..., :3] = _rotation_vector(case.target[..., :3, :3] @ pose[..., :3, :3].swapaxes(-1, -2))
+    error[..., 3:] = (case.target - pose)[..., :3, 3]
     return error.reshape(starts, -1), motion.reshape(len(motion), starts, -1).swapaxes(0, 1)
+
+
+def _rotation_vector(rotation: Matrices) -> Numbers:
+    """The axis times the angle of rotations ``(..., 3, 3)``: ``(..., 3)``.
+
+    Half a turn, of which this finds no axis, is far from any solution.
+    """
+    upper, lower = (2, 0, 1), (1, 2, 0)
+    twice_sine = rotation[..., upper, lower] - rotation[..., lower, upper]
+    sine = np.sqrt((twice_sine**2).sum(axis=-1)) / 2
+    angle = np.arctan2(sine, (np.trace(rotation, axis1=-2, axis2=-1) - 1) / 2)
+    return np.asarray(twice_sine / 2 * (angle / np.maximum(sine, NO_SINE))[..., None])
 
 
 def _cross(one: Numbers, other: Numbers) -> Numbers:
