@@ -28,7 +28,7 @@ PACKAGES = (
 # circle arises.
 GRADING_FLOORS = (
     {"comparison", "feedback", "formula_text", "joint_motion", "misconception", "report"}
-    | {"samples", "tolerances"},
+    | {"samples", "tolerances", "work_budget"},
     {"reading"},
     {"part"},
     {"judging"},  # right or wrong; why it is wrong is diagnosis

@@ -80,7 +80,7 @@ class Samples:
         return Samples({**self.values, **more}, self.in_degrees)
 
     def values_for(self, expression: Expression) -> Mapping[str, Numbers]:
-        """The values of all symbols, and of those in the expression that the robot does not have."""
+        """The values of all symbols, with those in it that the robot does not have."""
         absent = expression.symbols.difference(self.values)
         return self.with_names(absent).values if absent else self.values
 
