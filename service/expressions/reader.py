@@ -49,8 +49,8 @@ _NO_SYMBOLS: Final = Vocabulary([])
 class ReadingOptions(NamedTuple):
     """How a text is read.
 
-    ``is_angle`` tells whether the whole entry is an angle, ``degrees`` whether angles are in
-    degrees.
+    ``degrees`` tells whether angles are in degrees, and ``is_angle`` whether the whole entry is
+    then such an angle.
     """
 
     vocabulary: Vocabulary
@@ -176,7 +176,9 @@ def read(
         span = (LIMITS.characters, len(text))
         error = UnreadableError("beyond", span, limit="characters", length=len(text))
         raise _explained(text, error, vocabulary)
-    options = (vocabulary, quantity == "angle", angle_unit == "degrees")
+    degrees = angle_unit == "degrees"
+    # In radians an angle is read as any number is, and is remembered as one.
+    options = (vocabulary, degrees and quantity == "angle", degrees)
     remembered = _remembered if len(text) <= _LONG else _remembered_long
     result = remembered(text, *options, _ATTEMPTS if repairs else 0)
     if isinstance(result, ExpressionError):
