@@ -2,13 +2,14 @@
 
 from email.message import Message
 from http import HTTPStatus
+from itertools import islice
 from typing import TypeVar
 
 from fastapi import Request
 from pydantic import BaseModel, ValidationError
 
 from service.api.lookup import Location
-from service.api.problems import ProblemError, invalid
+from service.api.problems import MAX_ERRORS, ProblemError, invalid
 from service.submissions.strict_json import MalformedError, read_json
 
 M = TypeVar("M", bound=BaseModel)
@@ -34,11 +35,20 @@ def checked(model: type[M], value: object, at: Location = ()) -> M:
     Raises ProblemError: 422 for another shape.
     """
     try:
-        return model.model_validate(value)
+        return model.model_validate(_with_few_unknown(model, value))
     except ValidationError as error:
         details = error.errors(include_url=False, include_input=False, include_context=False)
         placed = [{**detail, "loc": (*at, *detail["loc"])} for detail in details]
         raise invalid(placed, list(model.model_fields)) from error
+
+
+def _with_few_unknown(model: type[BaseModel], value: object) -> object:
+    """The value with no more unknown fields than are told; it is refused in any case."""
+    known = model.model_fields
+    if not isinstance(value, dict) or len(value) <= len(known) + MAX_ERRORS:
+        return value
+    unknown = islice((key for key in value if key not in known), MAX_ERRORS)
+    return {key: value[key] for key in (*filter(value.__contains__, known), *unknown)}
 
 
 def _malformed(error: MalformedError, content_type: str) -> ProblemError:

@@ -102,5 +102,5 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel) -> APIRouter:
 
 def _report(exercise: Exercise, body: GradeRequest, ceiling: FeedbackLevel, at: Location) -> bytes:
     """The report as JSON. Raises ProblemError for an unknown part of the submission at ``at``."""
-    require_parts(exercise, {part: (*at, "answers", part) for part in body.answers})
+    require_parts(exercise, ((part, (*at, "answers", part)) for part in body.answers))
     return rendered(grade(exercise, body.submission(least(exercise.feedback, ceiling))))

@@ -1,13 +1,14 @@
 """The exercise and the parts that a request names, or a problem that lists the known ones."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from http import HTTPStatus
+from itertools import islice
 from typing import Annotated
 
 from fastapi import Path
 
-from service.api.problems import ProblemError, invalid
+from service.api.problems import MAX_ERRORS, ProblemError, invalid
 from service.catalogue import Exercise
 from service.submissions.lookup import UnknownExerciseError, find_exercise
 
@@ -36,12 +37,13 @@ def require_exercise(catalogue: Catalogue, exercise_id: str) -> Exercise:
         raise invalid([detail]) from error
 
 
-def require_parts(exercise: Exercise, locations: Mapping[str, Location]) -> None:
-    """Check that the exercise has these parts, each named at its location in the body.
+def require_parts(exercise: Exercise, located: Iterable[tuple[str, Location]]) -> None:
+    """Check that the exercise has these parts, each with its place in the body.
 
-    Raises ProblemError naming those that there are.
+    Raises ProblemError naming those that there are, and the places of the first that there are not.
     """
-    unknown = [place for part, place in locations.items() if exercise.part(part) is None]
+    absent = (place for part, place in located if exercise.part(part) is None)
+    unknown = list(islice(absent, MAX_ERRORS))
     if unknown:
         known = ", ".join(part.id for part in exercise.parts)
         message = f"{exercise.id} has no such part; its parts are {known}"

@@ -172,5 +172,5 @@ def _exercise(catalogue: Catalogue, body: PreviewRequest) -> Exercise | None:
         raise invalid([{"type": "alone", "loc": ("part",), "msg": message}])
     exercise = None if body.exercise is None else require_exercise(catalogue, body.exercise)
     if exercise is not None and body.part is not None:
-        require_parts(exercise, {body.part: ("part",)})
+        require_parts(exercise, [(body.part, ("part",))])
     return exercise

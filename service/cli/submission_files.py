@@ -3,7 +3,7 @@
 import datetime
 import tomllib
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from pydantic import ValidationError
 
@@ -15,6 +15,11 @@ from service.submissions.strict_json import (
     nested_deeper,
     read_json,
 )
+
+# Python reads TOML a hundred times slower than JSON, and a key of many dots takes memory that grows
+# with their square.
+MAX_TOML_SIZE: Final = 64 * 1024
+MAX_TOML_DOTS: Final = 2_000
 
 
 class UnusableFileError(Exception):
@@ -54,6 +59,10 @@ def _content(path: Path) -> object:
     if len(data) > MAX_BODY_SIZE:
         raise UnusableFileError(f"is larger than {MAX_BODY_SIZE // 1024} KiB")
     if path.suffix.lower() == ".toml":
+        if len(data) > MAX_TOML_SIZE or data.count(b".") > MAX_TOML_DOTS:
+            raise UnusableFileError(
+                f"is more TOML than {MAX_TOML_SIZE // 1024} KiB or {MAX_TOML_DOTS:,} dots"
+            )
         return _toml(data)
     try:
         return read_json(data)

@@ -53,16 +53,20 @@ class TextError(Exception):
 class ExpressionError(TextError):
     """A formula that cannot be read.
 
-    ``suggestion`` is the whole repaired text where one is near, else None.
+    ``suggestion`` is the whole repaired text where one is near, else None; ``tried`` counts the
+    symbols of all texts that were read in search of it.
     """
 
     def __init__(self, code: str, message: str, span: Span, suggestion: str | None = None) -> None:
         super().__init__(code, message, span, suggestion)
         self.suggestion = suggestion
+        self.tried = 0
 
     def again(self) -> "ExpressionError":
         """An equal error without a traceback, so that a remembered one can be raised."""
-        return ExpressionError(self.code, self.message, self.span, self.suggestion)
+        error = ExpressionError(self.code, self.message, self.span, self.suggestion)
+        error.tried = self.tried
+        return error
 
 
 class UnreadableError(Exception):

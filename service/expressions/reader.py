@@ -21,6 +21,7 @@ from service.expressions.printing.latex import to_latex
 from service.expressions.printing.mathml import to_mathml
 from service.expressions.printing.spelling import TypedFormula
 from service.expressions.printing.text import to_text
+from service.expressions.reading_work import symbols_in
 from service.expressions.repairs import Failure, explain
 from service.expressions.tree import Binary, Node, Number, SymbolNode, children
 from service.expressions.vocabulary.symbols import Kind, Vocabulary
@@ -37,8 +38,10 @@ _SETS_OF_SYMBOLS: Final = 1024
 # The operators of a left operand that stands without brackets, in one run with its operator.
 _RUNS: Final = {"+": "+-", "-": "+-", "*": "*/", "/": "*/", "^": "^"}
 _DECIMAL: Final = re.compile(r"\d\.|\.\d")
-# How many repaired texts may be tried for one that cannot be read.
+# How many repaired texts may be tried for one that cannot be read, and how many symbols they may
+# have together: two of the longest that are repaired.
 _ATTEMPTS: Final = 6
+_TRIED_SYMBOLS: Final = 1200
 # A JSON number is one whatever the symbols are called: 1e-7 is no product of 1 and e.
 _NO_SYMBOLS: Final = Vocabulary([])
 
@@ -46,8 +49,8 @@ _NO_SYMBOLS: Final = Vocabulary([])
 class ReadingOptions(NamedTuple):
     """How a text is read.
 
-    ``is_angle`` tells whether the whole entry is an angle, ``degrees`` whether angles are in
-    degrees.
+    ``degrees`` tells whether angles are in degrees, and ``is_angle`` whether the whole entry is
+    then such an angle.
     """
 
     vocabulary: Vocabulary
@@ -173,7 +176,9 @@ def read(
         span = (LIMITS.characters, len(text))
         error = UnreadableError("beyond", span, limit="characters", length=len(text))
         raise _explained(text, error, vocabulary)
-    options = (vocabulary, quantity == "angle", angle_unit == "degrees")
+    degrees = angle_unit == "degrees"
+    # In radians an angle is read as any number is, and is remembered as one.
+    options = (vocabulary, degrees and quantity == "angle", degrees)
     remembered = _remembered if len(text) <= _LONG else _remembered_long
     result = remembered(text, *options, _ATTEMPTS if repairs else 0)
     if isinstance(result, ExpressionError):
@@ -201,7 +206,11 @@ def _remembered(
     text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool, attempts: int
 ) -> Expression | ExpressionError:
     # An error is kept without its traceback, which would hold every frame of the parse.
-    return _Reading(ReadingOptions(vocabulary, is_angle, degrees), attempts).read(text)
+    reading = _Reading(ReadingOptions(vocabulary, is_angle, degrees), attempts)
+    result = reading.read(text)
+    if isinstance(result, ExpressionError):
+        result.tried = reading.tried
+    return result
 
 
 _remembered_long = lru_cache(maxsize=_REMEMBERED_LONG)(_remembered.__wrapped__)
@@ -213,6 +222,7 @@ class _Reading:
     def __init__(self, options: ReadingOptions, attempts: int) -> None:
         self.options = options
         self.attempts = attempts
+        self.tried = 0
 
     def read(self, text: str) -> Expression | ExpressionError:
         try:
@@ -225,7 +235,11 @@ class _Reading:
         """``text`` where it can be read, else its own repaired text, if it has one."""
         if not self.attempts or len(text) > LIMITS.repaired:
             return None
+        symbols = symbols_in(text)
+        if self.tried + symbols > _TRIED_SYMBOLS:
+            return None
         self.attempts -= 1
+        self.tried += symbols
         result = self.read(text)
         return text if isinstance(result, Expression) else result.suggestion
 

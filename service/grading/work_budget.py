@@ -5,19 +5,16 @@ Counted work is the same on every machine, so that the same submission gives the
 
 from dataclasses import dataclass
 
-# The pose of a seven-joint arm, multiplied out, not simplified and printed as LaTeX, has 21,000.
-MAX_CHARACTERS = 24_000
-# What cannot be read takes up to three times as long for each character.
-UNREADABLE_COST = 3
+# The pose of a seven-joint arm, multiplied out, not simplified and printed as LaTeX, has 12,400.
+MAX_SYMBOLS = 13_000
 # To look for the repaired text of an unreadable one costs more than any other reading.
 MAX_REPAIRS = 12
-# A text of so many characters takes one repair more for each further so many.
-CHARACTERS_PER_REPAIR = 250
+# A repair that reads so many symbols counts as another one.
+SYMBOLS_PER_REPAIR = 100
 
 # Pasted texts are cut into cells, whose characters are counted once more when they are read. The
 # longest text leaves half as much for the other parts.
 MAX_PASTED = 36_000
-
 
 # In units of the least work that a grading can be: six links multiplied out at all samples.
 MAX_EXPLANATIONS = 150.0
@@ -29,14 +26,14 @@ MAX_SEARCHES = 150.0
 class WorkBudget:
     """The work left for a submission: one object for all its parts, pasted texts and units.
 
-    ``characters`` counts those that may still be read, ``repairs`` the unreadable texts for which
-    a repaired one may still be looked for. ``pasted`` counts the characters of texts that may
-    still be cut into cells. ``explanations`` is the work that may still be spent on what is wrong
-    and why: no verdict depends on it. ``searches`` is that for what a table may have been meant to
-    be: with what was not read, in another order of its columns.
+    ``symbols`` counts the names, numbers and signs that may still be read, ``repairs`` the
+    unreadable texts for which a repaired one may still be looked for. ``pasted`` counts the
+    characters of texts that may still be cut into cells. ``explanations`` is the work that may
+    still be spent on what is wrong and why: no verdict depends on it. ``searches`` is that for what
+    a table may have been meant to be: with what was not read, in another order of its columns.
     """
 
-    characters: int = MAX_CHARACTERS
+    symbols: int = MAX_SYMBOLS
     repairs: int = MAX_REPAIRS
     pasted: int = MAX_PASTED
     explanations: float = MAX_EXPLANATIONS
@@ -52,7 +49,11 @@ class WorkBudget:
         self.searches -= work
         return self.searches >= 0
 
-    def charge_unreadable(self, characters: int) -> None:
-        """Count a text that could not be read, whose characters were counted once before."""
-        self.characters -= (UNREADABLE_COST - 1) * characters
-        self.repairs -= 1 + characters // CHARACTERS_PER_REPAIR
+    def charge_reading(self, symbols: int) -> bool:
+        """Count a text that is to be read; whether it may be."""
+        self.symbols -= symbols
+        return self.symbols >= 0
+
+    def charge_repair(self, tried: int) -> None:
+        """Count an unreadable text, for which texts of so many symbols were tried."""
+        self.repairs -= 1 + tried // SYMBOLS_PER_REPAIR

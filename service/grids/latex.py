@@ -26,6 +26,8 @@ _RULES: Final = re.compile(
     r"|cline|cmidrule|addlinespace|specialrule|noalign|rowcolor|displaystyle)(?![A-Za-z])"
     r"(?:\s{0,8}(?:\([a-z]{0,4}\)|\[[^][{}]{0,20}\]|\{[^{}]{0,40}\})){0,3}"
 )
+# A sign behind a backslash begins no comment.
+_COMMENT: Final = re.compile(r"\\.|%[^\n]*", re.DOTALL)
 # Sizes of brackets mean nothing, and are half of what SymPy's LaTeX consists of.
 _SIZES: Final = re.compile(r"\\(?:left|right|[bB]igg?[lr]?)\s{0,4}(?=[()\[\]])")
 _SPANNING: Final = frozenset({"\\multicolumn", "\\multirow"})
@@ -65,16 +67,11 @@ def without_comments(source: SourceText) -> SourceText:
     r"""The text without its comments; \% is a sign."""
     text = source.text
     pieces: list[SourceText] = []
-    start = i = 0
-    while i < len(text):
-        if text[i] == "\\":
-            i += 2
-        elif text[i] == "%":
-            pieces.append(source.cut(start, i))
-            line_end = text.find("\n", i)
-            start = i = len(text) if line_end < 0 else line_end
-        else:
-            i += 1
+    start = 0
+    for found in _COMMENT.finditer(text):
+        if found[0].startswith("%"):
+            pieces.append(source.cut(start, found.start()))
+            start = found.end()
     return joined([*pieces, source.cut(start, len(text))], source.whole[0])
 
 
@@ -193,7 +190,7 @@ def _rows(body: SourceText) -> list[list[SourceText]]:
         word, at, i = token[0], token.start(), token.end()
         if word in "{}":
             depth = max(0, depth + (1 if word == "{" else -1))
-        elif rule := _RULES.match(text, at):
+        elif len(word) > 2 and (rule := _RULES.match(text, at)):
             pieces.append(body.cut(start, at))
             start = i = rule.end()
         elif word in _SPANNING:

@@ -13,6 +13,9 @@ _OPENS: Final = {closer: opener for opener, closer in CLOSES.items()}
 _STRINGS: Final = {
     quote: re.compile(rf"{quote}(?:[^\\{quote}\n]|\\.)*{quote}") for quote in ("'", '"')
 }
+BRACKET: Final = re.compile(r"[][(){}]")
+_BRACKET_OR_LINE_END: Final = re.compile(r"[][(){}\n]")
+_BRACKET_OR_QUOTE: Final = re.compile(r"""[][(){}'"]""")
 
 
 def pairs(text: str) -> dict[int, int]:
@@ -22,13 +25,14 @@ def pairs(text: str) -> dict[int, int]:
     """
     found: dict[int, int] = {}
     stack: list[int] = []
-    for i, letter in enumerate(text):
+    for sign in _BRACKET_OR_LINE_END.finditer(text):
+        i, letter = sign.start(), sign[0]
         if letter in CLOSES:
             stack.append(i)
         elif letter in _OPENS:
             if stack and text[stack[-1]] == _OPENS[letter]:
                 found[stack.pop()] = i + 1
-        elif letter == "\n":
+        else:
             stack.clear()
     return found
 
@@ -41,24 +45,23 @@ def strict_pairs(source: SourceText) -> dict[int, int]:
     text = source.text
     found: dict[int, int] = {}
     stack: list[int] = []
-    i = 0
-    while i < len(text):
-        letter = text[i]
+    at = 0
+    while sign := _BRACKET_OR_QUOTE.search(text, at):
+        i, letter = sign.start(), sign[0]
+        at = i + 1
         # Behind an operand ' is a transpose and no string.
         if letter in _STRINGS and (i == 0 or text[i - 1].isspace() or text[i - 1] in "[({,;:="):
             string = _STRINGS[letter].match(text, i)
             if string is None:
                 message = "This text has no quotation mark at its end. Add it, or delete this one."
                 raise GridError("unclosed_quote", message, source.span(i, i + 1))
-            found[i] = i = string.end()
-            continue
-        if letter in CLOSES:
+            found[i] = at = string.end()
+        elif letter in CLOSES:
             stack.append(i)
         elif letter in _OPENS:
             if not stack or text[stack[-1]] != _OPENS[letter]:
                 raise _unbalanced(source, i, stack)
             found[stack.pop()] = i + 1
-        i += 1
     if stack:
         raise _unbalanced(source, stack[-1], [])
     return found
@@ -95,6 +98,12 @@ def split(source: SourceText, separators: str) -> list[SourceText]:
 
     Raises GridError as ``strict_pairs`` does.
     """
-    text = source.text
-    places = [i for i in outside(text, strict_pairs(source)) if text[i] in separators]
+    text, ends = source.text, strict_pairs(source)
+    places, at = [], 0
+    sign = re.compile(f"[{re.escape(separators)}\\[({{'\"]")
+    while found := sign.search(text, at):
+        i = found.start()
+        at = ends.get(i, i + 1)
+        if found[0] in separators:
+            places.append(i)
     return [source.cut(a + 1, b) for a, b in pairwise([-1, *places, len(text)])]

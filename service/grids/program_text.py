@@ -6,7 +6,7 @@ from typing import Final
 
 from service.grids.grid import GridError, too_many_rows
 from service.grids.limits import GRID_LIMITS
-from service.grids.pairs import CLOSES, split, strict_pairs
+from service.grids.pairs import BRACKET, CLOSES, split, strict_pairs
 from service.grids.source_text import SourceText, joined
 
 # Functions that make a matrix of their argument and change nothing in it.
@@ -43,6 +43,9 @@ _REMARK: Final = re.compile(
     r"\.\.\.[^\n]*(?:\n|$)|%(?!(?:pi|theta|alpha)(?![A-Za-z]))[^\n]*|#[^\n]*"
 )
 _COMMENTS: Final = {"(*": "*)", "/*": "*/"}
+_REMARK_SIGNS: Final = ("...", "%", "#", *_COMMENTS)
+# What begins a remark or a string, and what ends a string.
+_SIGN: Final = re.compile(r"""['"\\\n%#]|\.\.\.|[(/]\*""")
 # Mathematica: functions that change nothing in a matrix, in front of it or behind.
 _FORM: Final = re.compile(
     r"(?:MatrixForm|TraditionalForm|InputForm|Simplify|FullSimplify|TrigReduce|Expand)\["
@@ -114,20 +117,23 @@ def _without_forms(source: SourceText) -> SourceText:
 def without_remarks(source: SourceText) -> SourceText:
     """The text without comments and line continuations, except those in strings."""
     text = source.text
+    if not any(map(text.__contains__, _REMARK_SIGNS)):
+        return source
     pieces: list[SourceText] = []
     start = i = 0
     quote = ""
     last = max(map(text.rfind, _COMMENTS.values()))
-    while i < len(text) and len(pieces) < 2 * GRID_LIMITS.separators:
-        letter = text[i]
+    while len(pieces) < 2 * GRID_LIMITS.separators and (sign := _SIGN.search(text, i)):
+        i, letter = sign.start(), sign[0][0]
         if quote:
             if letter == "\\":
                 i += 1
             elif letter in {quote, "\n"}:
                 quote = ""
-        elif letter in "'\"" and (i == 0 or not (text[i - 1].isalnum() or text[i - 1] in ")]}.'")):
-            quote = letter
-        elif letter in ".%#(/" and (end := _remark_end(text, i, last)):
+        elif letter in "'\"":
+            if i == 0 or not (text[i - 1].isalnum() or text[i - 1] in ")]}.'"):
+                quote = letter
+        elif letter not in "\\\n" and (end := _remark_end(text, i, last)):
             blank = SourceText(" ", [source.starts[i]], [source.ends[i]])
             pieces += [source.cut(start, i), blank]
             start = i = end
@@ -184,13 +190,10 @@ def behind_names(text: str) -> int:
 
 def _ends_the_text(text: str, start: int) -> bool:
     depth = 0
-    for i in range(start, len(text)):
-        if text[i] in CLOSES:
-            depth += 1
-        elif text[i] in ")]}":
-            depth -= 1
-            if depth == 0:
-                return not text[i + 1 :].strip(TAIL)
+    for bracket in BRACKET.finditer(text, start):
+        depth += 1 if bracket[0] in CLOSES else -1
+        if depth == 0:
+            return not text[bracket.end() :].strip(TAIL)
     return False
 
 

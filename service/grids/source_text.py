@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import Final
 
 from service.expressions.errors import Span
@@ -76,9 +77,11 @@ class SourceText:
 def joined(pieces: Iterable[SourceText], at: int) -> SourceText:
     """The pieces one after the other; ``at`` is the place of the result if it is empty."""
     kept = [piece for piece in pieces if piece.text]
+    if len(kept) == 1:
+        return kept[0]
     return SourceText(
         "".join(piece.text for piece in kept),
-        [start for piece in kept for start in piece.starts],
-        [end for piece in kept for end in piece.ends],
+        [*chain.from_iterable(piece.starts for piece in kept)],
+        [*chain.from_iterable(piece.ends for piece in kept)],
         at,
     )

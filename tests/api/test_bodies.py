@@ -110,3 +110,20 @@ def test_control_characters_in_names_come_back_escaped(client: httpx.Client) -> 
     assert response.status_code == 422
     assert response.content.isascii()
     assert b"\x1b" not in response.content
+
+
+@pytest.mark.parametrize("url", [GRADE, PREVIEW])
+def test_of_thousands_of_unknown_fields_the_first_are_told(client: httpx.Client, url: str) -> None:
+    """The known ones behind them are not missing."""
+    known: dict[str, object] = {"answers": {}} if url == GRADE else {"text": "q1"}
+    response = client.post(url, json={**{f"field{i}": 0 for i in range(12_000)}, **known})
+    assert response.status_code == 422
+    pointers = [error["pointer"] for error in response.json()["errors"]]
+    assert pointers == [f"#/field{i}" for i in range(20)]
+
+
+def test_of_thousands_of_unknown_parts_the_first_are_told(client: httpx.Client) -> None:
+    response = client.post(GRADE, json={"answers": {f"part{i}": 0 for i in range(12_000)}})
+    assert response.status_code == 422
+    pointers = [error["pointer"] for error in response.json()["errors"]]
+    assert pointers == [f"#/answers/part{i}" for i in range(20)]

@@ -15,7 +15,7 @@ from service.expressions import LIMITS, ExpressionError, read
 from service.grading import FeedbackLevel
 from service.grading.reading.preview import preview_pasted
 from service.grading.reading.table import MAX_ROWS
-from service.grading.work_budget import MAX_CHARACTERS
+from service.grading.work_budget import MAX_SYMBOLS
 from service.grids import GRID_LIMITS
 from tests.docs.codes import CodeUse, HiddenCodeError, codes_in, sources
 from tests.expressions.corpus_files import ROBOT
@@ -309,7 +309,7 @@ def test_the_limits_of_the_page() -> None:
         f"more than {GRID_LIMITS.characters:,} characters",
         f"more than {GRID_LIMITS.rows - 1} rows and a header",
         f"more than {GRID_LIMITS.columns} columns",
-        f"more than {MAX_CHARACTERS:,} characters",
+        f"more than {MAX_SYMBOLS:,} names, numbers and signs",
         f"a table of more than {MAX_ROWS} rows",
     ):
         assert limit in PAGE

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from service.submissions.strict_json import (
     MAX_BRACKETS,
+    MAX_COMMAS,
     MAX_DEPTH,
     MalformedError,
     nested_deeper,
@@ -84,3 +85,10 @@ def test_the_depth_is_counted_exactly() -> None:
 
 def test_brackets_in_text_are_no_nesting() -> None:
     assert read_json(json.dumps(["[" * 1000]).encode()) == ["[" * 1000]
+
+
+def test_thousands_of_values_are_no_submission() -> None:
+    """Each of 120,000 numbers was read, looked at, and hashed."""
+    assert read_json(b"[" + b"1," * MAX_COMMAS + b"1]") == [1] * (MAX_COMMAS + 1)
+    with pytest.raises(MalformedError, match="more than 20000 commas"):
+        read_json(b"[" + b"1," * (MAX_COMMAS + 1) + b"1]")

@@ -95,5 +95,5 @@ def attacks(exercises: Mapping[str, Exercise], seed: int) -> Iterator[Attack]:
     name = next(iter(exercises))
     for text in cells():
         yield Attack(PREVIEW, name, {"text": text})
-    yield Attack(GRADE, name, {"answers": {f"part{i}": 0 for i in range(20_000)}})
-    yield Attack(FILE, name, {"answers": {f"part{i}": 0 for i in range(20_000)}})
+    yield Attack(GRADE, name, {"answers": {f"part{i}": 0 for i in range(15_500)}})
+    yield Attack(FILE, name, {"answers": {f"part{i}": 0 for i in range(15_500)}})

@@ -14,6 +14,7 @@ Parts without symbols are computed here. Thousands of texts are remembered by th
 garbage collector does not visit a tuple of texts and numbers, but visits every tree and closure.
 """
 
+import operator
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from math import isfinite, pi
@@ -59,6 +60,10 @@ _FUNCTIONS: Final[dict[str | None, Function]] = {
     "negative": np.negative, "sin": np.sin, "cos": np.cos, "tan": np.tan, "asin": np.arcsin,
     "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "sqrt": np.sqrt, "abs": np.absolute,
     "exp": np.exp,
+}  # fmt: skip
+# Python's own arithmetic gives the same bits in a tenth of the time, and warns of nothing.
+_EXACT: Final[dict[str, Function]] = {
+    "+": operator.add, "-": operator.sub, "*": operator.mul, "negative": operator.neg,
 }  # fmt: skip
 _STRICT: Final = {name: f"strict {name}" for name in _MAY_HIDE_NON_FINITE}
 _FUNCTIONS.update({strict: _strict(_FUNCTIONS[name]) for name, strict in _STRICT.items()})
@@ -209,6 +214,8 @@ class _Compiler:
         return [self.constants.pop(at) for at in taken]
 
     def _folded(self, name: str, values: list[float]) -> int:
+        if name in _EXACT:
+            return self._constant(_EXACT[name](*values))
         if not all(map(isfinite, values)):
             name = _STRICT.get(name, name)
         with np.errstate(all="ignore"):

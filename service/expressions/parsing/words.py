@@ -33,8 +33,8 @@ _WORDS: Final[dict[str, tuple[PieceKind, str]]] = {
 _WHOLE: Final = functions.ALONE | _WORDS
 # An underscore behind one of these begins no new factor: a_b is no product.
 _NAMES: Final = frozenset({"symbol", "pi", "shorthand", "invalid_shorthand", "number", "unit"})
-# A longer run is no formula; the work for it grows faster than its length.
-LONGEST_RUN: Final = 200
+# A longer run is no formula.
+LONGEST_RUN: Final = 80
 # sind30 may be read as sin(d30): these need a bracket or a space before their number.
 _NOT_BEFORE_NUMBERS: Final = frozenset({*functions.OF_DEGREES, *functions.IN_DEGREES})
 
@@ -90,22 +90,37 @@ def _with_underscores(piece: Piece, kept: list[int], run: str) -> Piece:
 
 def _split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
     """The pieces of ``run``, found from the right, so that each position is split once."""
-    rest: list[tuple[Piece, ...] | None] = [None] * len(run) + [()]
-    for start in range(len(run) - 1, -1, -1):
+    length = len(run)
+    # The first pieces of the reading from each position on, and whether it holds no invalid one.
+    first: list[tuple[Piece, ...] | None] = [None] * length
+    is_valid = [False] * length + [True]
+    for start in range(length - 1, -1, -1):
         if run[start].isdigit():
             continue
-        fallback: tuple[Piece, ...] | None = None
         for pieces in _candidates(run, start, vocabulary):
-            tail = rest[pieces[-1].end]
-            if tail is None:
+            end = pieces[-1].end
+            if end < length and first[end] is None:
                 continue
-            if not any(piece.kind == "invalid_shorthand" for piece in (*pieces, *tail)):
-                rest[start] = pieces + tail
+            valid = is_valid[end] and pieces[0].kind != "invalid_shorthand"
+            if valid or first[start] is None:
+                first[start] = pieces
+            if valid:
+                is_valid[start] = True
                 break
-            fallback = fallback or pieces + tail
-        else:
-            rest[start] = fallback
-    return rest[0]
+    return _joined(first)
+
+
+def _joined(first: list[tuple[Piece, ...] | None]) -> tuple[Piece, ...] | None:
+    """The pieces of the whole run, given the first ones of the reading from each position on."""
+    found: list[Piece] = []
+    at = 0
+    while at < len(first):
+        pieces = first[at]
+        if pieces is None:
+            return None
+        found += pieces
+        at = pieces[-1].end
+    return tuple(found)
 
 
 def _candidates(run: str, start: int, vocabulary: Vocabulary) -> list[tuple[Piece, ...]]:

@@ -18,12 +18,13 @@ from service.expressions import (
     Vocabulary,
     evaluate_all,
     read,
+    symbols_in,
 )
 from service.grading.feedback import Finding, reading_error, reading_note
 from service.grading.reading.absent_variables import with_absent_variables
 from service.grading.report import Verdict
 from service.grading.samples import SAMPLES, Samples
-from service.grading.work_budget import MAX_CHARACTERS, WorkBudget
+from service.grading.work_budget import MAX_SYMBOLS, WorkBudget
 from service.kinematics.transforms import Numbers
 
 # Textbooks mark the joint variable so in every table: six notes on it would hide the others.
@@ -80,18 +81,17 @@ class Reader:
         and where the variable of a joint that the robot does not have is a wrong one.
         """
         budget = self.budget
-        counted = 0
+        symbols = 1
         if isinstance(raw, str):
             if not raw.strip():
                 return MISSING
-            if len(raw) <= LIMITS.characters:
-                counted = len(raw)
-                budget.characters -= counted
+            if budget.symbols >= 0 and len(raw) <= LIMITS.characters:
+                symbols = symbols_in(raw)
         elif raw is None:
             return MISSING
         elif isinstance(raw, bool) or not isinstance(raw, int | float):
             return unreadable(_wrong_type(raw))
-        if budget.characters < 0:
+        if not budget.charge_reading(symbols):
             return unreadable(_TOO_MUCH)
         try:
             expression = read(
@@ -102,9 +102,11 @@ class Reader:
                 repairs=budget.repairs > 0,
             )
         except ExpressionError as error:
+            budget.charge_repair(error.tried)
             is_unknown = in_table and error.code in _UNKNOWN_NAMES
+            # Its symbols are read again.
+            is_unknown = is_unknown and budget.charge_reading(symbols)
             absent = self._in_absent_variables(raw, quantity) if is_unknown else None
-            budget.charge_unreadable(counted)
             if absent is None:
                 return unreadable(_from_error(error))
             expression = absent
@@ -154,7 +156,8 @@ def _bounds(quantities: tuple[Kind, ...]) -> Numbers:
 
 _TOO_MUCH = reading_error(
     "too_long",
-    f"The answers are too long: they have more than {MAX_CHARACTERS:,} characters together.",
+    f"The answers are too long: they have more than {MAX_SYMBOLS:,} names, numbers and "
+    "signs together.",
 )
 
 MISSING = Entry(

@@ -39,7 +39,9 @@ def canonical_table(answer: object, order: Sequence[str] = _IN_ORDER) -> object:
     if not isinstance(answer, list):
         return answer
     found = answer if _is_canonical(answer) else _canonical_rows(answer, order)
-    has_rows = any(isinstance(row, Mapping) and not _KEYS.isdisjoint(row) for row in found)
+    has_rows = any(
+        isinstance(row, Mapping) and not _KEYS.isdisjoint(row) for row in found[:_MOST_ROWS]
+    )
     return {"rows": found} if has_rows else answer
 
 

@@ -1,0 +1,44 @@
+"""What the reading of a text costs is known before it is read."""
+
+import time
+
+import pytest
+
+from service.expressions import ExpressionError, read, symbols_in
+from tests.expressions.corpus_files import ROBOT
+from tests.expressions.fuzzing import outcome
+from tests.guards import STALL
+
+
+@pytest.mark.parametrize(
+    ("text", "symbols"),
+    [
+        ("q1", 2),
+        ("l1*c1 + 2", 7),
+        (r"\cos\left(\theta_{1}\right)", 11),
+        ("     0     ", 1),
+        # ½ stands for 1/2 in brackets that are not written.
+        ("½", 6),
+        ("x" * 160, 90),
+    ],
+)
+def test_names_numbers_and_signs_are_counted(text: str, symbols: int) -> None:
+    assert symbols_in(text) == symbols
+
+
+def test_a_repair_tries_texts_of_so_many_symbols_and_no_more() -> None:
+    """Each of six readings of such a text took 5 ms."""
+    with pytest.raises(ExpressionError) as caught:
+        read("//".join(["½" * 78] * 6) + "1", ROBOT)
+    assert 0 < caught.value.tried <= 1200
+    with pytest.raises(ExpressionError) as caught:
+        read("//".join(["½" * 78] * 6) + "1", ROBOT, repairs=False)
+    assert caught.value.tried == 0
+
+
+def test_a_run_of_letters_costs_no_more_than_its_length() -> None:
+    """Each place of a run of 200 letters copied all pieces behind it."""
+    start = time.process_time()
+    for i in range(100):
+        outcome("sin" * 26 + str(i))
+    assert time.process_time() - start < STALL

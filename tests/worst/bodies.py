@@ -1,0 +1,51 @@
+"""The bodies that were costliest once, by name."""
+
+from collections.abc import Mapping
+from typing import Final
+
+from tests.worst.entry_points import FILE, GRADE, PREVIEW, Attack
+from tests.worst.seeds import LONG_TABLE, grid, halves, padded
+
+ARM: Final = "stanford-arm"
+
+
+def _graded(**answers: object) -> Attack:
+    return Attack(GRADE, ARM, {"answers": answers})
+
+
+def _previewed(text: str, part: str) -> Attack:
+    return Attack(PREVIEW, ARM, {"text": text, "exercise": ARM, "part": part})
+
+
+_HALVES: Final = [[halves(4 * i + j) for j in range(4)] for i in range(4)]
+_REPAIRS: Final = [[f"(tehta1 + {i}.{j}" for j in range(4)] for i in range(6)]
+_UNKNOWN: Final = {"answers": {f"part{i}": 0 for i in range(15_500)}}
+
+KNOWN: Final[Mapping[str, Attack]] = {
+    "cells that nearly repair": _graded(pose=_HALVES),
+    "cells that nearly repair, in several parts": _graded(pose=_HALVES, links=[_HALVES] * 6),
+    "a grid of cells that nearly repair": _previewed("\n".join(map(", ".join, grid(8, 4))), "pose"),
+    "links padded with dollars": _graded(table=[["0"] * 4] * 6, links=padded(24)),
+    "links and a pose of brackets": _graded(links="(" * 2_400, pose="[" * 2_400),
+    "many cells that each nearly repair": _graded(table={"rows": _REPAIRS}),
+    "constants to be computed": _graded(pose=[["sind(30)" * 100 + f"+{i}"] * 4 for i in range(4)]),
+    "runs of letters": _graded(pose=[["sin" * 26 + f" x{i}"] * 4 for i in range(4)]),
+    "unread cells": _graded(table={"rows": LONG_TABLE}),
+    "unread cells in another unit": Attack(
+        GRADE, ARM, {"answers": {"table": {"rows": LONG_TABLE}}, "angle_unit": "degrees"}
+    ),
+    "unread cells in either convention": Attack(
+        GRADE, f"{ARM}-either", {"answers": {"table": {"rows": LONG_TABLE}}}
+    ),
+    "decimals of three figures": _graded(
+        table=[[f"{0.317 * (i + 2) * (j - 1.7):.3g}" for j in range(4)] for i in range(6)]
+    ),
+    "long rows of names": Attack(
+        GRADE, ARM, {"answers": {"table": [{f"k{i}": 0 for i in range(1500)}] * 12}}
+    ),
+    "a long formula": _previewed("+".join(["(2q1c12q2)"] * 180), "pose"),
+    "a formula of halves": _previewed("½" * 8_000, "pose"),
+    "unknown parts": Attack(GRADE, ARM, _UNKNOWN),
+    "unknown fields": Attack(GRADE, ARM, {**_UNKNOWN["answers"], "answers": {}}),
+    "unknown parts in a file": Attack(FILE, ARM, _UNKNOWN),
+}

@@ -1,0 +1,45 @@
+"""The costliest bodies stay within what is promised, roughly; the search itself runs."""
+
+import time
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from tests.worst.__main__ import PROMISED
+from tests.worst.bodies import ARM, KNOWN
+from tests.worst.entry_points import GRADE, Attack, Target, floor_seconds
+from tests.worst.exercises import exercises
+from tests.worst.search import Search
+from tests.worst.seeds import cells
+
+# A busy machine, or one that watches for lines that no test runs, must not fail a test.
+GUARD = 10 * PROMISED
+
+
+@pytest.fixture(scope="module")
+def target() -> Iterator[Target]:
+    found = exercises()
+    target = Target({name: found[name] for name in (ARM, f"{ARM}-either")})
+    yield target
+    target.close()
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_a_body_that_was_costly_once(
+    name: str, target: Target, figure: Callable[[str], None]
+) -> None:
+    seconds, status = target.seconds(KNOWN[name])
+    ratio = seconds / floor_seconds()
+    assert status == (422 if "unknown" in name else 200)
+    figure(f"{name}: {ratio:.0f} × the floor")
+    assert ratio < GUARD
+
+
+def test_the_search_keeps_what_costs_most(target: Target) -> None:
+    search = Search(target, 1, cells())
+    cheap = Attack(GRADE, ARM, {"answers": {"pose": [["1"]]}})
+    dear = KNOWN["cells that nearly repair"]
+    search.evolve([cheap, dear], time.monotonic() + 1.5)
+    assert search.tried > 2
+    [costliest] = search.costliest(GRADE, 3)
+    assert costliest.ratio > search.measured(cheap).ratio
