@@ -58,7 +58,13 @@ class Match(IntEnum):
 
 def difference(actual: Numbers, expected: Numbers, angle: ArrayLike = False) -> Numbers:
     """``actual − expected``; where ``angle`` (it broadcasts), turned into [−π, π] radians."""
-    plain = actual - expected
+    return _turned(actual - expected, angle)
+
+
+def _turned(plain: Numbers, angle: ArrayLike | bool) -> Numbers:
+    """Differences, turned into [−π, π] where they are those of an ``angle``."""
+    if isinstance(angle, bool) and not angle:
+        return plain
     turns = np.where(angle, np.round(plain / (2 * np.pi)), 0.0)
     return plain - 2 * np.pi * turns
 
@@ -73,7 +79,11 @@ def matches(
     floor is far too low for a wrong constant to hide beside a large entry.
     """
     with np.errstate(invalid="ignore", over="ignore"):
-        error = np.abs(difference(actual, expected, angle)).max(axis=-1)
+        plain = actual - expected
+        # Most answers are the expected one to the last bit; NaN is not 0.
+        if not plain.any():
+            return np.full(plain.shape[:-1], int(Match.EXACT))
+        error = np.abs(_turned(plain, angle)).max(axis=-1)
         found = np.where(error <= _tolerance(expected, scale), Match.EXACT, Match.DIFFERENT)
     return np.where(np.isfinite(actual).all(axis=-1), found, Match.UNDEFINED)
 
@@ -306,5 +316,6 @@ def _nearest_inside(unknowns: Numbers, determined: Numbers, bounds: Numbers) -> 
 
 def _tolerance(expected: Numbers, scale: ArrayLike) -> Numbers:
     """How far two values may be apart that are the same: ``(...)``."""
-    size = np.sqrt(np.mean(expected * expected, axis=-1))
+    # The mean by its definition, for ``np.mean`` takes as long as all the rest.
+    size = np.sqrt((expected * expected).sum(axis=-1) / expected.shape[-1])
     return np.asarray(EXACT_VALUE * np.asarray(scale) + FLOATING_POINT * size)

@@ -16,7 +16,12 @@ from service.grading.follow_through import stands_still
 from service.grading.judging.convention import judged_in_convention
 from service.grading.judging.own_frames.best_roles import roles_in, rows_of_mechanism
 from service.grading.judging.own_frames.remarks import OWN_FRAME_CHOICE
-from service.grading.judging.report_rows import Slips, cell_report
+from service.grading.judging.report_rows import (
+    Slips,
+    cell_report,
+    is_right_throughout,
+    right_row,
+)
 from service.grading.judging.row_places import row_places
 from service.grading.judging.table import JudgedRow, Judgement
 from service.grading.judging.table_content import table_content, with_lazy_cells
@@ -287,7 +292,9 @@ def _formula(slip: Finding, grading: Grading) -> Correction | None:
 def _row_reports(judgement: Judgement, grading: Grading, slips: Slips) -> tuple[RowReport, ...]:
     """The rows with their cells."""
     return tuple(
-        row_report(
+        right_row(judged.label, COLUMNS)
+        if judged.row is not None and is_right_throughout(judged.row.entries, row, grading)
+        else row_report(
             judged.label,
             tuple(
                 _cell(judged, column, match, slips.get((i, column)), grading)
