@@ -7,6 +7,7 @@ are then compared with those of that table.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,7 +48,7 @@ class JudgedRow:
     shared: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Judgement:
     """A table compared with what it should be, in the frames that it is judged in.
 
@@ -70,12 +71,12 @@ class Judgement:
         """How many slips no cell shows."""
         return len(self.extra) + (not self.reached)
 
-    @property
+    @cached_property
     def wrong(self) -> int:
         """How many cells are not right."""
         return int(np.count_nonzero(self.matches < Match.ROUNDED))
 
-    @property
+    @cached_property
     def unread(self) -> NDArray[np.bool_]:
         """Which cells ``(rows, 4)`` of the rows handed in have no value."""
         return np.array(

@@ -9,7 +9,7 @@ from service.grading.comparison import Match
 from service.grading.diagnosis.column_order import in_other_orders
 from service.grading.diagnosis.intended_table import IntendedTable, with_exchanged_row
 from service.grading.diagnosis.joint_numbering import by_other_numbering
-from service.grading.diagnosis.table_cell import diagnose_cells
+from service.grading.diagnosis.table_cell import diagnose_cells, wrong_cells
 from service.grading.diagnosis.table_explained import explained, freedom_lost
 from service.grading.feedback import Finding
 from service.grading.follow_through import stands_still
@@ -30,7 +30,6 @@ from service.grading.reading.column_headers import QUANTITIES
 from service.grading.reading.table import StudentRow, StudentTable, read_table
 from service.grading.report import (
     CellReport,
-    Correction,
     Place,
     RowReport,
     Severity,
@@ -207,10 +206,12 @@ def _judged(
     grading: Grading,
 ) -> Judged:
     judgement, found, lost = _of_the_whole(part, answer.rows, first, convention, grading)
-    slips = diagnose_cells(judgement, grading)
+    cases = wrong_cells(judgement, grading)
+    # A slip of the whole table is told once, and needs of its cells no more than the corrections.
+    slips = {} if found else diagnose_cells(cases, judgement)
     places = tuple(
-        Place(judgement.rows[i].label, COLUMNS[column], _formula(slip, grading))
-        for (i, column), slip in slips.items()
+        Place(judgement.rows[i].label, COLUMNS[column], case.correction)
+        for (i, column), case in cases.items()
     )
     messages = (
         *grading.visible((*answer.findings, *findings)),
@@ -226,7 +227,7 @@ def _judged(
     extra = grading.visible(tuple(_extra_row(i) for i in judgement.extra))
     row_messages = grading.visible(row_places(answer, judgement, convention, grading))
     return Judged(
-        _row_reports(judgement, grading, {} if found else slips),
+        _row_reports(judgement, grading, slips),
         table_content(part, judgement, convention, grading),
         (*messages, *missing, *extra, *row_messages),
         slips=judgement.slips,
@@ -282,11 +283,6 @@ def _chain(
 def _cost_of(found: tuple[Finding, ...]) -> float:
     """The share of the points that slips of the whole table cost."""
     return sum(COSTS.get(finding.code, COST) for finding in found)
-
-
-def _formula(slip: Finding, grading: Grading) -> Correction | None:
-    """The correction of a cell whose slip is that of the whole table."""
-    return slip.correction if grading.corrects and isinstance(slip.correction, Correction) else None
 
 
 def _row_reports(judgement: Judgement, grading: Grading, slips: Slips) -> tuple[RowReport, ...]:

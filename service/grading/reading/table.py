@@ -67,8 +67,10 @@ class StudentRow:
     @property
     def has_decimal(self) -> bool:
         """Whether a decimal stands in any cell."""
-        expressions = (entry.expression for entry in self.entries)
-        return any(each is not None and each.has_decimal for each in expressions)
+        for entry in self.entries:
+            if entry.expression is not None and entry.expression.has_decimal:
+                return True
+        return False
 
     def values_at(self, samples: Samples) -> Table:
         """The numbers at other samples, as they were handed in."""
