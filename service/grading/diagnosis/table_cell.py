@@ -302,6 +302,8 @@ def _by_joint(counts: tuple[int, ...] | None, joints: tuple[Joint, ...]) -> dict
 
 def wrong_cells(judgement: Judgement, grading: Grading) -> dict[CellIndex, WrongCell]:
     """The wrong cells that were read, by row and column."""
+    if not judgement.wrong:
+        return {}
     written = [
         (i, column, judged, row.handed_in[column], expression)
         for i, column in np.argwhere(judgement.matches < Match.ROUNDED).tolist()

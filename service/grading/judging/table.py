@@ -5,6 +5,7 @@ are paired with the joints, and the valid table nearest to them is found (``own_
 are then compared with those of that table.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -123,9 +124,14 @@ def _plainly_differs(
     expected = reference_values(reference, grading.samples)
     if len(rows) != len(expected):
         return False
-    first = np.array([row.values[:, 0] for row in rows])
-    error = np.abs(difference(first, expected[..., 0], IS_ANGLE))
-    return bool((error > PLAINLY_DIFFERENT * column_scales(grading)).any())
+    limits = [each * PLAINLY_DIFFERENT for each in column_scales(grading).tolist()]
+    for row, right in zip(rows, expected[..., 0].tolist(), strict=True):
+        cells = zip(row.values[:, 0].tolist(), right, limits, IS_ANGLE.tolist(), strict=True)
+        for value, wanted, limit, is_angle in cells:
+            error = math.remainder(value - wanted, math.tau) if is_angle else value - wanted
+            if abs(error) > limit:
+                return True
+    return False
 
 
 def _judged_by_reference(
