@@ -148,13 +148,29 @@ def _is_rounded(
 ) -> bool:
     decimals = decimals_of(expression)
     symbol_values = samples.values_for(expression)
+    tolerance = float(_tolerance(expected, scale))
+    if decimals.sign:
+        value = expression.evaluate(symbol_values)
+        error = difference(np.asarray(value), expected, angle)
+        return _is_rounded_number(error, float(decimals.units[0]), decimals.sign, tolerance)
 
     def errors(shifts: Numbers) -> Numbers:
         values = decimals.shifted(shifts, symbol_values)
         return np.asarray(difference(values, expected[None], angle))
 
-    tolerance = float(_tolerance(expected, scale))
     return fitted_shifts(errors, decimals.units, tolerance) is not None
+
+
+def _is_rounded_number(error: Numbers, unit: float, sign: int, tolerance: float) -> bool:
+    """Whether a shift of one decimal leaves no ``error`` ``(samples,)``: the fit in closed form.
+
+    Most decimals of a table stand alone, as 1.571 for π/2, and the fit takes ten times as long.
+    """
+    mean = float(error.mean())
+    shift, outside = -sign * mean / unit, FLOATING_SHIFT * tolerance / unit
+    if not -ROUNDED_UP - outside <= shift <= CUT_OFF + outside:
+        return False
+    return bool(np.abs(error - mean).max() <= tolerance)
 
 
 def nearly_equal(
