@@ -8,16 +8,18 @@ import hashlib
 import json
 import math
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import date, time
-from functools import cached_property
-from typing import Any, TypeVar
+from functools import cached_property, lru_cache
+from typing import Any, Final, TypeVar
 
 import numpy as np
 
-from service.catalogue import Exercise
+from service.catalogue import Exercise, Variable
 from service.expressions import Expression
 from service.kinematics.transforms import Numbers
+
+_ENCODER: Final = json.JSONEncoder(sort_keys=True, separators=(",", ":"))
 
 HALF = 16
 SAMPLES = 2 * HALF
@@ -106,26 +108,59 @@ class Samples:
 
 def draw(exercise: Exercise, answers: object, *, degrees: bool = False) -> Samples:
     """The samples for these answers to this exercise."""
+    ranges = _ranges_of(_Symbols(exercise.version, exercise.variables))
+    moving, count = ranges.moving, len(ranges.names)
+    split = moving * SAMPLES
     seed = exercise.version + _canonical([answers, degrees])
-    joints = [variable for variable in exercise.variables if variable.joint is not None]
-    others = [variable for variable in exercise.variables if variable.joint is None]
-    uniform = _uniform(seed, len(joints) * SAMPLES + len(others) * HALF)
-    split = len(joints) * SAMPLES
-    of_joints = uniform[:split].reshape(len(joints), SAMPLES)
-    of_others = np.tile(uniform[split:].reshape(len(others), HALF), 2)
-    return Samples(
-        {
-            variable.name: variable.low + (variable.high - variable.low) * row
-            for variable, row in zip((*joints, *others), (*of_joints, *of_others), strict=True)
-        },
-        frozenset(v.name for v in exercise.variables if degrees and v.kind == "angle"),
+    uniform = _uniform(seed, split + (count - moving) * HALF)
+    drawn = np.empty((count, SAMPLES))
+    drawn[:moving] = uniform[:split].reshape(moving, SAMPLES)
+    drawn[moving:, :HALF] = drawn[moving:, HALF:] = uniform[split:].reshape(-1, HALF)
+    drawn = ranges.low + ranges.width * drawn
+    in_degrees = ranges.angles if degrees else frozenset[str]()
+    return Samples(dict(zip(ranges.names, drawn, strict=True)), in_degrees)
+
+
+@dataclass(frozen=True, slots=True)
+class _Symbols:
+    """The symbols of an exercise, told from those of others by its version."""
+
+    version: str
+    variables: tuple[Variable, ...] = field(compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class _Ranges:
+    """The ranges that an exercise's symbols are drawn from, ``(n, 1)``: first the joints' own.
+
+    ``moving`` is the number of joint variables, ``angles`` are the names of all angles.
+    """
+
+    names: tuple[str, ...]
+    moving: int
+    low: Numbers
+    width: Numbers
+    angles: frozenset[str]
+
+
+@lru_cache(maxsize=256)
+def _ranges_of(symbols: _Symbols) -> _Ranges:
+    joints = [variable for variable in symbols.variables if variable.joint is not None]
+    others = [variable for variable in symbols.variables if variable.joint is None]
+    variables = (*joints, *others)
+    return _Ranges(
+        tuple(variable.name for variable in variables),
+        len(joints),
+        np.array([variable.low for variable in variables])[:, None],
+        np.array([variable.high - variable.low for variable in variables])[:, None],
+        frozenset(variable.name for variable in variables if variable.kind == "angle"),
     )
 
 
 def _canonical(answers: object) -> str:
     """The answers as text that does not depend on the order of keys."""
     try:
-        return json.dumps(answers, sort_keys=True, separators=(",", ":"))
+        return _ENCODER.encode(answers)
     except (TypeError, ValueError, RecursionError):
         return "".join(_pieces(answers))
 

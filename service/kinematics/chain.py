@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.kinematics.dh import Convention, link_transforms, standard_link
-from service.kinematics.transforms import Matrices, inverse
+from service.kinematics.transforms import Matrices, identity, inverse
 
 Table = NDArray[np.float64]
 _Cell = TypeVar("_Cell")
@@ -24,6 +24,7 @@ Row = tuple[_Cell, _Cell, _Cell, _Cell]
 
 COLUMNS = ("a", "alpha", "d", "theta")
 A, ALPHA, D, THETA = range(4)
+_IDENTITY = identity()
 
 
 def modified_rows(standard: Sequence[Row[_Cell]], zero: _Cell) -> list[Row[_Cell]]:
@@ -64,8 +65,9 @@ def frames(table: Table, convention: Convention) -> Matrices:
 def products(transforms: Matrices) -> Matrices:
     """The product of the first k transforms for k = 0..K: ``(K + 1, ...)`` from ``(K, ...)``."""
     reached = np.empty((len(transforms) + 1, *transforms.shape[1:]))
-    reached[0] = np.eye(4)
-    for i, transform in enumerate(transforms):
+    reached[0] = _IDENTITY
+    reached[1:2] = transforms[:1]
+    for i, transform in enumerate(transforms[1:], 1):
         np.matmul(reached[i], transform, out=reached[i + 1])
     return reached
 
@@ -90,6 +92,8 @@ def axis_frames(table: Table, convention: Convention, wanted: Convention) -> Mat
     leads to; the table may be of either.
     """
     reached = frames(table, convention)
+    if wanted is convention is Convention.STANDARD:
+        return reached
     on_axes = joint_frames(reached, convention)
     if wanted is not convention:
         z = z_links(table)

@@ -29,10 +29,9 @@ def standard_link(a: ArrayLike, alpha: ArrayLike, d: ArrayLike, theta: ArrayLike
 
     Source: Spong, Hutchinson, Vidyasagar, *Robot Modeling and Control*, eq. 3.10.
     """
-    a, alpha, d, theta = np.broadcast_arrays(a, alpha, d, theta)
     cos_theta, sin_theta = np.cos(theta), np.sin(theta)
     cos_alpha, sin_alpha = np.cos(alpha), np.sin(alpha)
-    link = np.zeros((*a.shape, 4, 4))
+    link = np.zeros((*np.broadcast(a, alpha, d, theta).shape, 4, 4))
     link[..., 0, 0] = cos_theta
     link[..., 0, 1] = -sin_theta * cos_alpha
     link[..., 0, 2] = sin_theta * sin_alpha
@@ -54,10 +53,9 @@ def modified_link(a: ArrayLike, alpha: ArrayLike, d: ArrayLike, theta: ArrayLike
     Source: Craig, *Introduction to Robotics*, eq. 3.6; here ``a`` and ``alpha`` are the entries
     of row i, which carry the index i−1.
     """
-    a, alpha, d, theta = np.broadcast_arrays(a, alpha, d, theta)
     cos_theta, sin_theta = np.cos(theta), np.sin(theta)
     cos_alpha, sin_alpha = np.cos(alpha), np.sin(alpha)
-    link = np.zeros((*a.shape, 4, 4))
+    link = np.zeros((*np.broadcast(a, alpha, d, theta).shape, 4, 4))
     link[..., 0, 0] = cos_theta
     link[..., 0, 1] = -sin_theta
     link[..., 0, 3] = a

@@ -52,7 +52,8 @@ def inverse(transform: Matrices) -> Matrices:
     Source: *Direct Kinematics (Part 2)*, §1.6.
     """
     rotation_transposed = np.swapaxes(transform[..., :3, :3], -1, -2)
-    inverted = identity(transform.shape[:-2])
+    inverted = np.zeros(transform.shape)
+    inverted[..., 3, 3] = 1.0
     inverted[..., :3, :3] = rotation_transposed
     inverted[..., :3, 3] = -(rotation_transposed @ transform[..., :3, 3:])[..., 0]
     return inverted

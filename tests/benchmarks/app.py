@@ -1,5 +1,6 @@
-"""The service with one route more, which reads and validates a body and does nothing with it."""
+"""The service with a route that only validates a body, and one that tells its processor time."""
 
+import time
 from typing import Any
 
 from pydantic import BaseModel
@@ -17,3 +18,9 @@ class Trivial(BaseModel):
 async def trivial(body: Trivial) -> dict[str, int]:
     """What a POST costs that is validated and answered, but not graded."""
     return {"parts": len(body.answers)}
+
+
+@app.get("/processor-seconds")
+async def processor_seconds() -> float:
+    """The processor time that this process has taken."""
+    return time.process_time()

@@ -1,59 +1,40 @@
-"""Measure one checkout once, and print each line of its benchmark as a ratio to the floor, as JSON.
+"""Measure one checkout once, and print each line of its benchmark as JSON.
 
 ``paired.py`` runs this file with the Python and in the folder of the checkout to be measured, which
-may be an older one. So it uses nothing but that checkout's own ``tests.benchmarks``, and puts
-other timers in the place of its own: they take processor time, and that of the floor in turn with
-each call, so that a machine that is slow for a while is slow for both.
+may be an older one. So it uses that checkout's own ``tests.benchmarks`` for all but the timing.
 """
 
 import json
+import runpy
 import sys
-import time
 from collections.abc import Callable
-from statistics import median
+from pathlib import Path
+from typing import Any
 
 from tests.benchmarks import __main__ as lines
-from tests.benchmarks import floors, server
+from tests.benchmarks import server
 
-# So many times the rounds of ``make bench``, for differences of three per cent are to be seen.
-MORE = 4
 # Shorter than in ``make bench``: there are several rounds of this.
-SECONDS_OF_POSTS = 1.0
+SECONDS_OF_POSTS = 3.0
 
-
-def seconds(action: Callable[[], object]) -> float:
-    """The processor time of one call, in which other programs have no part."""
-    start = time.process_time()
-    action()
-    return time.process_time() - start
-
-
-def floor() -> object:
-    """The floor of ``make bench``."""
-    return floors.stanford_pose(32)
-
-
-def ratio_of_each(action: Callable[[int], object], rounds: int = 40) -> float:
-    """The median time of ``action(i)``, as a multiple of the floor's, in thousandths."""
-    for i in range(3):
-        floor()
-        action(-1 - i)
-    floors_seconds, action_seconds = [], []
-    for i in range(MORE * rounds):
-        floors_seconds.append(seconds(floor))
-        action_seconds.append(seconds(lambda i=i: action(i)))  # type: ignore[misc]
-    return median(action_seconds) / median(floors_seconds) / 1e3
-
-
-def ratio(action: Callable[[], object], rounds: int = 40) -> float:
-    """The median time of one call, as a multiple of the floor's, in thousandths."""
-    return ratio_of_each(lambda _: action(), rounds)
+TIMING = runpy.run_path(str(Path(__file__).with_name("timing.py")))
 
 
 def in_process() -> dict[str, float]:
-    """The lines that need no server; the first is the floor itself."""
-    vars(lines).update(median_seconds=ratio, median_of_each=ratio_of_each)
-    return {what: times for what, times, _ in lines.in_process()[1:]}
+    """The lines that need no server, as multiples of the floor."""
+    if hasattr(lines, "BUDGETS"):
+        return lines.in_process()
+    # An older checkout takes seconds itself and gives thousandths of them, the floor's first.
+    vars(lines).update(
+        median_seconds=_thousandth_of(TIMING["multiple"]),
+        median_of_each=_thousandth_of(TIMING["multiple_of_each"]),
+    )
+    older: Any = lines.in_process()
+    return {what: times for what, times, _ in older[1:]}
+
+
+def _thousandth_of(timer: Callable[[Callable[..., object]], float]) -> Callable[..., float]:
+    return lambda action, _rounds=0: timer(action) / 1e3
 
 
 def over_http() -> dict[str, float]:
@@ -63,8 +44,9 @@ def over_http() -> dict[str, float]:
     for what, bodies in server.BODIES.items():
         speed = server.posts_per_second(bodies)
         figures[f"graded POST, × a trivial one: {what}"] = speed["trivial"] / speed["graded"]
-    floor_seconds = median(seconds(floor) for _ in range(1000))
-    figures["first graded answer after start"] = server.first_answer_seconds() / floor_seconds
+    figures["first graded answer after start"] = (
+        server.first_answer_seconds() / TIMING["floor_seconds"]()
+    )
     return figures
 
 

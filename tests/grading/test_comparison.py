@@ -1,11 +1,16 @@
 """When two columns of numbers are the same answer."""
 
+from collections.abc import Mapping
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.grading.comparison import Match, difference, matches, same
+from service.catalogue import Exercise
+from service.expressions import read
+from service.grading.comparison import Match, difference, is_rounded, matches, same
+from service.grading.samples import SAMPLES, draw
 
 ANGLES = st.floats(-50, 50)
 TURNS = st.integers(-20, 20)
@@ -65,3 +70,24 @@ def test_the_floor_follows_the_scale() -> None:
     dust = np.array([5e-8])
     assert same(dust, np.zeros(1), scale=100.0)
     assert not same(dust, np.zeros(1), scale=1.0)
+
+
+@given(
+    st.sampled_from(["1.571", "-1.571", "0.866", "100.25"]), st.floats(-2, 2), st.integers(-1, 1)
+)
+def test_a_decimal_alone_is_rounded_where_the_same_in_a_sum_is(
+    catalogue: Mapping[str, Exercise], text: str, units: float, turns: int
+) -> None:
+    """The closed form finds what the fit of a formula finds."""
+    exercise = catalogue["stanford-arm"]
+    samples = draw(exercise, None)
+    alone, in_sum = (read(each, exercise.vocabulary) for each in (text, f"0 + {text}"))
+    unit = 0.01 if text == "100.25" else 0.001
+    expected = np.full(SAMPLES, float(text) + units * unit + 2 * np.pi * turns)
+    for angle in (False, True):
+        found = is_rounded(alone, expected, 1.0, samples, angle=angle)
+        assert found == is_rounded(in_sum, expected, 1.0, samples, angle=angle)
+        if not turns:
+            towards_zero = units * np.sign(float(text))
+            assert found or not -0.499 < towards_zero < 0.499
+            assert not found or -0.501 < towards_zero < 1.001

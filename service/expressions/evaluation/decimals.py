@@ -28,10 +28,11 @@ LEAST_FIGURES: Final = 3
 class Decimals:
     """The rounded decimals of one formula, from left to right. Immutable.
 
-    ``units`` ``(m,)`` are their units; ``m`` may be 0.
+    ``units`` ``(m,)`` are their units; ``m`` may be 0. ``sign`` is that of the only one where the
+    formula is nothing else, and 0 for any other formula.
     """
 
-    __slots__ = ("_names", "_numbers", "_program", "units")
+    __slots__ = ("_names", "_numbers", "_program", "sign", "units")
 
     def __init__(self, tree: Node) -> None:
         found: list[Number] = []
@@ -40,6 +41,7 @@ class Decimals:
         self._numbers: Final = np.array([number.value for number in found])
         self._names: Final = [_name(i) for i in range(len(found))]
         self._program: Final = compile_tree(replaced) if found else 0.0
+        self.sign: Final = _sign(replaced)
 
     def shifted(self, shifts: NDArray[np.float64], values: SymbolValues) -> SampleArray:
         """The values ``(K, samples)`` of the formula with its decimals moved in K ways.
@@ -65,6 +67,17 @@ def decimals_of(expression: Expression) -> Decimals:
 def _name(i: int) -> str:
     # No symbol is called so.
     return f"~{i}"
+
+
+def _sign(replaced: Node) -> int:
+    """1 or -1 where nothing but a decimal stands in the tree, with names for them; else 0."""
+    match replaced:
+        case SymbolNode(Symbol(name)) if name == _name(0):
+            return 1
+        case Negation(SymbolNode(Symbol(name))) if name == _name(0):
+            return -1
+        case _:
+            return 0
 
 
 def _with_names(node: Node, found: list[Number]) -> Node:

@@ -36,6 +36,8 @@ from service.expressions.tree import Node, Operator
 
 # Signs, powers and functions that wait for their operand.
 _Pending = list[Callable[[Node], Node]]
+_SIMPLE: Final = frozenset({"NAME", "NUMBER"})
+_BEHIND: Final = frozenset({"UNIT", "POWER"})
 _SUMS: Final[dict[str, Operator]] = {"PLUS": "+", "MINUS": "-"}
 
 
@@ -101,6 +103,12 @@ class _Parser:
                 return left
 
     def signed(self) -> Node:
+        # Fast, for most factors are such: a name or a number with nothing before or behind it.
+        tokens, at = self.tokens, self.at
+        if tokens[at][0] in _SIMPLE and tokens[at + 1][0] not in _BEHIND:
+            self.at += 1
+            node: Node = tokens[at][1]
+            return node
         pending: _Pending = []
         self.signs(pending)
         return self.power(pending)

@@ -1,6 +1,6 @@
 """Slips in a single table cell."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -302,11 +302,10 @@ def _by_joint(counts: tuple[int, ...] | None, joints: tuple[Joint, ...]) -> dict
     return {joint: count for joint, count in zip(joints, counts, strict=True) if count}
 
 
-def diagnose_cells(judgement: Judgement, grading: Grading) -> dict[CellIndex, Finding]:
-    """The finding on each wrong cell that was read, by row and column.
-
-    Once the work budget is used up, no more are found.
-    """
+def wrong_cells(judgement: Judgement, grading: Grading) -> dict[CellIndex, WrongCell]:
+    """The wrong cells that were read, by row and column, as far as the work budget allows."""
+    if not judgement.wrong:
+        return {}
     written = [
         (i, column, judged, row.handed_in[column], expression)
         for i, column in np.argwhere(judgement.matches < Match.ROUNDED).tolist()
@@ -327,7 +326,7 @@ def diagnose_cells(judgement: Judgement, grading: Grading) -> dict[CellIndex, Fi
     if grading.corrects or any(map(any, filter(None, counts[: len(written)]))):
         rows = [judged.row for judged in judgement.rows if judged.row is not None]
         spelling = grading.spelling(entry for row in rows for entry in row.entries)
-    slips: dict[CellIndex, Finding] = {}
+    cases: dict[CellIndex, WrongCell] = {}
     for k, (i, column, judged, actual, expression) in enumerate(written):
         contained, required = counts[k], counts[len(written) + k]
         own, correction = spelling, None
@@ -336,25 +335,31 @@ def diagnose_cells(judgement: Judgement, grading: Grading) -> dict[CellIndex, Fi
         if grading.corrects:
             exercise = grading.exercise
             correction = sum_formula(wanted[k], required, angles[k], exercise, samples, own)
-        slips[i, column] = diagnose(
-            WrongCell(
-                expression=expression,
-                actual=actual,
-                expected=wanted[k],
-                correction=correction,
-                corrects=grading.corrects,
-                spelling=own,
-                samples=samples,
-                scale=scales[column],
-                angle=angles[k],
-                column=column,
-                joint=judged.joint,
-                contained=_by_joint(contained, joints),
-                required=_by_joint(required, joints) or {},
-                shared=judged.shared,
-                joints=joints,
-            )
+        cases[i, column] = WrongCell(
+            expression=expression,
+            actual=actual,
+            expected=wanted[k],
+            correction=correction,
+            corrects=grading.corrects,
+            spelling=own,
+            samples=samples,
+            scale=scales[column],
+            angle=angles[k],
+            column=column,
+            joint=judged.joint,
+            contained=_by_joint(contained, joints),
+            required=_by_joint(required, joints) or {},
+            shared=judged.shared,
+            joints=joints,
         )
+    return cases
+
+
+def diagnose_cells(
+    cases: Mapping[CellIndex, WrongCell], judgement: Judgement
+) -> dict[CellIndex, Finding]:
+    """The finding on each of the wrong cells."""
+    slips = {cell: diagnose(case) for cell, case in cases.items()}
     return _of_misplaced_variables(slips, judgement)
 
 

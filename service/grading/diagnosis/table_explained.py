@@ -75,11 +75,13 @@ def explained(
     exchanges = tuple(_exchanges(judgement, roles, grading))
     case = _wrong_table(part, roles, convention, values, exchanges, grading)
     found = explaining(case, combine=combine)
-    intended = [_intended(repaired, case.written, roles, grading) for repaired in found]
+    intended: list[_Intended] = []
     wrong = judgement.matches < Match.ROUNDED
-    agree = [each for each in intended if each.table is None or np.array_equal(each.changed, wrong)]
-    if agree:
-        findings, table = agree[0].findings, agree[0].table
+    for repaired in found:
+        intended.append(_intended(repaired, case.written, roles, grading))
+        findings, table = intended[-1].findings, intended[-1].table
+        if table is not None and not np.array_equal(intended[-1].changed, wrong):
+            continue
         if table is None or _OF_UNIT.intersection(finding.code for finding in findings):
             # Converted numbers are rounded: they tell nothing of the frames.
             return findings, replace(judgement, findings=())

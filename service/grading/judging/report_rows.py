@@ -35,16 +35,21 @@ def entry_rows(
     ``remarks`` are findings on whole rows.
     """
     names = labels or [str(i + 1) for i in range(len(entries))]
+    columns = tuple([str(j + 1) for j in range(found.shape[1])])
+
+    def report(i: int, row: Sequence[Entry], of_row: list[int]) -> RowReport:
+        remark = remarks.get(i) if remarks else None
+        if remark is None and is_right_throughout(row, of_row, grading):
+            return right_row(names[i], columns)
+        cells = [
+            cell_report(entry, columns[j], match, slips.get((i, j)), grading)
+            for j, (entry, match) in enumerate(zip(row, of_row, strict=True))
+        ]
+        return row_report(names[i], tuple(cells), grading.visible((remark,)) if remark else ())
+
     return tuple(
-        row_report(
-            label,
-            tuple(
-                cell_report(entry, str(j + 1), match, slips.get((i, j)), grading)
-                for j, (entry, match) in enumerate(zip(row, found[i].tolist(), strict=True))
-            ),
-            grading.visible((remarks[i],)) if remarks and i in remarks else (),
-        )
-        for i, (label, row) in enumerate(zip(names, entries, strict=True))
+        report(i, row, of_row)
+        for i, (row, of_row) in enumerate(zip(entries, found.tolist(), strict=True))
     )
 
 
@@ -69,6 +74,19 @@ def value_places(marked: NDArray[np.bool_]) -> tuple[Place, ...]:
 def _right(column: str) -> CellReport:
     """The report on a right entry without a message, as most are."""
     return CellReport(column, Verdict.CORRECT)
+
+
+@lru_cache(maxsize=256)
+def right_row(label: str, columns: tuple[str, ...]) -> RowReport:
+    """The report on a row of such entries."""
+    return row_report(label, tuple(map(_right, columns)))
+
+
+def is_right_throughout(entries: Sequence[Entry], found: list[int], grading: Grading) -> bool:
+    """Whether there is nothing to say of a row but that it is right; ``found`` are its Matches."""
+    if grading.echo or found.count(_EXACT) < len(found):
+        return False
+    return all(entry.expression is not None and not entry.findings for entry in entries)
 
 
 def cell_report(

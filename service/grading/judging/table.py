@@ -5,8 +5,10 @@ are paired with the joints, and the valid table nearest to them is found (``own_
 are then compared with those of that table.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,7 +49,7 @@ class JudgedRow:
     shared: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Judgement:
     """A table compared with what it should be, in the frames that it is judged in.
 
@@ -70,12 +72,12 @@ class Judgement:
         """How many slips no cell shows."""
         return len(self.extra) + (not self.reached)
 
-    @property
+    @cached_property
     def wrong(self) -> int:
         """How many cells are not right."""
         return int(np.count_nonzero(self.matches < Match.ROUNDED))
 
-    @property
+    @cached_property
     def unread(self) -> NDArray[np.bool_]:
         """Which cells ``(rows, 4)`` of the rows handed in have no value."""
         return np.array(
@@ -122,9 +124,14 @@ def _plainly_differs(
     expected = reference_values(reference, grading.samples)
     if len(rows) != len(expected):
         return False
-    first = np.array([row.values[:, 0] for row in rows])
-    error = np.abs(difference(first, expected[..., 0], IS_ANGLE))
-    return bool((error > PLAINLY_DIFFERENT * column_scales(grading)).any())
+    limits = [each * PLAINLY_DIFFERENT for each in column_scales(grading).tolist()]
+    for row, right in zip(rows, expected[..., 0].tolist(), strict=True):
+        cells = zip(row.values[:, 0].tolist(), right, limits, IS_ANGLE.tolist(), strict=True)
+        for value, wanted, limit, is_angle in cells:
+            error = math.remainder(value - wanted, math.tau) if is_angle else value - wanted
+            if abs(error) > limit:
+                return True
+    return False
 
 
 def _judged_by_reference(

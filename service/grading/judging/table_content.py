@@ -54,7 +54,7 @@ def _differs_from_lazy(
     lazy = joint_variables(joints, grading.samples)[..., :: SAMPLES - 1]
     cells, angle = table[..., :: SAMPLES - 1], IS_ANGLE[:, None]
     # A sign before the joint variable is as easily written as none.
-    either = known_cells(np.stack([cells, -cells]), lazy, column_scales(grading), angle)
+    either = known_cells(np.array([cells, -cells]), lazy, column_scales(grading), angle)
     return np.asarray(either.all(axis=0))
 
 

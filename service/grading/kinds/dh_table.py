@@ -9,7 +9,7 @@ from service.grading.comparison import Match
 from service.grading.diagnosis.column_order import in_other_orders
 from service.grading.diagnosis.intended_table import IntendedTable, with_exchanged_row
 from service.grading.diagnosis.joint_numbering import by_other_numbering
-from service.grading.diagnosis.table_cell import diagnose_cells
+from service.grading.diagnosis.table_cell import diagnose_cells, wrong_cells
 from service.grading.diagnosis.table_explained import explained, freedom_lost
 from service.grading.feedback import Finding
 from service.grading.follow_through import stands_still
@@ -17,7 +17,12 @@ from service.grading.judging.convention import judged_in_convention
 from service.grading.judging.own_frames.best_roles import roles_in, rows_of_mechanism
 from service.grading.judging.own_frames.remarks import OWN_FRAME_CHOICE
 from service.grading.judging.own_frames.row_roles import FrameFreedom, freedom_of
-from service.grading.judging.report_rows import Slips, cell_report
+from service.grading.judging.report_rows import (
+    Slips,
+    cell_report,
+    is_right_throughout,
+    right_row,
+)
 from service.grading.judging.row_places import row_places
 from service.grading.judging.table import JudgedRow, Judgement
 from service.grading.judging.table_content import table_content, with_lazy_cells
@@ -26,7 +31,6 @@ from service.grading.reading.column_headers import QUANTITIES
 from service.grading.reading.table import StudentRow, StudentTable, read_table
 from service.grading.report import (
     CellReport,
-    Correction,
     Place,
     RowReport,
     Severity,
@@ -72,14 +76,14 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
         return _with_slip(intended, without, judged, grading)
     if judged.whole_cost is not None:
         return judged
-    wrong = _wrong_cells(judged)
+    wrong = _count_wrong(judged)
     # What was not read is not read in any order.
     unread = int(np.isnan(answer.values).any(axis=-1).sum())
     for intended in in_other_orders(answer, grading) if 3 * unread <= wrong else ():
         if not _affords_another(part, answer, grading):
             return judged
         without = _judged_as_read(part, intended.table, grading)
-        if 3 * _wrong_cells(without) <= wrong:
+        if 3 * _count_wrong(without) <= wrong:
             # Who writes the columns in another order multiplies the links out as they were meant.
             return replace(_with_slip(intended, without, judged, grading), chain=without.chain)
     convention = part.convention if part.convention != "either" else answer.convention
@@ -87,7 +91,7 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     if intended_row is not None and _affords_another(part, answer, grading):
         intended = intended_row
         without = _judged_as_read(part, intended.table, grading)
-        if 1 < wrong > _wrong_cells(without):
+        if 1 < wrong > _count_wrong(without):
             return _with_slip(intended, without, judged, grading)
     return judged
 
@@ -98,7 +102,7 @@ def _affords_another(part: DhTableSpec, answer: StudentTable, grading: Grading) 
     return grading.reader.budget.affords_search(of_row * len(answer.rows))
 
 
-def _wrong_cells(judged: Judged) -> int:
+def _count_wrong(judged: Judged) -> int:
     return sum(cell.verdict is not Verdict.CORRECT for row in judged.rows for cell in row.cells)
 
 
@@ -220,10 +224,12 @@ def _judged(
     grading: Grading,
 ) -> Judged:
     judgement, found, lost = _of_the_whole(part, answer.rows, first, convention, grading)
-    slips = diagnose_cells(judgement, grading)
+    cases = wrong_cells(judgement, grading)
+    # A slip of the whole table is told once, and needs of its cells no more than the corrections.
+    slips = {} if found else diagnose_cells(cases, judgement)
     places = tuple(
-        Place(judgement.rows[i].label, COLUMNS[column], _formula(slip, grading))
-        for (i, column), slip in slips.items()
+        Place(judgement.rows[i].label, COLUMNS[column], case.correction)
+        for (i, column), case in cases.items()
     )
     messages = (
         *grading.visible((*answer.findings, *findings)),
@@ -239,7 +245,7 @@ def _judged(
     extra = grading.visible(tuple(_extra_row(i) for i in judgement.extra))
     row_messages = grading.visible(row_places(answer, judgement, convention, grading))
     return Judged(
-        _row_reports(judgement, grading, {} if found else slips),
+        _row_reports(judgement, grading, slips),
         table_content(part, judgement, convention, grading),
         (*messages, *missing, *extra, *row_messages),
         slips=judgement.slips,
@@ -298,15 +304,12 @@ def _cost_of(found: tuple[Finding, ...]) -> float:
     return sum(COSTS.get(finding.code, COST) for finding in found)
 
 
-def _formula(slip: Finding, grading: Grading) -> Correction | None:
-    """The correction of a cell whose slip is that of the whole table."""
-    return slip.correction if grading.corrects and isinstance(slip.correction, Correction) else None
-
-
 def _row_reports(judgement: Judgement, grading: Grading, slips: Slips) -> tuple[RowReport, ...]:
     """The rows with their cells."""
     return tuple(
-        row_report(
+        right_row(judged.label, COLUMNS)
+        if judged.row is not None and is_right_throughout(judged.row.entries, row, grading)
+        else row_report(
             judged.label,
             tuple(
                 _cell(judged, column, match, slips.get((i, column)), grading)

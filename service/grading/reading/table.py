@@ -10,11 +10,12 @@ from service.expressions import Expression, Vocabulary
 from service.expressions import read as read_expression
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.reading.absent_variables import absent_names
-from service.grading.reading.cell_names import arranged_row, first_number, row_entries
+from service.grading.reading.cell_names import first_number
 from service.grading.reading.column_headers import QUANTITIES
-from service.grading.reading.entry import Entry, Reader, entry_values, unreadable
+from service.grading.reading.entry import Entry, Reader, entry_values
 from service.grading.reading.pasted import from_grid_error
 from service.grading.reading.pasted_table import PastedTable, entries_of, read_pasted_table
+from service.grading.reading.row_entries import read_row, remembered_row
 from service.grading.reading.table_json import canonical_table, has_unnamed_columns
 from service.grading.report import Severity, Verdict
 from service.grading.samples import Samples
@@ -66,8 +67,10 @@ class StudentRow:
     @property
     def has_decimal(self) -> bool:
         """Whether a decimal stands in any cell."""
-        expressions = (entry.expression for entry in self.entries)
-        return any(each is not None and each.has_decimal for each in expressions)
+        for entry in self.entries:
+            if entry.expression is not None and entry.expression.has_decimal:
+                return True
+        return False
 
     def values_at(self, samples: Samples) -> Table:
         """The numbers at other samples, as they were handed in."""
@@ -266,16 +269,8 @@ def _cells(row: object) -> list[object]:
 
 
 def _row_entries(cells: list[object], number: int | None, reader: Reader) -> tuple[Entry, ...]:
-    found = arranged_row(cells, reader.vocabulary)
-    ordered = [cells[i] for i in found.order] if found else cells
-
-    def read(column: int) -> Entry:
-        raw = ordered[column]
-        if isinstance(raw, Finding):
-            return unreadable(raw)
-        return reader.read(raw, QUANTITIES[COLUMNS[column]], in_table=True)
-
-    return row_entries(ordered, found, number, read, lambda _, entry: entry, reader.vocabulary)
+    known = remembered_row(cells, number, reader)
+    return read_row(cells, number, reader) if known is None else known
 
 
 # An object is answered with the one that is asked for, a list or a single value in words.

@@ -38,3 +38,14 @@ def test_shifted_decimals() -> None:
     assert found[0] == pytest.approx(written)
     assert found[1] == pytest.approx(written + 0.001 * q1)
     assert found[2] == pytest.approx(written + np.radians(0.05))
+
+
+@pytest.mark.parametrize(
+    ("text", "sign"),
+    [
+        ("1.571", 1), ("-1.571", -1), ("(1.571)", 1), ("1.571 + 0", 0), ("2*1.571", 0),
+        ("1.571*q1", 0), ("sin(1.571)", 0), ("90.0deg", 0), ("1.57 + 1.57", 0), ("q1", 0),
+    ],
+)  # fmt: skip
+def test_the_sign_of_a_decimal_that_stands_alone(text: str, sign: int) -> None:
+    assert decimals_of(read(text, ARM)).sign == sign

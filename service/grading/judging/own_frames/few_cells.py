@@ -80,13 +80,8 @@ class _Case:
         return reference_frames(self.grading.exercise, self.convention, self.grading.samples)
 
     def from_reference(self, reached: Matrices) -> Matrices:
-        """The frames on the joint axes as seen from the reference's, ``(joints, T, subset, 4, 4)``.
-
-        ``reached`` ``(rows + 1, T, subset, 4, 4)`` are all the frames of T tables.
-        """
-        of_joints = [role.joint is not None for role in self.roles]
-        on_axes = joint_frames(reached, self.convention)[of_joints]
-        return np.asarray(inverse(self.reference[:-1, SUBSET_SAMPLES])[:, None] @ on_axes)
+        """The frames on the joint axes as seen from the reference's; see ``_from_reference``."""
+        return _from_reference(reached, self.roles, self.convention, self.grading)
 
 
 def nearest_by_few_cells(
@@ -116,8 +111,21 @@ def frames_from_reference(
 
     ``(joints, samples, 4, 4)``, at a subset of the samples.
     """
-    case = _case(roles, convention, grading)
-    return case.from_reference(frames(table, convention)[:, None, SUBSET_SAMPLES])[:, 0]
+    reached = frames(table[..., SUBSET_SAMPLES], convention)[:, None]
+    return _from_reference(reached, roles, convention, grading)[:, 0]
+
+
+def _from_reference(
+    reached: Matrices, roles: tuple[Role, ...], convention: Convention, grading: Grading
+) -> Matrices:
+    """The frames on the joint axes as seen from the reference's, ``(joints, T, subset, 4, 4)``.
+
+    ``reached`` ``(rows + 1, T, subset, 4, 4)`` are all the frames of T tables.
+    """
+    of_joints = [role.joint is not None for role in roles]
+    on_axes = joint_frames(reached, convention)[of_joints]
+    reference = reference_frames(grading.exercise, convention, grading.samples)
+    return np.asarray(inverse(reference[:-1, SUBSET_SAMPLES])[:, None] @ on_axes)
 
 
 def _case(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> _Case:

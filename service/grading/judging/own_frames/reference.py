@@ -69,7 +69,8 @@ def reference_frames(exercise: Exercise, convention: Convention, samples: Sample
         robot = exercise.robot
         table = robot.tables.get(convention) or robot.tables[robot.convention]
         reached = axis_frames(reference_values(table, samples), table.convention, convention)
-        return reached[[*range(len(robot.joints)), -1]]
+        is_all = len(reached) == len(robot.joints) + 1
+        return reached if is_all else reached[[*range(len(robot.joints)), -1]]
 
     return samples.cached(("frames", convention), compute)
 

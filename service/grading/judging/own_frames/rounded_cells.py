@@ -206,7 +206,9 @@ def _decimals(
 ) -> SharedDecimals | None:
     """The rounded decimals of a whole table; None where it has none, or is not whole."""
     rows = [role.row for role in roles if role.row is not None]
-    if len(rows) < len(roles) or not np.isfinite(handed_in_values(roles)).all():
+    if len(rows) < len(roles) or not any(row.has_decimal for row in rows):
+        return None
+    if not np.isfinite(handed_in_values(roles)).all():
         return None
     expressions = [each for row in rows for each in row.expressions]
     for i, column in left_out:

@@ -15,6 +15,8 @@ from service.kinematics.chain import COLUMNS, THETA, D, Table
 from service.kinematics.factors import CellIndex
 from service.kinematics.transforms import Numbers
 
+_NOTHING = np.full((len(COLUMNS), SAMPLES), np.nan)
+
 
 @dataclass(frozen=True, slots=True)
 class FrameFreedom:
@@ -52,8 +54,7 @@ def joint_cells(roles: Sequence[Role]) -> dict[CellIndex, Joint]:
 
 def handed_in_values(roles: Sequence[Role]) -> Table:
     """The values of the rows, ``(rows, 4, SAMPLES)``, NaN where a row is missing."""
-    nothing = np.full((len(COLUMNS), SAMPLES), np.nan)
-    return np.array([role.row.values if role.row else nothing for role in roles])
+    return np.array([role.row.values if role.row else _NOTHING for role in roles])
 
 
 def variables_of(roles: Sequence[Role], samples: Samples) -> Table:

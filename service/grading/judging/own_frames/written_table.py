@@ -48,8 +48,9 @@ class WrittenTable:
 
     def changed(self, constants: Table, motion: Table | None = None) -> "WrittenTable":
         """The same table with other constants, or with other joint variables too."""
+        # Hypotheses are made by the dozen, and ``replace`` takes three times as long.
         moves = self.motion if motion is None else motion
-        return replace(self, constants=constants, motion=moves)
+        return WrittenTable(constants, moves, self.convention, self.reference, self.exchanges)
 
 
 RepairedTable = Repaired[WrittenTable]
