@@ -101,6 +101,16 @@ def test_line_ends_of_any_system(name: str) -> None:
         (r"\begin{bmatrix}a&b\\*[1.5ex]c&d\end{bmatrix}", [["a", "b"], ["c", "d"]]),
         (r"\begin{bmatrix}a\&x&{b&y}\end{bmatrix}", [[r"a\&x", "{b&y}"]]),
         (r"\begin{tabular*}{3cm}[t]{@{}l|p{2cm}@{}} a & b \end{tabular*}", [["a", "b"]]),
+        # a cell that begins with a bracket is no option of what stands in front of it
+        (r"\begin{tabular}{cc} [a] + b & c \end{tabular}", [["[a] + b", "c"]]),
+        (r"\begin{bmatrix*} [a] + b & c \end{bmatrix*}", [["[a] + b", "c"]]),
+        (r"\begin{array}{cc} \hline [a] + b & (c) d \end{array}", [["[a] + b", "(c) d"]]),
+        (r"\begin{array}{cc} \hline {a} + b & c \end{array}", [["{a} + b", "c"]]),
+        (r"\begin{array}{cc} \toprule (a) b & [c] d \end{array}", [["(a) b", "[c] d"]]),
+        (r"\begin{array}{cc} \toprule[1pt] (a) b & c \end{array}", [["(a) b", "c"]]),
+        (r"\begin{array}{cc} \cmidrule(lr){1-2} (a) & c \end{array}", [["(a)", "c"]]),
+        (r"\begin{array}{cc} a & b \\ [2\pi] c & d \end{array}", [["a", "b"], [r"[2\pi] c", "d"]]),
+        (r"\begin{bmatrix} \displaystyle{a} b & c \end{bmatrix}", [["{a} b", "c"]]),
         (
             r"\begin{array}{cc} a & b \tabularnewline \cline{1-2} c & d \end{array}",
             [["a", "b"], ["c", "d"]],
