@@ -49,13 +49,19 @@ class Model(NamedTuple):
 
 
 @cache
-def models() -> tuple[Model, ...]:
-    """The shipped exercises with their model answers."""
-    catalogue = load_catalogue(shipped_folder())
-    return tuple(
-        Model(exercise, {part.part: part.answer for part in solved(exercise).parts})
-        for exercise in catalogue.values()
-    )
+def exercises() -> tuple[Exercise, ...]:
+    """The shipped exercises."""
+    return tuple(load_catalogue(shipped_folder()).values())
+
+
+def drawn_model(random: Random) -> Model:
+    """One of the exercises, which is solved when it is drawn for the first time."""
+    return model_of(random.choice(exercises()))
+
+
+def model_of(exercise: Exercise) -> Model:
+    """An exercise with its model answers."""
+    return Model(exercise, {part.part: part.answer for part in solved(exercise).parts})
 
 
 @cache
@@ -145,8 +151,8 @@ def answers_of(model: Model, random: Random) -> dict[str, Any]:
 
 
 def submission(random: Random, number: int | None = None) -> Post:
-    """A submission; with a ``number``, one that no other number has, whatever is drawn."""
-    model = random.choice(models())
+    """A submission; with a ``number``, one whose entries no other number has."""
+    model = drawn_model(random)
     body: dict[str, Any] = {"answers": answers_of(model, random)}
     if random.random() < 0.3:
         body["angle_unit"] = random.choice(("radians", "degrees", "degrees", "grad"))
@@ -187,7 +193,7 @@ def _with_zero(value: Any, number: int) -> tuple[Any, bool]:
 
 def preview(random: Random, number: int | None = None) -> Post:
     """A text to be shown, with or without the part that it is for."""
-    model = random.choice(models())
+    model = drawn_model(random)
     part = random.choice(list(model.answers))
     rows = rows_of(spoiled(model.answers[part], random, 0.2))
     if rows and random.random() < 0.7:

@@ -4,7 +4,6 @@ import json
 import re
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from functools import cache
 from pathlib import Path
 from random import Random
 from typing import Any, Final
@@ -13,7 +12,7 @@ import numpy as np
 
 from service.catalogue import Exercise, load_exercise
 from service.grading import PartReport, Verdict
-from tests.attack.bodies import COLUMNS, models
+from tests.attack.bodies import COLUMNS, exercises, model_of
 from tests.attack.formulas import (
     Call,
     Name,
@@ -33,6 +32,7 @@ from tests.attack.spellings import PLAIN, Spelling, Writer
 from tests.grading.support.exercise_texts import graded, one_part
 from tests.grading.support.submitting import handed_in, part
 from tests.grids.writers import FORMATS, TABLES
+from tests.solutions.solved import once_for_each
 
 Suited = Callable[[str, Random], Spelling]
 Outcome = tuple[str, str, str]
@@ -184,18 +184,24 @@ def _tree(text: str) -> Tree | None:
     return terms[0][1] if len(terms) == 1 and terms[0][0] == 1 else Sum(tuple(terms))
 
 
-@cache
-def _tables() -> tuple[tuple[Exercise, Trees], ...]:
-    """The model tables whose cells are such sums, in names that do not begin with q."""
-    found = []
-    for model in models():
-        rows = model.answers.get("table")
-        if isinstance(rows, dict):
-            trees = [[_tree(str(row[column])) for column in COLUMNS] for row in rows["rows"]]
-            names = re.findall(r"q\d", str(rows))
-            if all(tree is not None for row in trees for tree in row) and not names:
-                found.append((model.exercise, [[t for t in row if t] for row in trees]))
-    return tuple(found)
+@once_for_each
+def _trees_of(exercise: Exercise) -> Trees | None:
+    """The model table in trees; none where it has other cells, or names that begin with q."""
+    rows = model_of(exercise).answers["table"]["rows"]
+    trees = [[_tree(str(row[column])) for column in COLUMNS] for row in rows]
+    found = [[tree for tree in row if tree is not None] for row in trees]
+    return (
+        None if re.search(r"q\d", str(rows)) or list(map(len, found)) != [4] * len(rows) else found
+    )
+
+
+def _table(random: Random) -> tuple[Exercise, Trees]:
+    """One of the model tables."""
+    with_tables = [each for each in exercises() if each.part("table")]
+    while True:
+        exercise = random.choice(with_tables)
+        if trees := _trees_of(exercise):
+            return exercise, trees
 
 
 def _slips(random: Random, trees: Trees) -> Trees:
@@ -228,7 +234,7 @@ _HEADERS: Final = (
 
 def tables(random: Random, suited: Suited) -> Iterator[Outcome]:
     """A table, right or with slips, as rows and pasted, its columns in some order."""
-    exercise, trees = random.choice(_tables())
+    exercise, trees = _table(random)
     rows = _slips(random, trees)
     plain = Writer(PLAIN, random)
 

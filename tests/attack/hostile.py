@@ -9,11 +9,11 @@ import json
 import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from functools import cached_property
 from hashlib import blake2b
 from heapq import nlargest
-from itertools import islice
 from random import Random
 from statistics import median
 from typing import Final, NamedTuple
@@ -95,7 +95,7 @@ def _grid(random: Random) -> str:
     if random.random() < 0.3:
         return "".join(random.choices(grids.FRAGMENTS, k=random.randint(1, 60)))
     if random.random() < 0.5:
-        model = random.choice(bodies.models())
+        model = bodies.drawn_model(random)
         answer = random.choice(list(model.answers.values()))
         rows = bodies.rows_of(bodies.spoiled(answer, random, 0.1))
         if rows:
@@ -115,6 +115,10 @@ class Reading:
     def service(self) -> InProcess:
         """The routes, made when the first request comes."""
         return InProcess()
+
+    def close(self) -> None:
+        """Close what was opened."""
+        self.service.close()
 
     def outcome(self, case: Case) -> tuple[str, bytes, float]:
         """What kind of outcome, a digest of all of it, and its processor time.
@@ -212,4 +216,5 @@ def groups(count: int, seed: str, size: int) -> Iterator[tuple[int, str]]:
 
 def sample(count: int, seed: str) -> Found:
     """What comes of one group."""
-    return group(list(islice(cases(count, seed), count)), Reading())
+    with closing(Reading()) as reading:
+        return group(list(cases(count, seed)), reading)
