@@ -127,6 +127,8 @@ def test_line_ends_of_any_system(name: str) -> None:
         ("<tr><td>θ<sub>1</sub><sup>*</sup><td><b>d</b><br>3", [["θ_{1}*", "d 3"]]),
         ("<tr><td>1 < 2 & 3<td>&lt;", [["1 < 2 & 3", "<"]]),
         ("<table><style>td{}</style><tr><td colspan='1'>a<td>b</table>", [["a", "b"]]),
+        # escapes in strings: a character of two units, and half a one
+        (r'[["\u03b8", "\ud835\udf03", "\ud800 a"]]', [["θ", "𝜃", "\ufffd a"]]),
         # spreadsheets
         ('"a ""x""",b\n"atan2(y, x)",c', [['a "x"', "b"], ["atan2(y, x)", "c"]]),
         ("a\tb\t\t\nc\td\t\t\n\t\t\t\n", [["a", "b"], ["c", "d"]]),
