@@ -55,11 +55,14 @@ format: $(dev) ## rewrite the code in the house style
 bench: $(dev) ## measure against the budgets
 	$(python) -m tests.benchmarks
 
-fuzz: $(dev) ## read 100,000 hostile texts (COUNT=, SEED=)
+fuzz: $(dev) ## read 100,000 hostile texts, grids and requests on every core (COUNT=, SEED=)
 	$(python) -m tests.fuzz --count "$(COUNT)" --seed "$(SEED)"
 
-attack: $(dev) ## attack a real process for ten minutes, and see that honest clients are served
+attack: $(dev) ## attack a real process; look for misread formulas; watch the memory (COUNT=)
 	$(python) -m tests.attack
+	$(python) -m tests.attack.misreadings
+	$(python) -m tests.attack.memory --count "$(COUNT)"
+	$(python) -m tests.attack.memory --count 10000 --http
 
 worst: $(dev) ## search for the costliest request for MINUTES= (10), and say where its time goes (SEED=)
 	$(python) -m tests.worst --minutes "$(MINUTES)" --seed "$(SEED)"

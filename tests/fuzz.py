@@ -1,73 +1,91 @@
-"""A long fuzz of the reader: `python -m tests.fuzz --count 100000`.
+"""A long fuzz of texts, grids and whole requests: `python -m tests.fuzz --count 1000000`.
 
-Prints what it found, and exits with 1 where a limit was broken: an exception that is no
-ExpressionError, a text that costs 50 ms, a second reading that differs, memory that grows.
+Prints what it found, and exits with 1 where a limit was broken: an exception that is not the
+documented error, a second reading that differs, or a case that costs more than the budget.
 """
 
 import argparse
-import gc
+import math
+import os
 import sys
 import time
-import tracemalloc
-from collections import Counter
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from multiprocessing import get_context
 
-from tests.expressions.fuzzing import outcome, texts
+from tests.attack.hostile import Found, Reading, cases, group, groups, measured
 
-COSTLY = 0.050
-# The caches are emptied before each reading, so that nothing may be left behind.
-LEAK = 8 * 2**20
+GROUP = 500
+# The costliest body that is accepted, as a multiple of the floor of `make bench`.
+BUDGET = 400.0
+PROGRESS_SECONDS = 20.0
+
+_reading = Reading()
+
+
+def _group(count: int, seed: str) -> Found:
+    # A warning would fill the log of whoever serves.
+    warnings.simplefilter("error")
+    return group(list(cases(count, seed)), _reading)
+
+
+def fuzz(count: int, seed: str, cores: int, minutes: float) -> Found:
+    """Read so many cases on so many cores, and say how far it is; fewer if time is over."""
+    total = Found()
+    began = told = time.monotonic()
+    for found in _each(count, seed, cores):
+        total.add(found)
+        now = time.monotonic()
+        if now - told > PROGRESS_SECONDS:
+            told = now
+            broken = f"{len(total.escaped)} escaped, {len(total.differing)} differing"
+            rate = total.count / (now - began)
+            sys.stderr.write(f"{total.count:,} of {count:,}, {rate:.0f} a second; {broken}\n")
+        if now - began > 60 * minutes:
+            break
+    return total
+
+
+def _each(count: int, seed: str, cores: int) -> Iterator[Found]:
+    sizes = groups(count, seed, GROUP)
+    if cores == 1:
+        yield from (_group(*each) for each in sizes)
+        return
+    # A process that lives for long would hide what a fresh one does: each has its share and ends.
+    with ProcessPoolExecutor(cores, get_context("spawn"), max_tasks_per_child=200) as pool:
+        pending: list[Future[Found]] = [pool.submit(_group, *each) for each in sizes]
+        try:
+            yield from (done.result() for done in as_completed(pending))
+        finally:
+            pool.shutdown(cancel_futures=True)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the fuzz; return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m tests.fuzz", description=__doc__)
     parser.add_argument("--count", type=int, default=10_000)
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--seed", default="0")
+    parser.add_argument("--cores", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--minutes", type=float, default=math.inf, help="stop after so long")
     options = parser.parse_args(arguments)
-    escaped: list[str] = []
-    differing: list[str] = []
-    codes: Counter[str] = Counter()
-    slowest, slowest_text = 0.0, ""
-    early = 0
-    tracing_from = max(1, options.count - options.count // 10)
-    begin = time.process_time()
-    for number, text in enumerate(texts(options.count, options.seed), 1):
-        if number == tracing_from:
-            gc.collect()
-            tracemalloc.start()
-            early = tracemalloc.get_traced_memory()[0]
-        degrees = number % 2 == 0
-        try:
-            first = outcome(text, degrees=degrees)
-            second = outcome(text, degrees=degrees)
-        except Exception as error:  # noqa: BLE001 - whatever escapes is what is looked for
-            escaped.append(f"{text!r}: {error!r}")
-            continue
-        if first.fingerprint != second.fingerprint:
-            differing.append(repr(text))
-        # A garbage collection or another program may slow one of the two.
-        seconds = min(first.seconds, second.seconds)
-        if seconds > slowest:
-            slowest, slowest_text = seconds, text
-        is_error = len(first.fingerprint) == 4
-        codes[str(first.fingerprint[0]) if is_error else "read"] += 1
-    gc.collect()
-    growth = tracemalloc.get_traced_memory()[0] - early if tracemalloc.is_tracing() else 0
-    tracemalloc.stop()
-    spent = time.process_time() - begin
+    began = time.monotonic()
+    found = fuzz(options.count, options.seed, options.cores, options.minutes)
+    costliest = sorted((measured(each.case, _reading) for each in found.costliest), reverse=True)
+    outcomes = "\n".join(f"  {times:9,} {named}" for named, times in found.outcomes.most_common())
     report = [
-        f"{options.count} texts, seed {options.seed}, {spent:.0f} s of processor time",
-        f"read: {codes['read']}; refused: {codes.total() - codes['read']} in {len(codes) - 1} ways",
-        f"escaped: {len(escaped)}",
-        *escaped[:20],
-        f"differing between two readings: {len(differing)}",
-        *differing[:20],
-        f"slowest: {1000 * slowest:.1f} ms for {slowest_text[:120]!r}",
-        f"growth of memory over the last tenth: {growth / 1024:.0f} KiB",
+        f"{found.count:,} cases, seed {options.seed}, {time.monotonic() - began:.0f} s",
+        outcomes,
+        f"escaped: {len(found.escaped)}",
+        *found.escaped[:20],
+        f"differing between two readings: {len(found.differing)}",
+        *found.differing[:20],
+        f"the costliest, in multiples of the plain-numpy floor (budget {BUDGET:.0f}):",
+        *(f"{ratio:6.0f} {case}" for ratio, case in costliest),
     ]
     sys.stdout.write("\n".join(report).encode("utf-8", "backslashreplace").decode() + "\n")
-    return 1 if escaped or differing or slowest >= COSTLY or growth > LEAK else 0
+    over = bool(costliest) and costliest[0].ratio > BUDGET
+    return 1 if found.escaped or found.differing or over else 0
 
 
 if __name__ == "__main__":

@@ -223,7 +223,9 @@ def rounding_slack(expression: Expression, samples: Samples) -> float:
         return 0.0
     steps = np.eye(count) / 2
     values = samples.values_for(expression)
-    rates = decimals.shifted(steps, values) - decimals.shifted(-steps, values)
+    # An infinite entry has no rate.
+    with np.errstate(invalid="ignore"):
+        rates = decimals.shifted(steps, values) - decimals.shifted(-steps, values)
     return float(np.nan_to_num(np.abs(rates).sum(axis=0).max()))
 
 

@@ -18,16 +18,32 @@ PLAIN: Final = re.compile(r"\\[pbB]?matrix\s{0,4}(?=\{)")
 BEGIN: Final = re.compile(r"\\(begin|end)[ \t]*\{([A-Za-z]{1,20}\*?)\}")
 _TOKEN: Final = re.compile(r"\\(?:[A-Za-z]+|.)|[{}&]", re.DOTALL)
 _ROW_ENDS: Final = frozenset({"\\\\", "\\tabularnewline", "\\cr"})
-_GAP: Final = re.compile(
-    r"\*?(?:\s{0,8}\[\s*[-+]?[0-9.]{1,8}\s*(?:pt|em|ex|mm|cm|in|\\[a-z]{1,20})\s*\])?"
+# Only what can be nothing else is an option: a cell may begin with a bracket, as [q_1] + l_1 does.
+_LENGTH: Final = (
+    r"(?:\s{0,8}\[\s*[-+]?[0-9.]{1,8}\s*(?:pt|em|ex|mm|cm|in|\\(?:baselineskip|jot|tabcolsep"
+    r"|(?:small|med|big)skipamount|(?:heavy|light|cmid)rulewidth))\s*\])?"
 )
+_DASHES: Final = r"(?:\s{0,8}\[[0-9.]{1,8}[a-z]{2}/[0-9.]{1,8}[a-z]{2}\])?"
+_TRIM: Final = r"(?:\s{0,8}\([a-z]{0,4}\))?"
+_COLOURS: Final = r"(?:\s{0,8}\[[a-zA-Z]{1,10}\])?"
+_BRACED: Final = r"(?:\s{0,8}\{[^{}]{0,40}\})"
+_GAP: Final = re.compile(rf"\*?{_LENGTH}")
+# Commands that are no part of a cell, and what may stand behind each.
+_OPTIONS: Final = {
+    "hline|endhead|endfirsthead|endfoot|endlastfoot|displaystyle": "",
+    "toprule|midrule|bottomrule|addlinespace": _LENGTH,
+    "hdashline": _DASHES,
+    "cmidrule": f"{_LENGTH}{_TRIM}{_BRACED}?",
+    "cline|noalign": f"{_BRACED}?",
+    "specialrule": f"{_BRACED}{{0,3}}",
+    "rowcolor": f"{_COLOURS}{_BRACED}?",
+}
 _RULES: Final = re.compile(
-    r"\\(?:hline|toprule|midrule|bottomrule|hdashline|endhead|endfirsthead|endfoot|endlastfoot"
-    r"|cline|cmidrule|addlinespace|specialrule|noalign|rowcolor|displaystyle)(?![A-Za-z])"
-    r"(?:\s{0,8}(?:\([a-z]{0,4}\)|\[[^][{}]{0,20}\]|\{[^{}]{0,40}\})){0,3}"
+    rf"\\(?:{'|'.join(f'(?:{name})(?![A-Za-z]){options}' for name, options in _OPTIONS.items())})"
 )
 # A sign behind a backslash begins no comment.
 _COMMENT: Final = re.compile(r"\\.|%[^\n]*", re.DOTALL)
+_POSITION: Final = re.compile(r"(?:\s{0,40}\[\s*[lcrtbhpsm!]{0,4}\s*\])?\s{0,40}")
 # Sizes of brackets mean nothing, and are half of what SymPy's LaTeX consists of.
 _SIZES: Final = re.compile(r"\\(?:left|right|[bB]igg?[lr]?)\s{0,4}(?=[()\[\]])")
 _SPANNING: Final = frozenset({"\\multicolumn", "\\multirow"})
@@ -149,19 +165,22 @@ def behind_wrappers(text: str) -> int:
 
 
 def _behind_arguments(source: SourceText, begin: re.Match[str]) -> int:
-    text, at = source.text, begin.end()
-    wanted = ARGUMENTS[begin[2]]
-    optional = wanted > 0 or begin[2].endswith("*")
-    while True:
-        following = at + len(text[at : at + 40]) - len(text[at : at + 40].lstrip())
-        if optional and text[following : following + 1] == "[":
-            optional = False
-            at = text.find("]", following) + 1 or following + 1
-        elif wanted and text[following : following + 1] == "{":
-            wanted -= 1
-            at = behind_brace(source, following)
-        else:
-            return at
+    """The place behind the arguments of an environment, in front of which a position may stand."""
+    at = begin.end()
+    arguments = ARGUMENTS[begin[2]]
+    if not arguments and begin[2].endswith("*"):
+        return _behind_position(source, at)
+    for _ in range(arguments):
+        following = _behind_position(source, at)
+        if source.text[following : following + 1] != "{":
+            break
+        at = behind_brace(source, following)
+    return at
+
+
+def _behind_position(source: SourceText, at: int) -> int:
+    position = _POSITION.match(source.text, at)
+    return position.end() if position else at
 
 
 def behind_brace(source: SourceText, start: int) -> int:

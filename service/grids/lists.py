@@ -11,7 +11,10 @@ from service.grids.program_text import WrittenMatrix
 from service.grids.source_text import SourceText, joined
 
 _BETWEEN: Final = " \t\r\n,;"
-_ESCAPE: Final = re.compile(r"\\(?:u([0-9A-Fa-f]{4})|([\\\"'/]))")
+# A character in UTF-16, of one or two units, or a sign.
+_ESCAPE: Final = re.compile(
+    r"\\(?:(u[dD][89abAB][0-9A-Fa-f]{2}\\u[dD][c-fC-F][0-9A-Fa-f]{2}|u[0-9A-Fa-f]{4})|([\\\"'/]))"
+)
 _COLUMN_MAKERS: Final = frozenset({"Matrix", "ImmutableMatrix", "MutableDenseMatrix"})
 
 
@@ -96,7 +99,12 @@ def unquoted(cell: SourceText) -> SourceText:
     start = 0
     for escape in _ESCAPE.finditer(inner.text):
         pieces.append(inner.cut(start, escape.start()))
-        letter = chr(int(escape[1], 16)) if escape[1] else escape[2]
+        letter = _character(escape[1]) if escape[1] else escape[2]
         pieces.append(inner.cut(escape.start(), escape.end()).spelled(letter))
         start = escape.end()
     return joined([*pieces, inner.cut(start, len(inner.text))], inner.whole[0])
+
+
+def _character(units: str) -> str:
+    """The character of an escape; U+FFFD for half a one, which no encoding can write out."""
+    return bytes.fromhex(units.replace("\\", "").replace("u", "")).decode("utf-16-be", "replace")

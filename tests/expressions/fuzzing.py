@@ -143,7 +143,7 @@ def texts(count: int, seed: int) -> Iterator[str]:
         elif kind < 0.55:
             yield "".join(random.choices(PIECES, k=random.randint(1, 25)))
         else:
-            yield _mutated(random.choice(written), random, written)
+            yield mutated(random.choice(written), random, written)
 
 
 def _formula(random: Random, depth: int) -> str:
@@ -167,7 +167,8 @@ def _formula(random: Random, depth: int) -> str:
             return f"{inner}{sign}{_formula(random, depth - 1)}"
 
 
-def _mutated(text: str, random: Random, written: list[str]) -> str:
+def mutated(text: str, random: Random, written: list[str]) -> str:
+    """A written case with other bytes in it, or parts of other cases."""
     data = bytearray(text.encode("utf-8", "surrogatepass"))
     for _ in range(random.randint(1, 4)):
         at = random.randint(0, len(data))
@@ -200,6 +201,11 @@ def outcome(text: str, *, degrees: bool = False) -> Outcome:
     reader._remembered.cache_clear()
     reader._parsed.cache_clear()
     words.split.cache_clear()
+    return next_outcome(text, degrees=degrees)
+
+
+def next_outcome(text: str, *, degrees: bool = False) -> Outcome:
+    """The same with whatever is remembered of other texts."""
     start = time.process_time()
     try:
         expression = _read(text, degrees)

@@ -245,3 +245,9 @@ def test_decimals_beside_the_variable_of_a_joint_that_slides(
     rows[2][3] = "theta3 + 0.127"
     report = graded_table(catalogue["stanford-arm"], rows)
     assert cell(report, "3", "theta").verdict is Verdict.INCORRECT
+
+
+def test_a_decimal_that_is_divided_by_zero_is_wrong_without_a_warning(arm: Exercise) -> None:
+    rows = [["2/3", "0.125/0", "2", "q1 + pi/2"], ["0", "pi", "1000", "q2"]]
+    report = graded_table(arm, rows)
+    assert cell(report, "1", "alpha").verdict is Verdict.INCORRECT

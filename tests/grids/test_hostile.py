@@ -74,8 +74,14 @@ def twice(read: Callable[[str], Found], text: str) -> Found:
 
 
 def check(text: str) -> None:
-    places = spans(twice(outcome, text))
-    found = twice(outcomes, text)
+    check_places(text, twice(outcome, text), twice(outcomes, text))
+
+
+def check_places(
+    text: str, one: Grid | Refusal, found: list[tuple[tuple[int, int], Grid | Refusal]] | Refusal
+) -> None:
+    """What was found stands in the text, and is no larger than the limits allow."""
+    places = spans(one)
     if isinstance(found, list):
         assert 1 <= len(found) <= GRID_LIMITS.rows
         places += [name for name, _ in found]

@@ -101,6 +101,16 @@ def test_line_ends_of_any_system(name: str) -> None:
         (r"\begin{bmatrix}a&b\\*[1.5ex]c&d\end{bmatrix}", [["a", "b"], ["c", "d"]]),
         (r"\begin{bmatrix}a\&x&{b&y}\end{bmatrix}", [[r"a\&x", "{b&y}"]]),
         (r"\begin{tabular*}{3cm}[t]{@{}l|p{2cm}@{}} a & b \end{tabular*}", [["a", "b"]]),
+        # a cell that begins with a bracket is no option of what stands in front of it
+        (r"\begin{tabular}{cc} [a] + b & c \end{tabular}", [["[a] + b", "c"]]),
+        (r"\begin{bmatrix*} [a] + b & c \end{bmatrix*}", [["[a] + b", "c"]]),
+        (r"\begin{array}{cc} \hline [a] + b & (c) d \end{array}", [["[a] + b", "(c) d"]]),
+        (r"\begin{array}{cc} \hline {a} + b & c \end{array}", [["{a} + b", "c"]]),
+        (r"\begin{array}{cc} \toprule (a) b & [c] d \end{array}", [["(a) b", "[c] d"]]),
+        (r"\begin{array}{cc} \toprule[1pt] (a) b & c \end{array}", [["(a) b", "c"]]),
+        (r"\begin{array}{cc} \cmidrule(lr){1-2} (a) & c \end{array}", [["(a)", "c"]]),
+        (r"\begin{array}{cc} a & b \\ [2\pi] c & d \end{array}", [["a", "b"], [r"[2\pi] c", "d"]]),
+        (r"\begin{bmatrix} \displaystyle{a} b & c \end{bmatrix}", [["{a} b", "c"]]),
         (
             r"\begin{array}{cc} a & b \tabularnewline \cline{1-2} c & d \end{array}",
             [["a", "b"], ["c", "d"]],
@@ -117,6 +127,8 @@ def test_line_ends_of_any_system(name: str) -> None:
         ("<tr><td>θ<sub>1</sub><sup>*</sup><td><b>d</b><br>3", [["θ_{1}*", "d 3"]]),
         ("<tr><td>1 < 2 & 3<td>&lt;", [["1 < 2 & 3", "<"]]),
         ("<table><style>td{}</style><tr><td colspan='1'>a<td>b</table>", [["a", "b"]]),
+        # escapes in strings: a character of two units, and half a one
+        (r'[["\u03b8", "\ud835\udf03", "\ud800 a"]]', [["θ", "𝜃", "\ufffd a"]]),
         # spreadsheets
         ('"a ""x""",b\n"atan2(y, x)",c', [['a "x"', "b"], ["atan2(y, x)", "c"]]),
         ("a\tb\t\t\nc\td\t\t\n\t\t\t\n", [["a", "b"], ["c", "d"]]),

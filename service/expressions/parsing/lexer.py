@@ -27,6 +27,9 @@ _E_NAME: Final = re.compile(r"([eE])([+-]?)([0-9]+)$")
 _NUMERIC_FRACTION: Final = re.compile(rf"{OPEN}\{{?\s*[0-9]+\s*\}}?/\{{?\s*[0-9]+\s*\}}?{CLOSE}")
 _BEGINS_WRAPPED: Final = re.compile(r"\{\s*\(")
 _ENDS_WRAPPED: Final = re.compile(r"\)\s*\}")
+# A bar that LaTeX says to be a left one, and how far in front of it that is looked for.
+_LEFT_REACH: Final = 40
+_LEFT_BAR: Final = re.compile(r"(?:\\(?:m?left|[bB]igg?l)\s*(?:\||\\[a-z]*)|\\lvert)\Z")
 _SIGNS: Final = frozenset({"PLUS", "MINUS"})
 _TERM_STARTS: Final = frozenset({"LEFT", "OPEN", "COMMA"})
 _FACTOR_OPERATORS: Final = frozenset({"STAR", "SLASH", "POWER"})
@@ -152,8 +155,9 @@ class Lexer(WordLexer):
             self._operand("LEFT", None, *span)
 
     def _bar(self, span: Span) -> None:
-        """Read |x|: a bar behind an operand closes, any other opens."""
-        if self.last in OPERAND_ENDS and self.brackets.in_bars():
+        r"""Read |x|: a bar behind an operand closes, any other opens, and so does \left|."""
+        closes = self.last in OPERAND_ENDS and self.brackets.in_bars()
+        if closes and not _LEFT_BAR.search(self.source, max(0, span[0] - _LEFT_REACH), span[1]):
             self.brackets.close("|", span)
             self._emit("RIGHT", None, *span)
         else:

@@ -2,15 +2,15 @@
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Final
+from typing import Final, NamedTuple
 
 from service.expressions import AngleUnit, Vocabulary
 from service.grading.feedback import Finding
 from service.grading.reading.cell_names import arranged_row, row_entries
 from service.grading.reading.column_headers import QUANTITIES
 from service.grading.reading.entry import Entry, Reader, unreadable
-from service.grading.reading.work_budget import WorkBudget
 from service.grading.samples import Samples
+from service.grading.work_budget import MAX_SYMBOLS, WorkBudget
 from service.kinematics.chain import COLUMNS
 
 # Rows of more characters are hardly written twice.
@@ -46,13 +46,20 @@ def remembered_row(
     a, alpha, d, theta = cells
     if not (type(a) is type(alpha) is type(d) is type(theta) is str):
         return None
-    characters = len(a) + len(alpha) + len(d) + len(theta)
-    if not characters <= min(_LONGEST, reader.budget.characters):
+    if len(a) + len(alpha) + len(d) + len(theta) > _LONGEST:
         return None
     found = _read_row(a, alpha, d, theta, number, reader.vocabulary, reader.angle_unit)
-    if found is not None:
-        reader.budget.characters -= characters
-    return found
+    if found is None or found.symbols > reader.budget.symbols:
+        return None
+    reader.budget.symbols -= found.symbols
+    return found.entries
+
+
+class _ReadRow(NamedTuple):
+    """The entries of a row, and how many symbols were read."""
+
+    entries: tuple[Entry, ...]
+    symbols: int
 
 
 @lru_cache(maxsize=_REMEMBERED)
@@ -64,10 +71,10 @@ def _read_row(
     number: int | None,
     vocabulary: Vocabulary,
     angle_unit: AngleUnit,
-) -> tuple[Entry, ...] | None:
+) -> _ReadRow | None:
     budget = WorkBudget(repairs=0)
     reader = Reader(vocabulary, _NO_SAMPLES, angle_unit, None, budget)
     entries = read_row((a, alpha, d, theta), number, reader)
     # What could not be read at first is repaired, and paid for, by whoever asks.
     is_plain = budget.repairs == 0 and all(entry.readable for entry in entries)
-    return entries if is_plain else None
+    return _ReadRow(entries, MAX_SYMBOLS - budget.symbols) if is_plain else None

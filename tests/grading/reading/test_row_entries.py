@@ -9,8 +9,8 @@ from service.expressions import AngleUnit
 from service.grading.feedback import Finding
 from service.grading.reading.entry import Entry, Reader
 from service.grading.reading.row_entries import read_row, remembered_row
-from service.grading.reading.work_budget import WorkBudget
 from service.grading.samples import draw
+from service.grading.work_budget import WorkBudget
 
 ROW = ("0", " -90", "d2 + 1", "theta2")
 
@@ -20,9 +20,9 @@ def exercise(catalogue: Mapping[str, Exercise]) -> Exercise:
     return catalogue["stanford-arm"]
 
 
-def reader_of(exercise: Exercise, unit: AngleUnit = "radians", characters: int = 100) -> Reader:
+def reader_of(exercise: Exercise, unit: AngleUnit = "radians", symbols: int = 100) -> Reader:
     samples = draw(exercise, {})
-    budget = WorkBudget(characters=characters)
+    budget = WorkBudget(symbols=symbols)
     return Reader(exercise.vocabulary, samples, unit, "m", budget)
 
 
@@ -36,7 +36,7 @@ def test_a_remembered_row_is_the_one_that_is_read(exercise: Exercise, unit: Angl
     fresh, remembering = reader_of(exercise, unit), reader_of(exercise, unit)
     expected = read_row(ROW, 2, fresh)
     for _ in range(2):
-        remembering.budget.characters = 100
+        remembering.budget.symbols = 100
         found = remembered_row(ROW, 2, remembering)
         assert found is not None
         assert list(map(told, found)) == list(map(told, expected))
@@ -68,11 +68,11 @@ def test_other_rows_are_read_each_time(exercise: Exercise, cells: tuple[object, 
     reader = reader_of(exercise)
     for _ in range(2):
         assert remembered_row(cells, 2, reader) is None
-        assert reader.budget == WorkBudget(characters=100)
+        assert reader.budget == WorkBudget(symbols=100)
 
 
 def test_a_row_beyond_the_budget_is_left_to_be_read_cell_by_cell(exercise: Exercise) -> None:
     assert remembered_row(ROW, 2, reader_of(exercise)) is not None
-    short = reader_of(exercise, characters=10)
+    short = reader_of(exercise, symbols=3)
     assert remembered_row(ROW, 2, short) is None
-    assert short.budget.characters == 10
+    assert short.budget.symbols == 3

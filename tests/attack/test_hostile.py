@@ -1,0 +1,37 @@
+"""A small sample of `make fuzz`."""
+
+from tests.attack.hostile import Case, Found, Reading, group, groups, sample
+
+
+def test_hostile_texts_grids_and_requests() -> None:
+    found = sample(250, "suite")
+    assert found.escaped == []
+    assert found.differing == []
+    kinds = {name.split()[0] for name in found.outcomes}
+    assert kinds == {"text", "grid", "submission", "preview"}
+
+
+class Forgetful(Reading):
+    """A program that reads a text in another way each time, and fails at one."""
+
+    def __init__(self) -> None:
+        self.times = 0
+
+    def outcome(self, case: Case) -> tuple[str, bytes, float]:
+        self.times += 1
+        if case.value == "bad":
+            raise ValueError(case.value)
+        return "text read", str(self.times).encode(), 0.0
+
+
+def test_what_escapes_and_what_differs_is_found() -> None:
+    found = group([Case("text", "q1"), Case("text", "bad")], Forgetful())
+    assert [line.split()[0] for line in found.differing] == ["at", "from"]
+    assert len(found.escaped) == 1
+    total = Found()
+    total.add(found)
+    assert (total.count, total.outcomes["text read"]) == (2, 1)
+
+
+def test_groups_make_up_the_count() -> None:
+    assert list(groups(1200, "a", 500)) == [(500, "a.0"), (500, "a.1"), (200, "a.2")]
