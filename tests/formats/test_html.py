@@ -115,6 +115,10 @@ def test_a_browser_shows_it_light_dark_and_on_paper(page: chromium.Page, tmp_pat
     assert dark[1] - dark[0] > 180
     assert paper[0] == 255
     assert paper[1] < 60
+    page.show_as("screen")
+    # What is wider than its card can be scrolled to.
+    scrolls = "every(each => getComputedStyle(each).overflowX === 'auto')"
+    assert page.wait_for(f"[...document.querySelectorAll('.cells')].{scrolls}")
     # Nothing of a student was run, and nothing was asked for but the page.
     assert page.complaints == []
     assert page.requests == [file.as_uri()]

@@ -66,6 +66,7 @@ def test_backticks_of_a_message_are_code() -> None:
     assert [(each.type, each.content) for each in inline(sentence("write `a*b`, not `<b>`"))] == [
         ("text", "write "), ("code_inline", "a*b"), ("text", ", not "), ("code_inline", "<b>"),
     ]  # fmt: skip
+    assert [each.content for each in inline(sentence("`a``b`"))] == ["a", " ", "b"]
     for hostile in ("`a``<b>`", "``<b>``", "`<b>", "```<b>```", "`a```<b>`"):
         assert {each.type for each in inline(f"x {sentence(hostile)}")} <= {"text", "code_inline"}
 

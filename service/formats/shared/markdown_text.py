@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from service.formats.shared.messages import SIGNS, Message
-from service.formats.shared.part_results import PartResult
+from service.formats.shared.part_results import LONGEST, MESSAGES_TOLD, PartResult
 from service.formats.shared.plain_text import code_pieces, first_lines, points, shortened, visible
 from service.grading import RowReport
 
@@ -17,8 +17,6 @@ _MARKUP: Final = re.compile(
 # People and issues are looked for in the finished text; an invisible sign hides them.
 _MENTION: Final = re.compile(r"@(?=\w)|&#35;(?=\d)")
 _ROWS: Final = 40
-_LINES: Final = 30
-_LINE: Final = 600
 
 
 def escaped(text: str) -> str:
@@ -39,9 +37,9 @@ def part_details(result: PartResult) -> str:
     """The part's rows as a table with a sign for each cell, and its messages as a list."""
     report = result.report
     if report is None:
-        return f"- {escaped(shortened(result.file.problem, _LINE))}\n"
+        return f"- {escaped(shortened(result.file.problem, LONGEST))}\n"
     blocks = [_table(report.rows)] if report.rows else []
-    if items := list(first_lines(map(_item, result.messages()), _LINES)):
+    if items := list(first_lines(map(_item, result.messages()), MESSAGES_TOLD)):
         blocks.append("".join(f"- {item}\n" for item in items))
     return "\n".join(blocks)
 
@@ -71,6 +69,6 @@ def _item(message: Message) -> str:
 def _pieces(message: Message) -> Iterator[str]:
     yield message.label
     yield f"**{escaped(message.places)}:**" if message.places else ""
-    yield sentence(shortened(message.text, _LINE))
-    yield escaped(shortened(message.offers, _LINE))
-    yield escaped(shortened(message.example, _LINE))
+    yield sentence(shortened(message.text, LONGEST))
+    yield escaped(shortened(message.offers, LONGEST))
+    yield escaped(shortened(message.example, LONGEST))

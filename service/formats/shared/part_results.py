@@ -12,8 +12,8 @@ from service.grading import PartReport, Verdict
 from service.grading.report import rounded_points
 
 # Platforms bound what a result may hold: a message of an annotation 64 KB, a whole result 1 MB.
-_LINES: Final = 30
-_LINE: Final = 600
+MESSAGES_TOLD: Final = 30
+LONGEST: Final = 600
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,9 +56,9 @@ class PartResult:
     def lines(self) -> list[str]:
         """What is to be said of the part, a line for each message, bounded in length and number."""
         if self.report is None:
-            return [shortened(visible(self.file.problem), _LINE)]
-        lines = (shortened(f"{each.label} {each.line}", _LINE) for each in self.messages())
-        return list(first_lines(lines, _LINES))
+            return [shortened(visible(self.file.problem), LONGEST)]
+        lines = (shortened(f"{each.label} {each.line}", LONGEST) for each in self.messages())
+        return list(first_lines(lines, MESSAGES_TOLD))
 
 
 def part_results(submission: GradedSubmission) -> list[PartResult]:
