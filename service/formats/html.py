@@ -119,7 +119,7 @@ def _card(result: PartResult) -> Element:
     card = element("section", header, class_="card")
     report = result.report
     if report and report.rows:
-        card.append(element("div", _table(report.rows), class_="cells"))
+        card.append(element("div", _table(result, report.rows), class_="cells"))
     items = [_item(message) for message in result.messages()]
     if report and report.follow_through:
         items.insert(0, _note("Counted with your own earlier answer."))
@@ -128,22 +128,22 @@ def _card(result: PartResult) -> Element:
     return card
 
 
-def _table(rows: Sequence[RowReport]) -> Element:
+def _table(result: PartResult, rows: Sequence[RowReport]) -> Element:
     labels = [cell.label for cell in max((row.cells for row in rows), key=len)]
     heads = (element("th", label, scope="col") for label in ["row", *labels, "points"])
     head = element("tr", *heads)
-    body = element("tbody", *(_row(row, len(labels)) for row in rows))
+    body = element("tbody", *(_row(row, len(labels), result.row_points(row)) for row in rows))
     return element("table", element("thead", head), body)
 
 
-def _row(row: RowReport, width: int) -> Element:
+def _row(row: RowReport, width: int, earned: str) -> Element:
     blanks = [element("td")] * (width - len(row.cells))
     return element(
         "tr",
         element("th", row.label, scope="row"),
         *map(_cell, row.cells),
         *blanks,
-        element("td", points(row.points, row.max_points), class_="row-points"),
+        element("td", earned, class_="row-points"),
     )
 
 
@@ -151,7 +151,7 @@ def _cell(cell: CellReport) -> Element:
     verdict = cell.verdict.value
     sign = element("span", SIGNS[cell.verdict], class_="sign", title=verdict)
     entry = [element("span", cell.read.text, class_="entry")] if cell.read else []
-    return element("td", sign, *entry, class_=verdict)
+    return element("td", element("div", sign, *entry, class_="cell"), class_=verdict)
 
 
 def _item(message: Message) -> Element:

@@ -47,6 +47,8 @@ def test_an_assignment_is_weighed() -> None:
         ("Other arm: Table", 0.0, 1.0),
     ]
     assert result["score"] == 3.0
+    # The first row has 0.421053 of the exercise's 16 points, and these count 3.
+    assert "| 1 | ✓ | ✓ | ✓ | ✓ | 0.08 / 0.08 |" in result["tests"][0]["output"]
 
 
 def test_the_time_of_release_is_told() -> None:

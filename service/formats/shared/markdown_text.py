@@ -6,7 +6,7 @@ from typing import Final
 
 from service.formats.shared.messages import SIGNS, Message
 from service.formats.shared.part_results import LONGEST, MESSAGES_TOLD, PartResult
-from service.formats.shared.plain_text import code_pieces, first_lines, points, shortened, visible
+from service.formats.shared.plain_text import code_pieces, first_lines, shortened, visible
 from service.grading import RowReport
 
 # As a character reference a character is text in every dialect, while backslashes escape more
@@ -38,20 +38,20 @@ def part_details(result: PartResult) -> str:
     report = result.report
     if report is None:
         return f"- {escaped(shortened(result.file.problem, LONGEST))}\n"
-    blocks = [_table(report.rows)] if report.rows else []
+    blocks = [_table(result, report.rows)] if report.rows else []
     if items := list(first_lines(map(_item, result.messages()), MESSAGES_TOLD)):
         blocks.append("".join(f"- {item}\n" for item in items))
     return "\n".join(blocks)
 
 
-def _table(rows: Sequence[RowReport]) -> str:
+def _table(result: PartResult, rows: Sequence[RowReport]) -> str:
     widest = max((row.cells for row in rows), key=len)
     head = ["row", *(cell.label for cell in widest), "points"]
     lines = [_line(head), "|---|" + ":-:|" * len(widest) + "--:|\n"]
     for row in rows[:_ROWS]:
         signs = [SIGNS[cell.verdict] for cell in row.cells]
         blanks = [""] * (len(widest) - len(signs))
-        lines.append(_line([row.label, *signs, *blanks, points(row.points, row.max_points)]))
+        lines.append(_line([row.label, *signs, *blanks, result.row_points(row)]))
     if len(rows) > _ROWS:
         lines.append(_line(["…", *[""] * (len(widest) + 1)]))
     return "".join(lines)

@@ -7,8 +7,8 @@ from typing import Final
 
 from service.formats.shared.graded import AnsweredPart, GradedFile, GradedSubmission
 from service.formats.shared.messages import Message, messages
-from service.formats.shared.plain_text import first_lines, shortened, visible
-from service.grading import PartReport, Verdict
+from service.formats.shared.plain_text import first_lines, points, shortened, visible
+from service.grading import PartReport, RowReport, Verdict
 from service.grading.report import rounded_points
 
 # Platforms bound what a result may hold: a message of an annotation 64 KB, a whole result 1 MB.
@@ -48,6 +48,11 @@ class PartResult:
     def verdict(self) -> Verdict:
         """The verdict on the part; unreadable where the file has no report."""
         return self.report.verdict if self.report else Verdict.UNREADABLE
+
+    def row_points(self, row: RowReport) -> str:
+        """The points of one of its rows in words."""
+        weight = self.file.weight
+        return points(row.points * weight, row.max_points * weight)
 
     def messages(self) -> Iterator[Message]:
         """The messages on the part."""
