@@ -51,6 +51,11 @@ class Page:
         """Go to an address."""
         self._call("Page.navigate", url=url)
 
+    def show_as(self, media: str, scheme: str = "light") -> None:
+        """Show pages as on this medium, "screen" or "print", in this colour scheme."""
+        features = [{"name": "prefers-color-scheme", "value": scheme}]
+        self._call("Emulation.setEmulatedMedia", media=media, features=features)
+
     def wait_for(self, expression: str) -> Any:
         """The value of an expression of JavaScript as soon as it is true; the test's own timeout
         is the guard."""

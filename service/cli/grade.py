@@ -1,7 +1,10 @@
 """`dh-grader grade`: submissions in files, graded here and now."""
 
 import io
+import os
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated, Final
 
@@ -11,22 +14,24 @@ from rich.console import Console
 from service.catalogue import Exercise
 from service.cli.submission_files import UnusableFileError, read_submission
 from service.cli.terminal import UNUSABLE, complain, give_up, installed, stdout
-from service.formats import FORMATS, GradedFile
-from service.formats.text import visible
-from service.grading import FeedbackLevel, UnknownPartError, grade
+from service.formats import FORMAT_NAMES, report_format
+from service.formats.shared.graded import GradedFile, GradedSubmission, Visibility, answered
+from service.formats.shared.plain_text import visible
+from service.formats.shared.report_format import Setting, UnusableSettingError
+from service.grading import FeedbackLevel, Report, UnknownPartError, grade
 from service.submissions.lookup import find_exercise, nearest
 
 BELOW_PASS_MARK = 1
 
 
 def _known(name: str) -> str:
-    if name not in FORMATS:
+    if name not in FORMAT_NAMES:
         raise typer.BadParameter(f"{name!r} is not one of {', '.join(_NAMES)}.")
     return name
 
 
 # Text is for people, so it comes first.
-_NAMES: Final = sorted(FORMATS, key=lambda name: name != "text")
+_NAMES: Final = sorted(FORMAT_NAMES, key=lambda name: name != "text")
 
 
 def command(
@@ -41,11 +46,7 @@ def command(
     output_format: Annotated[
         str,
         typer.Option(
-            "--format",
-            metavar=f"<{'|'.join(_NAMES)}>",
-            callback=_known,
-            help="For people, or for programs: json prints exactly the report, and for several "
-            'files a list with {"file", "report"} or {"file", "error"} for each.',
+            "--format", metavar="NAME", callback=_known, help=f"One of {', '.join(_NAMES)}."
         ),
     ] = "text",
     output: Annotated[
@@ -57,10 +58,13 @@ def command(
         typer.Option(
             help="How much to tell: hints and corrections, what to look at, right and wrong, or "
             "bare marks. What could not be read is told in any case. By default what the file asks "
-            "for, else full."
+            "for, else full, or what the exercise allows in a format that students read."
         ),
     ] = None,
     echo: Annotated[bool, typer.Option("--echo", help="Tell how each cell was read.")] = False,
+    visibility: Annotated[
+        Visibility, typer.Option(help="When Gradescope shows the result to students.")
+    ] = Visibility.VISIBLE,
 ) -> None:
     """Grade submissions: JSON or TOML files of the same shape as the HTTP body.
 
@@ -71,20 +75,38 @@ def command(
     Exit code 2: a file, exercise or part is unusable; other files are graded all the same.
     """
     chosen = _restricted(find_exercise(installed(), exercise), part)
-    graded = [_graded(file, chosen, part, feedback, echo=echo) for file in files]
-    for result in graded:
-        if result.error:
-            complain(f"{result.file}: {result.error}")
+    taken = report_format(output_format)
+    if taken.is_single and len(files) > 1:
+        give_up(
+            f"{output_format} holds one submission, and {len(files)} files are given: grade them "
+            "one by one, or take a format for several."
+        )
+    most = chosen.feedback if taken.for_students else FeedbackLevel.FULL
+    told = answered(chosen)
+    codes = [0]
+
+    def submissions() -> Iterator[GradedSubmission]:
+        for file in files:
+            report, problem = _report(
+                file, chosen, part, feedback, most, echo=echo or taken.shows_entries
+            )
+            if problem:
+                complain(visible(f"{file}: {problem}"))
+            graded = GradedFile(str(file), told, report, problem)
+            submission = GradedSubmission(str(file), file.stem, (graded,), pass_mark)
+            codes.append(_exit_code(submission))
+            yield submission
+
     console = stdout()
     if output is not None:
         page = io.TextIOWrapper(io.BytesIO(), encoding="utf-8")
         console = Console(file=page, width=80, highlight=False, markup=False)
-    content = FORMATS[output_format].document(graded, console)
-    if output is None:
-        typer.echo(content, nl=False)
-    else:
-        _write(content, output)
-    raise SystemExit(max(_exit_code(result, pass_mark) for result in graded))
+    setting = Setting((told,), console, datetime.now(UTC), os.environ, visibility)
+    try:
+        _write(taken.pieces(submissions(), setting), output)
+    except UnusableSettingError as error:
+        give_up(f"{output_format}: {error}")
+    raise SystemExit(max(codes))
 
 
 def _restricted(exercise: Exercise, part_id: str | None) -> Exercise:
@@ -100,37 +122,54 @@ def _restricted(exercise: Exercise, part_id: str | None) -> Exercise:
     return replace(exercise, parts=(part,))
 
 
-def _graded(
+def _report(
     file: Path,
     exercise: Exercise,
     part: str | None,
     feedback: FeedbackLevel | None,
+    most: FeedbackLevel,
     *,
     echo: bool,
-) -> GradedFile:
-    """The file with its report: these are a tutor's own files, so nothing need be kept back."""
+) -> tuple[Report | None, str]:
+    """The report on the file, or the problem because of which there is none.
+
+    The report tells what ``feedback`` asks for, else what the file asks for and ``most`` at the
+    most: these are a tutor's own files, so nothing need be kept back.
+    """
     try:
-        submission = read_submission(file, part).submission(FeedbackLevel.FULL)
+        submission = read_submission(file, part).submission(most)
         feedback = submission.feedback if feedback is None else feedback
         submission = replace(submission, feedback=feedback, echo=echo or submission.echo)
-        return GradedFile(file, grade(exercise, submission))
+        return grade(exercise, submission), ""
     except UnusableFileError as error:
-        return GradedFile(file, None, str(error))
+        return None, str(error)
     except UnknownPartError as error:
         known = ", ".join(error.known)
-        name = visible(error.unknown[:60])
-        return GradedFile(file, None, f"answers {name!r}, but {exercise.id} has only {known}")
+        return None, f"answers {error.unknown[:60]!r}, but {exercise.id} has only {known}"
 
 
-def _exit_code(result: GradedFile, pass_mark: float) -> int:
-    if result.report is None:
+def _exit_code(submission: GradedSubmission) -> int:
+    if not submission.is_graded:
         return UNUSABLE
-    # Scores are rounded to six digits, so 1/3 passes a pass mark of 0.33333333.
-    return 0 if result.report.score >= pass_mark - 5e-7 else BELOW_PASS_MARK
+    return 0 if submission.passed else BELOW_PASS_MARK
 
 
-def _write(content: bytes, output: Path) -> None:
+def _write(pieces: Iterable[bytes], output: Path | None) -> None:
+    """Write the pieces as they come; a file is there only when it is whole."""
+    if output is None:
+        for piece in pieces:
+            typer.echo(piece, nl=False)
+        return
+    # A pipe or a device is no file to be replaced.
+    is_replaced = output.is_file() or not output.exists()
+    written = output.with_name(f".{output.name}.part") if is_replaced else output
     try:
-        output.write_bytes(content)
+        with written.open("wb") as file:
+            file.writelines(pieces)
+        if is_replaced:
+            written.replace(output)
     except OSError as error:
         give_up(f"{output}: cannot be written: {error.strerror}")
+    finally:
+        if is_replaced:
+            written.unlink(missing_ok=True)

@@ -1,37 +1,21 @@
-"""Graded files in the forms that people and programs take them in: one file for each format.
+"""Reports in the forms that people and programs take them in: one file for each format.
 
-A format ``<name>.py`` has a function ``document``; it is found here by its name.
+A format ``<name>.py`` has a ``FORMAT``; it is found here by its name, and loaded when it is asked
+for. What formats share stands in ``shared/``.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from importlib import import_module
-from pathlib import Path
 from pkgutil import iter_modules
-from typing import Final, Protocol
+from typing import Final
 
-from rich.console import Console
+from service.formats.shared.report_format import ReportFormat
 
-from service.grading import Report
-
-
-@dataclass(frozen=True, slots=True)
-class GradedFile:
-    """A file with its report, or with the reason why there is none."""
-
-    file: Path
-    report: Report | None
-    error: str = ""
+FORMAT_NAMES: Final[tuple[str, ...]] = tuple(
+    name for _, name, is_package in iter_modules(__path__) if not is_package
+)
 
 
-class ReportFormat(Protocol):
-    """One format of reports."""
-
-    def document(self, graded: Sequence[GradedFile], console: Console) -> bytes:
-        """The files as one document, for ``console`` or for a file of its width and encoding."""
-        ...
-
-
-FORMATS: Final[Mapping[str, ReportFormat]] = {
-    name: import_module(f"{__name__}.{name}") for _, name, _ in iter_modules(__path__)
-}
+def report_format(name: str) -> ReportFormat:
+    """The format of this name, one of ``FORMAT_NAMES``."""
+    found: ReportFormat = import_module(f"{__name__}.{name}").FORMAT
+    return found

@@ -1,13 +1,14 @@
-"""Reports as JSON."""
+"""Reports as JSON: a list with one entry for each file, however many there are."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator
 from typing import Final
 
 from pydantic import TypeAdapter
-from rich.console import Console
 
-from service.formats import GradedFile
+from service.formats.shared.graded import GradedFile, GradedSubmission
+from service.formats.shared.json_document import printable
+from service.formats.shared.report_format import ReportFormat, Setting
 from service.grading import Report
 
 _REPORT: Final = TypeAdapter(Report)
@@ -18,16 +19,36 @@ def rendered(report: Report, *, indent: int | None = None) -> bytes:
     return _REPORT.dump_json(report, exclude_none=True, indent=indent)
 
 
-def document(graded: Sequence[GradedFile], _: Console) -> bytes:
-    """The report alone for one file, if it has one; else a list with one entry for each file."""
-    if len(graded) == 1:
-        report = graded[0].report
-        return b"" if report is None else rendered(report, indent=2) + b"\n"
-    return b"[\n" + b",\n".join(map(_entry, graded)) + b"\n]\n"
+def entries(submissions: Iterable[GradedSubmission]) -> Iterator[bytes]:
+    """A line of JSON for each file: its report, or the error because of which it has none."""
+    for submission in submissions:
+        for file in submission.files:
+            yield printable(_entry(submission, file))
 
 
-def _entry(result: GradedFile) -> bytes:
-    file = json.dumps(str(result.file)).encode()
-    if result.report is None:
-        return b'{"file": %b, "error": %b}' % (file, json.dumps(result.error).encode())
-    return b'{"file": %b, "report": %b}' % (file, rendered(result.report))
+def _entry(submission: GradedSubmission, file: GradedFile) -> bytes:
+    head = {
+        "submission": _encodable(submission.name),
+        "file": _encodable(file.file),
+        "exercise": file.exercise.id,
+        "passed": submission.passed,
+    }
+    if file.report is None:
+        return json.dumps(head | {"error": _encodable(file.problem)}).encode()
+    return json.dumps(head).encode()[:-1] + b', "report": %b}' % rendered(file.report)
+
+
+def _encodable(text: str) -> str:
+    """The text, its bytes that are not UTF-8 (in the name of a file) replaced."""
+    return text.encode("utf-8", "replace").decode()
+
+
+def _pieces(submissions: Iterable[GradedSubmission], _: Setting) -> Iterator[bytes]:
+    opening = b"[\n"
+    for entry in entries(submissions):
+        yield opening + entry
+        opening = b",\n"
+    yield b"[]\n" if opening == b"[\n" else b"\n]\n"
+
+
+FORMAT: Final = ReportFormat(_pieces)

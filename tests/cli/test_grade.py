@@ -1,4 +1,5 @@
 import json
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -8,7 +9,7 @@ from typer.testing import Result
 
 from service.catalogue import load_catalogue, shipped_folder
 from service.formats.json import rendered
-from service.grading import Submission, grade
+from service.grading import Report, Submission, grade
 
 Run = Callable[..., Result]
 Save = Callable[..., Path]
@@ -81,8 +82,9 @@ def test_a_file_may_hold_the_answer_of_the_part_alone(run: Run, save: Save) -> N
 def test_with_a_part_the_others_neither_count_nor_are_graded(run: Run, save: Save) -> None:
     file = save({"answers": {"table": RIGHT, "pose": "nonsense"}})
     result = table_only(run, file, "--format", "json")
-    assert [part["part"] for part in json.loads(result.stdout)["parts"]] == ["table"]
-    assert json.loads(result.stdout)["score"] == 1
+    [entry] = json.loads(result.stdout)
+    assert [part["part"] for part in entry["report"]["parts"]] == ["table"]
+    assert entry["report"]["score"] == 1
 
 
 def test_toml_is_read_like_json(run: Run, save: Save) -> None:
@@ -90,13 +92,14 @@ def test_toml_is_read_like_json(run: Run, save: Save) -> None:
     assert result.exit_code == 0, result.output
 
 
-def test_json_is_exactly_the_report(run: Run, save: Save) -> None:
+def test_json_holds_exactly_the_report(run: Run, save: Save) -> None:
     answers = {"table": HALF}
     result = run(
         "grade", save({"answers": answers}), "--exercise", "planar-rrr", "--format", "json"
     )
     exercise = load_catalogue(shipped_folder())["planar-rrr"]
-    assert json.loads(result.stdout) == json.loads(rendered(grade(exercise, Submission(answers))))
+    [entry] = json.loads(result.stdout)
+    assert entry["report"] == json.loads(rendered(grade(exercise, Submission(answers))))
     assert result.stderr == ""
     assert "\x1b" not in result.stdout
 
@@ -137,7 +140,7 @@ def test_echo_shows_how_each_cell_was_read(run: Run, save: Save) -> None:
     assert "read  a" not in table_only(run, answer).stdout
 
 
-@pytest.mark.parametrize("output_format", ["text", "json"])
+@pytest.mark.parametrize("output_format", ["text", "json", "csv", "html", "junit"])
 def test_the_output_goes_to_a_file(
     run: Run, save: Save, tmp_path: Path, output_format: str
 ) -> None:
@@ -147,7 +150,95 @@ def test_the_output_goes_to_a_file(
     to_file = table_only(run, answer, "--format", output_format, "--output", target)
     assert to_file.stdout == ""
     assert to_file.exit_code == on_screen.exit_code == 1
-    assert target.read_bytes().decode() == on_screen.stdout
+    assert target.read_bytes() == on_screen.stdout_bytes
+    assert sorted(tmp_path.iterdir()) == sorted([answer, target])
+
+
+def test_an_interrupted_run_leaves_no_half_of_a_file(
+    run: Run, save: Save, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answer, target = save(RIGHT), save(b"from yesterday", "out.csv")
+    graded = []
+
+    def interrupted(*arguments: Any) -> Report:
+        graded.append(arguments)
+        if len(graded) == 2:
+            raise KeyboardInterrupt
+        return grade(*arguments)
+
+    monkeypatch.setattr("service.cli.grade.grade", interrupted)
+    result = table_only(run, answer, answer, "--format", "csv", "--output", target)
+    assert result.exit_code != 0
+    assert len(graded) == 2
+    assert target.read_bytes() == b"from yesterday"
+    assert sorted(tmp_path.iterdir()) == sorted([answer, target])
+
+
+@pytest.mark.skipif(os.name == "nt", reason="has no such device")
+def test_a_device_is_written_to_and_not_replaced(run: Run, save: Save) -> None:
+    assert table_only(run, save(RIGHT), "--output", os.devnull).exit_code == 0
+    assert Path(os.devnull).is_char_device()
+
+
+def test_a_format_for_one_submission_refuses_several(run: Run, save: Save, tmp_path: Path) -> None:
+    target = tmp_path / "results.json"
+    right = save(RIGHT)
+    several = table_only(run, right, right, "--format", "gradescope", "--output", target)
+    assert several.exit_code == 2
+    assert "gradescope holds one submission, and 2 files are given" in several.stderr
+    assert not target.exists()
+    assert table_only(run, right, "--format", "gradescope").exit_code == 0
+
+
+def test_a_platform_hears_of_a_file_that_cannot_be_used(run: Run, save: Save) -> None:
+    result = table_only(run, save(b"{"), "--format", "prairielearn")
+    assert result.exit_code == 2
+    assert json.loads(result.stdout)["gradable"] is False
+    assert "line 1, column 2" in result.stderr
+
+
+def test_a_format_that_lacks_its_platform_says_so(
+    run: Run, save: Save, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("CLASSROOM", raising=False)
+    result = table_only(run, save(RIGHT), "--format", "classroom50")
+    assert result.exit_code == 2
+    assert result.stderr.startswith("classroom50: ")
+    assert "CLASSROOM, " in result.stderr
+
+
+def test_students_are_told_no_more_than_the_exercise_allows(run: Run, save: Save) -> None:
+    answer = save({"answers": {"table": HALF}})
+    asked = save({"answers": {"table": HALF}, "feedback": "score"}, "score.json")
+    assert "It should be" in table_only(run, answer, "--format", "text").stdout
+    for name in ("gradescope", "html", "junit", "markdown", "github", "prairielearn"):
+        told = table_only(run, answer, "--format", name).stdout
+        assert "row 3, e a" in told.replace("rows", "row")
+        assert "It should be" not in told
+        assert (
+            "It should be" in table_only(run, answer, "--format", name, "--feedback", "full").stdout
+        )
+        assert "row 3" not in table_only(run, asked, "--format", name).stdout.replace("rows", "row")
+
+
+def test_the_time_of_release_is_told_to_gradescope(run: Run, save: Save) -> None:
+    result = table_only(
+        run, save(RIGHT), "--format", "gradescope", "--visibility", "after_due_date"
+    )
+    assert json.loads(result.stdout)["visibility"] == "after_due_date"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="allows no such names")
+def test_the_name_of_a_file_is_a_name_and_nothing_else(run: Run, save: Save) -> None:
+    name = "\x1b[31m\n::set-output name=a::b\n##[error]<script>.json"
+    broken = save(b"{", name)
+    result = table_only(run, broken, "--format", "markdown")
+    for printed in (result.stdout, result.stderr):
+        assert "\x1b" not in printed
+        assert not any(line.lstrip().startswith("::") for line in printed.splitlines())
+        assert "##[" not in printed
+    [entry] = json.loads(table_only(run, broken, "--format", "json").stdout)
+    assert entry["file"] == str(broken)
 
 
 def test_an_output_that_cannot_be_written_is_said(run: Run, save: Save, tmp_path: Path) -> None:
@@ -198,7 +289,7 @@ def test_dates_and_nan_in_toml_cost_only_their_cells(run: Run, save: Save) -> No
     toml = TOML.replace("d = 0.0", "d = 2024-01-01").replace('a = "l2"', "a = nan")
     result = table_only(run, save(toml.encode(), "a.toml"), "--format", "json")
     assert result.exit_code in (0, 1), result.output
-    rows = json.loads(result.stdout)["parts"][0]["rows"]
+    rows = json.loads(result.stdout)[0]["report"]["parts"][0]["rows"]
     assert rows[1]["cells"][0]["verdict"] == "correct"
     assert rows[2]["cells"][0]["verdict"] == "unreadable"
 

@@ -58,7 +58,7 @@ def test_grading_loads_neither_the_web_framework_nor_a_computer_algebra_system(
     result = process(
         "grade", answer, "--exercise", "planar-rrr", "--format", "json", python=("-c", probe)
     )
-    assert json.loads(result.stdout)["exercise"] == "planar-rrr"
+    assert json.loads(result.stdout)[0]["exercise"] == "planar-rrr"
     assert result.stderr.decode().strip() == "[]"
 
 

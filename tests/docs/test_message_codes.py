@@ -52,7 +52,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     (
         ("The shape of an answer",),
         (
-            "formats/text.py",
+            "formats/shared/messages.py",
             "grading/kinds/dh_row.py",
             "grading/reading/entry.py",
             "grading/kinds/link_transforms.py",

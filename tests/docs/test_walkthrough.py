@@ -9,7 +9,9 @@ from tests.docs.walkthrough import Reader, blocks, matches
 DOCS = Path(__file__).parents[2] / "docs"
 
 
-@pytest.mark.parametrize(("page", "commands"), [("write-an-exercise.md", 10), ("marks.md", 1)])
+@pytest.mark.parametrize(
+    ("page", "commands"), [("write-an-exercise.md", 10), ("marks.md", 1), ("formats.md", 12)]
+)
 def test_a_page_comes_true(
     page: str, commands: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

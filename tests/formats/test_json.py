@@ -1,11 +1,7 @@
-import io
 import json
-from pathlib import Path
 
 import pytest
-from rich.console import Console
 
-from service.formats import FORMATS, GradedFile
 from service.formats.json import rendered
 from service.grading import (
     CellReport,
@@ -19,6 +15,7 @@ from service.grading import (
     Severity,
     Verdict,
 )
+from tests.formats.submissions import HOSTILE, WRITTEN, cases, document
 
 MESSAGE = Feedback(
     "sign",
@@ -77,15 +74,30 @@ def test_a_value_that_json_does_not_have_is_still_json() -> None:
     json.loads(content, parse_constant=pytest.fail)
 
 
-def test_the_formats_are_found_by_their_names() -> None:
-    assert {"json", "text"} <= set(FORMATS)
-    console = Console(file=io.StringIO(), width=80)
-    graded = [
-        GradedFile(Path("a.json"), REPORT),
-        GradedFile(Path("b.json"), None, "holds no answers"),
-    ]
-    for report_format in FORMATS.values():
-        assert report_format.document(graded, console)
-        assert report_format.document(graded[1:], console) == b""
-    listed = json.loads(FORMATS["json"].document(graded, console))
-    assert [sorted(each) for each in listed] == [["file", "report"], ["error", "file"]]
+def test_a_list_has_an_entry_for_each_file_however_many_there_are() -> None:
+    assert json.loads(document("json")) == []
+    [right] = json.loads(document("json", cases()["right"]))
+    assert right == {
+        "submission": "folder/anna.json", "file": "folder/anna.json", "exercise": "planar-rrr",
+        "passed": True, "report": json.loads(rendered(report_on("right"))),
+    }  # fmt: skip
+    entries = json.loads(document("json", *cases().values()))
+    assert {tuple(sorted(entry)) for entry in entries} == {
+        ("exercise", "file", "passed", "report", "submission"),
+        ("error", "exercise", "file", "passed", "submission"),
+    }
+    assert [entry["file"] for entry in entries[-2:]] == ["anna/one.json", ""]
+
+
+def test_no_text_is_lost() -> None:
+    [entry] = json.loads(document("json", cases()["hostile words"]))
+    [message, *_] = entry["report"]["parts"][0]["feedback"]
+    assert message["message"] == message["suggestion"] == WRITTEN
+    # A byte that is not UTF-8, in the name of a file, is no character.
+    assert entry["file"] == HOSTILE.replace("\udc80", "?")
+
+
+def report_on(case: str) -> Report:
+    report = cases()[case].files[0].report
+    assert report is not None
+    return report

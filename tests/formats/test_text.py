@@ -5,7 +5,8 @@ import io
 import pytest
 from rich.console import Console
 
-from service.formats.text import points, visible, write
+from service.formats.shared.plain_text import points, visible
+from service.formats.text import write
 from service.grading import (
     CellReport,
     Correction,

@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -22,7 +23,9 @@ from service.cli.submission_files import UnusableFileError, read_submission
 from service.expressions import reader
 from service.expressions.evaluation import decimals
 from service.expressions.parsing import words
-from service.formats import FORMATS, GradedFile
+from service.formats import report_format
+from service.formats.shared.graded import GradedFile, GradedSubmission, answered
+from service.formats.shared.report_format import Setting
 from service.grading import UnknownPartError, grade
 from tests.benchmarks.floors import stanford_pose
 
@@ -129,7 +132,12 @@ class Target:
         """As `dh-grader grade` does with a file, told as text."""
         with suppress(UnusableFileError, UnknownPartError), Path("/dev/null").open("w") as nothing:
             submission = read_submission(path, None).submission(FeedbackLevel.FULL)
-            graded = GradedFile(path, grade(self.exercises[exercise], submission))
-            FORMATS["text"].document([graded], Console(file=nothing, width=80))
+            told = answered(self.exercises[exercise])
+            report = grade(self.exercises[exercise], submission)
+            graded = GradedFile(str(path), told, report)
+            handed_in = GradedSubmission(str(path), path.stem, (graded,), pass_mark=0.8)
+            setting = Setting((told,), Console(file=nothing, width=80), datetime.now(UTC))
+            for _ in report_format("text").pieces([handed_in], setting):
+                pass
             return 200
         return 422

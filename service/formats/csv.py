@@ -1,0 +1,47 @@
+"""Points as comma-separated values: a line for each submission, a column for each part."""
+
+from collections.abc import Iterable, Iterator
+from typing import Final
+
+from service.formats.shared import spreadsheet
+from service.formats.shared.graded import GradedSubmission
+from service.formats.shared.part_results import part_results
+from service.formats.shared.report_format import ReportFormat, Setting
+from service.grading import PartReport, Severity
+from service.grading.report import messages_of
+
+_HEAD: Final = ("submission", "points", "max_points", "score", "passed", "problem", "messages")
+# What costs points or may have been a slip; notes and hints are not counted.
+_COUNTED: Final = (Severity.ERROR, Severity.WARNING)
+
+
+def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:
+    columns = [f"{each.id}.{part.id}" for each in setting.exercises for part in each.parts]
+    yield spreadsheet.line([*_HEAD, *columns])
+    for submission in submissions:
+        yield spreadsheet.line(_cells(submission))
+
+
+def _cells(submission: GradedSubmission) -> list[str | float | None]:
+    """No points where nothing was graded: nobody gets 0 for a file that cannot be used."""
+    is_graded = submission.is_graded
+    results = part_results(submission)
+    return [
+        submission.name,
+        submission.points if is_graded else None,
+        submission.max_points,
+        submission.score if is_graded else None,
+        "yes" if submission.passed else "no",
+        "; ".join(submission.problems),
+        " ".join(code for each in results if each.report for code in _codes(each.report)),
+        *(each.points if each.report else None for each in results),
+    ]
+
+
+def _codes(part: PartReport) -> list[str]:
+    """The codes of the part's messages, each once, behind the part's name."""
+    found = (message.code for message, _, _ in messages_of(part) if message.severity in _COUNTED)
+    return [f"{part.part}.{code}" for code in dict.fromkeys(found)]
+
+
+FORMAT: Final = ReportFormat(_pieces)

@@ -1,0 +1,48 @@
+"""The ``results.json`` of a Gradescope autograder: a test for each part, with its rows inside.
+
+Source: https://gradescope-autograders.readthedocs.io/en/latest/specs/, "Output format".
+"""
+
+from typing import Any, Final
+
+from service.formats.shared.graded import GradedSubmission
+from service.formats.shared.json_document import json_document
+from service.formats.shared.markdown_text import part_details
+from service.formats.shared.part_results import PartResult, part_results
+from service.formats.shared.plain_text import percent, points, visible
+from service.formats.shared.report_format import ReportFormat, Setting, single
+
+
+def _document(submission: GradedSubmission, setting: Setting) -> bytes:
+    content = {
+        "score": submission.points,
+        "output": _total(submission),
+        "output_format": "text",
+        "test_name_format": "text",
+        "test_output_format": "md",
+        "visibility": setting.visibility.value,
+        "stdout_visibility": "hidden",
+        "tests": [_test(each) for each in part_results(submission)],
+    }
+    return json_document(content)
+
+
+def _total(submission: GradedSubmission) -> str:
+    if not submission.is_graded:
+        return visible(f"Nothing could be graded: {'; '.join(submission.problems)}")
+    total = f"{points(submission.points, submission.max_points)} points"
+    unread = "" if submission.is_gradable else " Nothing in this submission could be read."
+    return f"{total}, {percent(submission.score)}.{unread}"
+
+
+def _test(result: PartResult) -> dict[str, Any]:
+    return {
+        "name": result.name,
+        "score": result.points,
+        "max_score": result.max_points,
+        "status": "passed" if result.passed else "failed",
+        "output": part_details(result),
+    }
+
+
+FORMAT: Final = ReportFormat(single(_document), is_single=True, for_students=True)

@@ -1,0 +1,66 @@
+"""JUnit XML, as GitLab and the actions of GitHub read it: a suite for each file, a test a part.
+
+Sources: https://docs.gitlab.com/ci/testing/unit_test_reports/ and the schema ``junit-10.xsd`` of
+Jenkins (https://github.com/jenkinsci/xunit-plugin). GitLab shows the name of the class as the
+suite, and drops the second of two tests that share class and name.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from typing import Final
+from xml.etree.ElementTree import Element, indent, tostring
+
+from service.formats.shared.graded import GradedSubmission
+from service.formats.shared.markup import element
+from service.formats.shared.part_results import PartResult, distinct_names, part_results
+from service.formats.shared.plain_text import points
+from service.formats.shared.report_format import ReportFormat, Setting
+from service.grading import Verdict
+
+
+def _pieces(submissions: Iterable[GradedSubmission], _: Setting) -> Iterator[bytes]:
+    yield b'<?xml version="1.0" encoding="UTF-8"?>\n<testsuites name="dh-grader">\n'
+    distinct = distinct_names()
+    for submission in submissions:
+        suite = _suite(submission, distinct(submission.name))
+        indent(suite)
+        yield tostring(suite, encoding="utf-8", xml_declaration=False) + b"\n"
+    yield b"</testsuites>\n"
+
+
+def _suite(submission: GradedSubmission, name: str) -> Element:
+    cases = [_case(each, name) for each in part_results(submission)]
+    found = Counter(child.tag for case in cases for child in case)
+    return element(
+        "testsuite",
+        *cases,
+        name=name,
+        tests=str(len(cases)),
+        failures=str(found["failure"]),
+        errors=str(found["error"]),
+        skipped="0",
+        time="0",
+    )
+
+
+def _case(result: PartResult, suite: str) -> Element:
+    case = element("testcase", classname=suite, name=result.name, time="0")
+    if not result.passed:
+        case.append(_failure(result))
+    return case
+
+
+def _failure(result: PartResult) -> Element:
+    """What was wrong; an error where the part could not be read and so was not judged."""
+    is_unread = result.verdict is Verdict.UNREADABLE
+    earned = points(result.points, result.max_points)
+    failure = element(
+        "error" if is_unread else "failure",
+        message=f"{result.verdict.value}, {earned} points",
+        type=result.verdict.value,
+    )
+    failure.text = "\n".join([f"{earned} points", *result.lines()])
+    return failure
+
+
+FORMAT: Final = ReportFormat(_pieces, for_students=True)

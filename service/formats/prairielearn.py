@@ -1,0 +1,51 @@
+"""The ``results.json`` of a PrairieLearn external grader.
+
+Source: https://prairielearn.readthedocs.io/en/latest/externalGrading/, "Grading results". What
+cannot be read is not gradable there: it costs no attempt.
+"""
+
+from typing import Any, Final
+
+from service.formats.shared.graded import GradedSubmission
+from service.formats.shared.json_document import json_document
+from service.formats.shared.part_results import PartResult, part_results
+from service.formats.shared.plain_text import percent, points
+from service.formats.shared.report_format import ReportFormat, Setting, single
+
+
+def _document(submission: GradedSubmission, _: Setting) -> bytes:
+    results = part_results(submission)
+    content = _graded(submission, results) if submission.is_gradable else _not_gradable(results)
+    return json_document(content)
+
+
+def _graded(submission: GradedSubmission, results: list[PartResult]) -> dict[str, Any]:
+    total = points(submission.points, submission.max_points)
+    return {
+        "gradable": True,
+        "score": submission.score,
+        "message": f"{total} points, {percent(submission.score)}",
+        "tests": [_test(each) for each in results],
+    }
+
+
+def _test(result: PartResult) -> dict[str, Any]:
+    return {
+        "name": result.name,
+        "points": result.points,
+        "max_points": result.max_points,
+        "message": "\n".join(result.lines()),
+    }
+
+
+def _not_gradable(results: list[PartResult]) -> dict[str, Any]:
+    """The reasons, each once: one file may leave several parts without a report."""
+    lines = (
+        line if each.report is None else f"{each.name}: {line}"
+        for each in results
+        for line in each.lines()
+    )
+    return {"gradable": False, "score": 0.0, "format_errors": list(dict.fromkeys(lines))}
+
+
+FORMAT: Final = ReportFormat(single(_document), is_single=True, for_students=True)

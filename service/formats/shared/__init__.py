@@ -1,0 +1,1 @@
+"""What several formats share: submissions with their reports, messages in words, escaping."""

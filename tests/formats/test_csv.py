@@ -1,0 +1,50 @@
+import csv
+import io
+
+from tests.formats.submissions import HOSTILE, cases, document
+
+COLUMNS = [
+    "submission", "points", "max_points", "score", "passed", "problem", "messages",
+    "planar-rrr.table", "planar-rrr.pose",
+]  # fmt: skip
+
+
+def read(*names: str, format_name: str = "csv") -> list[list[str]]:
+    text = document(format_name, *(cases()[name] for name in names))
+    return list(csv.reader(io.StringIO(text, newline=""), strict=True))
+
+
+def test_a_line_for_each_submission_and_a_column_for_each_part() -> None:
+    head, right, wrong, empty = read("right", "wrong", "empty")
+    assert head == COLUMNS
+    assert right == ["folder/anna.json", "16", "16", "1", "yes", "", "", "8", "8"]
+    # Worked out by hand in docs/marks.md: the first joint's row is worth 0.421053.
+    assert wrong[1:5] == ["10.789474", "16", "0.674342", "no"]
+    assert wrong[6:] == [
+        "table.quarter_turn table.joint_variable_index pose.sign", "3.789474", "7",
+    ]  # fmt: skip
+    assert empty[1:] == ["0", "16", "0", "no", "", "", "0", "0"]
+
+
+def test_a_file_that_cannot_be_used_has_no_points() -> None:
+    _, unusable = read("unusable")
+    assert unusable[1:5] == ["", "16", "", "no"]
+    assert unusable[5].startswith("is no JSON: =cmd")
+    assert unusable[6:] == ["", "", ""]
+
+
+def test_a_line_stays_a_line_whatever_the_file_is_called() -> None:
+    names = [name for name in cases() if name != "assignment"]
+    lines = read(*names)
+    assert len(lines) == 1 + len(names)
+    text = document("csv", *(cases()[name] for name in names))
+    assert text.count("\r\n") == len(lines)
+    assert "\n" not in text.replace("\r\n", "")
+
+
+def test_no_cell_is_a_formula() -> None:
+    assert HOSTILE.startswith("=")
+    for format_name in ("csv", "gradebook"):
+        for line in read(*cases(), format_name=format_name):
+            for cell in line:
+                assert not cell.lstrip().startswith(("=", "+", "-", "@", "\t", "\r"))

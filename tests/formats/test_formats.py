@@ -1,0 +1,93 @@
+"""What holds for every format: it is found by its name, and no text that it prints is a command."""
+
+import re
+import unicodedata
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from service import formats
+from service.formats import FORMAT_NAMES, report_format
+from service.formats.shared.graded import GradedSubmission
+from service.formats.shared.part_results import distinct_names
+from service.formats.shared.report_format import UnusableSettingError
+from tests.formats.submissions import cases, document, graded, setting
+
+NAMES = {
+    "text", "json", "jsonl", "csv", "gradebook", "html", "gradescope", "classroom50",
+    "prairielearn", "junit", "markdown", "github",
+}  # fmt: skip
+SINGLE = {"gradescope", "classroom50", "prairielearn"}
+FOR_STUDENTS = {*SINGLE, "html", "junit", "markdown", "github"}
+
+
+def test_each_file_is_a_format() -> None:
+    files = {file.stem for file in Path(formats.__file__).parent.glob("*.py")}
+    assert set(FORMAT_NAMES) == files - {"__init__"} == NAMES
+
+
+def test_documents_of_platforms_hold_one_submission_each() -> None:
+    assert {name for name in FORMAT_NAMES if report_format(name).is_single} == SINGLE
+    right, empty = cases()["right"], cases()["empty"]
+    for name in SINGLE:
+        with pytest.raises(UnusableSettingError, match="one submission"):
+            document(name, right, empty)
+        with pytest.raises(UnusableSettingError, match="one submission"):
+            document(name)
+
+
+def test_students_read_what_is_handed_back_to_them() -> None:
+    assert {name for name in FORMAT_NAMES if report_format(name).for_students} == FOR_STUDENTS
+
+
+def commands(line: str) -> Iterator[str]:
+    """What GitHub, Azure and TeamCity take for commands, by their runners' own rules."""
+    if line.lstrip().startswith("::"):
+        yield line
+    yield from re.findall(r"##(?:vso|teamcity|\w*)\[", line)
+
+
+@pytest.mark.parametrize("case", cases())
+@pytest.mark.parametrize("name", sorted(FORMAT_NAMES))
+def test_nothing_that_is_printed_is_a_command_or_a_control(name: str, case: str) -> None:
+    printed = document(name, cases()[case])
+    if name != "text" or case != "unusable":  # its problem is told on standard error
+        assert printed.endswith("\n")
+    assert printed == document(name, cases()[case])
+    kinds = ("Cc", "Cs") if name in ("json", "jsonl") else ("Cc", "Cs", "Cf", "Cn")
+    assert {c for c in printed if unicodedata.category(c) in kinds} <= {"\n", "\r"}
+    assert "\r" not in printed.replace("\r\n", "")
+    if name != "github":
+        assert [found for line in re.split("[\r\n]", printed) for found in commands(line)] == []
+
+
+@pytest.mark.parametrize("name", ["json", "jsonl", "csv", "gradebook", "junit", "text", "html"])
+def test_each_submission_is_written_before_the_next_but_one_is_graded(name: str) -> None:
+    taken = 0
+
+    def many() -> Iterator[GradedSubmission]:
+        nonlocal taken
+        for i in range(50):
+            taken = i
+            yield graded({}, f"{i}.json")
+
+    ahead = 0
+    for written, _ in enumerate(report_format(name).pieces(many(), setting())):
+        ahead = max(ahead, taken - written)
+    assert taken == 49
+    assert ahead <= 1
+
+
+def test_names_of_parts_are_told_apart() -> None:
+    distinct = distinct_names()
+    assert [distinct(name) for name in ("A", "A (2)", "A", "A", "B\n", "B\r")] == [
+        "A", "A (2)", "A (3)", "A (4)", "B\ufffd", "B\ufffd (2)",
+    ]  # fmt: skip
+
+
+def test_the_page_on_formats_names_each() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "formats.md").read_text(encoding="utf-8")
+    table = page[page.index("| format |") : page.index("What holds for all")]
+    assert {name for name in NAMES if f"`{name}`" in table} == NAMES
+    assert {name for name in NAMES if f"--format {name}" in page} == NAMES

@@ -1,0 +1,86 @@
+"""JUnit XML, by the rules of junit-10.xsd (https://github.com/jenkinsci/xunit-plugin) and of GitLab
+(https://docs.gitlab.com/ci/testing/unit_test_reports/, lib/gitlab/ci/parsers/test/junit.rb)."""
+
+from collections.abc import Mapping
+from xml.etree.ElementTree import Element, fromstring
+
+import pytest
+
+from tests.formats.submissions import cases, document
+
+# Of each element: the attributes that it must have, those that it may have, and its children.
+RULES: Mapping[str, tuple[set[str], set[str], set[str]]] = {
+    "testsuites": (set(), {"name", "time", "tests", "failures", "errors"}, {"testsuite"}),
+    "testsuite": (
+        {"name", "tests", "failures", "errors"},
+        {
+            "group",
+            "time",
+            "skipped",
+            "timestamp",
+            "hostname",
+            "id",
+            "package",
+            "file",
+            "log",
+            "url",
+        },
+        {"testsuite", "properties", "testcase", "system-out", "system-err"},
+    ),
+    "testcase": (
+        {"name"},
+        {"time", "classname", "group"},
+        {"skipped", "error", "failure", "system-out", "system-err"},
+    ),
+    "failure": (set(), {"type", "message"}, set()),
+    "error": (set(), {"type", "message"}, set()),
+}
+
+
+def check(element: Element) -> None:
+    needed, allowed, children = RULES[element.tag]
+    assert needed <= set(element.attrib) <= needed | allowed
+    for child in element:
+        assert child.tag in children
+        check(child)
+
+
+def read(*names: str) -> Element:
+    root = fromstring(document("junit", *(cases()[name] for name in names)))
+    assert root.tag == "testsuites"
+    check(root)
+    return root
+
+
+def test_every_document_keeps_the_rules() -> None:
+    root = read(*cases())
+    keys = [(case.get("classname"), case.get("name")) for case in root.iter("testcase")]
+    # GitLab drops the second of two with the same class and name.
+    assert len(set(keys)) == len(keys)
+    for suite in root:
+        assert int(suite.get("tests", "")) == len(suite.findall("testcase")) > 0
+        assert int(suite.get("failures", "")) == len(suite.findall("testcase/failure"))
+        assert int(suite.get("errors", "")) == len(suite.findall("testcase/error"))
+        # The actions of GitHub read numbers here.
+        assert {float(each.get("time", "nan")) for each in (suite, *suite)} == {0.0}
+
+
+def test_a_right_part_passes_and_a_wrong_one_fails() -> None:
+    [suite] = read("right")
+    assert [list(case) for case in suite] == [[], []]
+    [suite] = read("wrong")
+    table = suite[0][0]
+    assert (table.tag, table.get("type")) == ("failure", "partial")
+    assert table.get("message") == "partial, 3.79 / 8 points"
+    # GitLab shows the text alone.
+    assert str(table.text).startswith("3.79 / 8 points\n✗ row 2 alpha: ")
+
+
+@pytest.mark.parametrize("case", ["unreadable", "unusable"])
+def test_what_cannot_be_read_is_an_error(case: str) -> None:
+    [suite] = read(case)
+    assert [[child.tag for child in each] for each in suite] == [["error"], ["error"]]
+
+
+def test_no_submission_is_a_document_too() -> None:
+    assert len(read()) == 0
