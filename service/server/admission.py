@@ -2,6 +2,7 @@
 
 A grading keeps the process busy until it is done. What arrives meanwhile must be heard before the
 next is begun: else a client that sends on many connections at once is served on all of them first.
+A request of many gradings gives way after each.
 Looking at the sockets after each small request would cost as much as the request, so these go on
 for a slice of time.
 """
@@ -14,9 +15,11 @@ from functools import partial
 from time import thread_time
 from typing import Any, Final
 
+from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.api.problems import ProblemError
+from service.api.turns import TURN
 from service.server.crowd import client_key
 from service.server.fair_queue import FairQueue, Ticket
 from service.server.limits import HEALTH
@@ -44,20 +47,26 @@ class Metered:
 
     def __init__(self, awaitable: Awaitable[None]) -> None:
         self._awaitable = awaitable
-        self.seconds = 0.0
+        self._seconds = 0.0
+        self._began: float | None = None
+
+    @property
+    def seconds(self) -> float:
+        """The time so far, that of an unfinished step included."""
+        return self._seconds + (0.0 if self._began is None else thread_time() - self._began)
 
     def __await__(self) -> Generator[Any, Any, None]:
         """Run the steps."""
         steps = self._awaitable.__await__()
         resume: Callable[[], Any] = partial(next, steps)
         while True:
-            began = thread_time()
+            self._began = thread_time()
             try:
                 awaited = resume()
             except StopIteration:
                 return
             finally:
-                self.seconds += thread_time() - began
+                self._seconds, self._began = self.seconds, None
             try:
                 value = yield awaited
             except BaseException as error:  # noqa: BLE001 - handed on to where it belongs
@@ -93,7 +102,7 @@ class FairAdmission:
             return
         host, port = scope.get("client") or ("", 0)
         ticket = Ticket(client_key(host), port, len(body))
-        if len(self._queue) or self._spent >= SLICE or self._queue.owing(ticket):
+        if self._others_first(ticket):
             refusal = self._refusal(ticket)
             if refusal is not None:
                 body = b""
@@ -104,14 +113,35 @@ class FairAdmission:
             if ended and _gone(receive):
                 return
         self._queue.begin(ticket)
-        metered = Metered(self.app(scope, _again(body, ended, receive), send))
+        charged = 0.0
+
+        async def turn() -> None:
+            nonlocal charged
+            charged += self._charge(ticket, metered.seconds - charged)
+            if self._others_first(ticket):
+                await self._turn(ticket)
+                if ended and _gone(receive):
+                    raise ClientDisconnect
+            self._queue.begin(ticket)
+
+        inner = {**scope, TURN: turn}
+        metered = Metered(self.app(inner, _again(body, ended, receive), send))
         try:
             await metered
         finally:
-            self._spent += metered.seconds
-            self._look_soon()
-            self._queue.charge(ticket, metered.seconds)
-            self._mean += _RECENT * (metered.seconds - self._mean)
+            self._charge(ticket, metered.seconds - charged)
+
+    def _others_first(self, ticket: Ticket) -> bool:
+        """Whether others wait, have to be heard, or have had less."""
+        return len(self._queue) > 0 or self._spent >= SLICE or self._queue.owing(ticket)
+
+    def _charge(self, ticket: Ticket, seconds: float) -> float:
+        """Charge what a request, or one of its parts, has taken; return it."""
+        self._spent += seconds
+        self._look_soon()
+        self._queue.charge(ticket, seconds)
+        self._mean += _RECENT * (seconds - self._mean)
+        return seconds
 
     def _refusal(self, ticket: Ticket) -> ProblemError | None:
         """The problem of a request for which there is no place in the queue, or None."""

@@ -8,7 +8,9 @@ from collections.abc import Callable, Coroutine
 from typing import Any
 
 import pytest
+from starlette.requests import ClientDisconnect, Request
 
+from service.api.turns import give_way
 from service.server import admission
 from service.server.admission import OF_ALL, OF_ONE, SLICE, FairAdmission, Metered
 from service.submissions.strict_json import MAX_BODY_SIZE
@@ -201,6 +203,50 @@ def test_whoever_owes_waits_until_others_are_heard_even_where_nobody_waits() -> 
         await passes(5)
         await asyncio.gather(*begin(app, Client("attacker"), Client("honest")))
         assert inner.served == ["attacker", "honest", "attacker"]
+
+    run(story())
+
+
+class ManyGradings(Application):
+    """Gives way after each of the gradings that an attacker's request asks for."""
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        if scope["client"][0] == "attacker":
+            for _ in range(10):
+                self.served.append("part")
+                busy(0.02)
+                await give_way(Request(scope))
+        await super().__call__(scope, receive, send)
+
+
+def test_a_request_of_many_costly_gradings_waits_after_each_for_many_small_ones() -> None:
+    async def story() -> None:
+        inner = ManyGradings()
+        app = FairAdmission(inner)
+        tasks = begin(app, *(Client("attacker", port) for port in range(4)))
+        await passes(3)
+        tasks += begin(app, *(Client("honest", port) for port in range(100)))
+        await asyncio.gather(*tasks)
+        first = inner.served.index("honest")
+        assert first <= 2
+        assert set(inner.served[first : first + 100]) == {"honest"}
+        assert inner.served.count("part") == 40
+        assert inner.served.count("attacker") == 4
+
+    run(story())
+
+
+def test_a_request_of_many_gradings_is_given_up_with_its_client() -> None:
+    async def story() -> None:
+        inner = ManyGradings()
+        app = FairAdmission(inner)
+        client = Client("attacker")
+        tasks = begin(app, client)
+        await passes(1)
+        client.gone.set()
+        [error] = await asyncio.gather(*tasks, return_exceptions=True)
+        assert isinstance(error, ClientDisconnect)
+        assert inner.served == ["part"]
 
     run(story())
 
