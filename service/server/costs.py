@@ -15,6 +15,9 @@ from service.server.fair_queue import Ticket
 # A request is costly that takes so many times the median of the others. A wrong table with its
 # diagnosis takes five to twenty times what a right one takes, the costliest body a hundred times.
 _COSTLY: Final = 15.0
+# But no request is that takes less, in seconds of processor time: somebody who asks for nothing but
+# trifles has no say in what is costly.
+_LEAST_COSTLY: Final = 0.010
 # The median until there is one, in seconds of processor time, and its step with each request.
 _FIRST_MEDIAN: Final = 0.001
 _STEP: Final = 1.02
@@ -27,7 +30,7 @@ _LONGEST_REST: Final = 2.0
 
 
 class Costs:
-    """The mean processor time of late, by connection and by length, and the median of all."""
+    """The mean processor time of late, by connection and by length; the median of ordinary ones."""
 
     def __init__(self) -> None:
         self._means: OrderedDict[Hashable, float] = OrderedDict()
@@ -35,16 +38,19 @@ class Costs:
 
     def is_costly(self, seconds: float) -> bool:
         """Whether a request is costly that takes so much time."""
-        return seconds > _COSTLY * self._median
+        return seconds > self._bound
+
+    @property
+    def _bound(self) -> float:
+        return max(_COSTLY * self._median, _LEAST_COSTLY)
 
     def rest(self, seconds: float) -> float:
         """How many seconds after another costly request one may come that will take so much time.
 
-        For one that is hardly costly these are half as many again as it takes, for one that takes
-        twice as much six times as many.
+        For one that is hardly costly these are three times as many as it takes, for one that takes
+        twice as much twelve times as many.
         """
-        excess = seconds / (_COSTLY * self._median)
-        return min(1.5 * seconds * excess**2, _LONGEST_REST)
+        return min(3.0 * seconds * (seconds / self._bound) ** 2, _LONGEST_REST)
 
     def expected(self, ticket: Ticket) -> float:
         """Seconds that a request is likely to take; 0 where nothing is known."""

@@ -94,16 +94,20 @@ def costly_pose(number: int) -> dict[str, Any]:
     return {"answers": {"pose": cells}}
 
 
+def _written(body: dict[str, Any]) -> bytes:
+    return json.dumps(body, ensure_ascii=False).encode()
+
+
 def one_costly(number: int) -> bytes:
     """One costly submission as it goes over the wire."""
-    return request(GRADE, json.dumps(costly_pose(number)).encode())
+    return request(GRADE, _written(costly_pose(number)))
 
 
 def many_costly(number: int) -> bytes:
     """As many costly submissions as one request may hold."""
     numbers = range(MANY * number, MANY * (number + 1))
     submissions = [{"exercise": EXERCISE, **costly_pose(i)} for i in numbers]
-    return request("/v1/grade", json.dumps({"submissions": submissions}).encode())
+    return request("/v1/grade", _written({"submissions": submissions}))
 
 
 def costly(
