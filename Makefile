@@ -57,7 +57,7 @@ bench: $(dev) ## measure against the budgets
 fuzz: $(dev) ## read 100,000 hostile texts (COUNT=, SEED=)
 	$(python) -m tests.fuzz --count "$(COUNT)" --seed "$(SEED)"
 
-attack: $(dev) ## attack a real process for ten minutes, and see that honest clients are served
+attack: $(dev) ## attack a real process for a quarter of an hour, and see that honest clients are served
 	$(python) -m tests.attack
 
 campaign: $(dev) ## grade tables in random frames, TABLES= of each robot and convention (SEED=)

@@ -26,12 +26,16 @@ from tests.attack.floods import (
     many_costly,
 )
 from tests.attack.honest import Waits, watched
+from tests.attack.interface import faults
 from tests.server.raw import HEALTH, Service, service
 
 MEMORY = 100.0
 HEALTH_SECONDS = 1.0
 END_SECONDS = 10.0
 P50, P99 = 3.0, 5.0
+# How many requests schemathesis makes up for each operation.
+EXAMPLES = 300
+INTERFACE = "requests made up from the document of the interface"
 # Seconds between an answer and the next submission of a client that does not submit in a row.
 PAUSE = 0.1
 HONEST_ADDRESS = "127.0.0.2"
@@ -104,6 +108,10 @@ def attack(seconds: float, scale: float, only: str = "") -> list[str]:
             if each.compared:
                 found = _longer(submissions, quiet[each.pause])
                 broken += [f"{name}: {what}" for what in found]
+        if only in INTERFACE:
+            told = list(faults(running, Path(folder), max(1, int(EXAMPLES * scale))))
+            print(f"{INTERFACE}: {'faults' if told else 'no fault'}", flush=True)  # noqa: T201
+            broken += told
         began = time.monotonic()
         code = running.end()
         took = time.monotonic() - began
