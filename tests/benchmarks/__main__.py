@@ -5,6 +5,7 @@ checkout, both measured in turn; exit with 1 where a line is slower here by more
 """
 
 import argparse
+import os
 import re
 import tempfile
 from pathlib import Path
@@ -126,6 +127,14 @@ def print_budgets(*, with_server: bool) -> None:
                 f"{share:.0%} of trivial",
                 "25 %, aim 40 %",
                 "ok" if share >= 0.25 else "under",
+            )
+        one = server.graded_per_second(1)
+        for workers in (2, 3):
+            many = server.graded_per_second(workers)
+            printed.add_row(
+                f"graded POSTs with {workers} workers, on {os.cpu_count()} cores",
+                f"{many:.0f} /s",
+                f"{many / one:.1f} × one worker",
             )
         first = min(server.first_answer_seconds() for _ in range(3))
         printed.add_row(

@@ -143,6 +143,23 @@ def test_a_worker_that_is_lost_is_replaced_and_all_end_in_good_order(tmp_path: P
         check_end(running)
 
 
+def connections(process: int) -> int:
+    """How many sockets a process has open."""
+    files = Path(f"/proc/{process}/fd").iterdir()
+    return sum(str(file.readlink()).startswith("socket:") for file in files)
+
+
+def test_workers_share_the_connections_out(tmp_path: Path) -> None:
+    with service(tmp_path, "--workers", "2") as running, ExitStack() as lines:
+        until(lambda: running.log.count("startup complete") == 2)
+        before = {worker: connections(worker) for worker in workers(running)}
+        for _ in range(40):
+            lines.enter_context(running.connect(HEALTH)).recv(1)
+        more = [connections(worker) - had for worker, had in before.items()]
+        assert sum(more) == 40
+        assert min(more) >= 10
+
+
 def test_workers_end_when_nobody_looks_after_them(tmp_path: Path) -> None:
     with service(tmp_path, "--workers", "2") as running:
         until(lambda: running.log.count("startup complete") == 2)
