@@ -114,7 +114,7 @@ def load_settings(**options: Any) -> Settings:
         return Settings(**{name: value for name, value in options.items() if value is not None})
     except ValidationError as error:
         lines = [
-            f"{PREFIX}{str(detail['loc'][0]).upper()}: {detail['msg']}"
+            f"{PREFIX}{str(detail['loc'][0]).upper()}: {detail['msg'].removeprefix('Value error, ')}"
             for detail in error.errors(include_url=False)
         ]
         raise SettingsError("\n".join(lines)) from error

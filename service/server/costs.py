@@ -54,12 +54,12 @@ class Costs:
 
     def expected(self, ticket: Ticket) -> float:
         """Seconds that a request is likely to take; 0 where nothing is known."""
-        connection, length = _keys(ticket)
-        return self._means.get(connection, self._means.get(length, 0.0))
+        mean = self._means.get(_connection(ticket))
+        return self._means.get(_length(ticket), 0.0) if mean is None else mean
 
     def note(self, ticket: Ticket, seconds: float, *, ordinary: bool) -> None:
         """Note what a request has taken; the ``ordinary`` ones say what is costly."""
-        for key in _keys(ticket):
+        for key in (_connection(ticket), _length(ticket)):
             mean = self._means.pop(key, seconds)
             self._means[key] = mean + _RECENT * (seconds - mean)
         while len(self._means) > _KEPT:
@@ -68,7 +68,10 @@ class Costs:
             self._median *= _STEP if seconds > self._median else 1 / _STEP
 
 
-def _keys(ticket: Ticket) -> tuple[Hashable, Hashable]:
-    """The connection and the length as keys that are never equal."""
-    length = round(_ALIKE * log2(1 + ticket.size))
-    return (ticket.client, ticket.connection), (ticket.client, "length", length)
+def _connection(ticket: Ticket) -> Hashable:
+    return ticket.client, ticket.connection
+
+
+def _length(ticket: Ticket) -> Hashable:
+    """A key that lengths share that are alike; no connection has it."""
+    return ticket.client, "length", round(_ALIKE * log2(1 + ticket.size))
