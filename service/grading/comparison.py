@@ -9,7 +9,7 @@ as rounding may have moved it, once for all samples, so that the entry is what w
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from enum import IntEnum
 
 import numpy as np
@@ -31,6 +31,12 @@ from service.kinematics.transforms import Numbers
 MAX_DECIMALS = 16
 MAX_SHARED_DECIMALS = 32
 PROJECTIONS = 200
+# After so many projections a plane is looked for that keeps them from meeting.
+SEPARATIONS = 8
+# What counts as 0 in its direction, and how far apart what it separates must be, in the largest
+# unit.
+FLAT = 1e-9
+SEPARATED = 1e-3
 # Projections that go on beyond the bounds by nearly as much as they came meet sooner (Motzkin).
 RELAXATION = 1.9
 # What an unknown must at least do to the errors, for its size and relative to those that do most,
@@ -41,6 +47,8 @@ LEAST_EFFECTS = (5e-2, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-9)
 LEAST_STEP = 1e-6
 # A shift that is further out of bounds than this share of the first error will not come back.
 MISSED = 0.1
+# An error so many times as large as all shifts together undo is not made by rounding.
+OUT_OF_REACH = 10.0
 # How far outside a shift may lie, relative to the tolerance of the errors.
 FLOATING_SHIFT = 1e-3
 # Of a number with three figures rounding leaves off up to a hundredth.
@@ -116,15 +124,23 @@ def is_rounded(
     angle: bool = False,
 ) -> bool:
     """Whether an entry would be the expected one, ``(samples,)``, but for its rounded decimals."""
-    if not expression.has_decimal:
+    if not expression.has_decimal or not 0 < len(decimals_of(expression).units) <= MAX_DECIMALS:
         return False
+    # A table is compared several times, and most of its cells with the same numbers.
+    return samples.cached(
+        (expression, expected.tobytes(), scale, angle),
+        lambda: _is_rounded(expression, expected, scale, samples, angle),
+    )
+
+
+def _is_rounded(
+    expression: Expression, expected: Numbers, scale: float, samples: Samples, angle: bool
+) -> bool:
     decimals = decimals_of(expression)
-    count = len(decimals.units)
-    if not 0 < count <= MAX_DECIMALS:
-        return False
+    symbol_values = samples.values_for(expression)
 
     def errors(shifts: Numbers) -> Numbers:
-        values = decimals.shifted(shifts, samples.values)
+        values = decimals.shifted(shifts, symbol_values)
         return np.asarray(difference(values, expected[None], angle))
 
     tolerance = float(_tolerance(expected, scale))
@@ -180,7 +196,8 @@ def rounding_slack(expression: Expression, samples: Samples) -> float:
     if not 0 < count <= MAX_DECIMALS:
         return 0.0
     steps = np.eye(count) / 2
-    rates = decimals.shifted(steps, samples.values) - decimals.shifted(-steps, samples.values)
+    values = samples.values_for(expression)
+    rates = decimals.shifted(steps, values) - decimals.shifted(-steps, values)
     return float(np.nan_to_num(np.abs(rates).sum(axis=0).max()))
 
 
@@ -236,6 +253,8 @@ def fitted_unknowns(
             return unknowns
         if step == 0:
             first = largest
+            if count == len(sizes) and _is_out_of_reach(error, rates):
+                return None
         elif step > 1 and (largest > first / 2 or beyond > MISSED * first):
             return None
         # The singular values are those of the triangle, which is far smaller.
@@ -257,8 +276,7 @@ class SharedDecimals:
 
     def __init__(self, expressions: Sequence[Expression | None], samples: Samples) -> None:
         """``expressions`` are those of the entries, None where there is none."""
-        self._samples = samples
-        self._parts: list[tuple[int, Decimals, slice]] = []
+        self._parts: list[tuple[int, Decimals, slice, Mapping[str, Numbers]]] = []
         self.count = 0
         self.units = np.zeros(0)
         for i, expression in enumerate(expressions):
@@ -267,7 +285,7 @@ class SharedDecimals:
             decimals = decimals_of(expression)
             if 0 < len(decimals.units) <= MAX_DECIMALS:
                 places = slice(self.count, self.count + len(decimals.units))
-                self._parts.append((i, decimals, places))
+                self._parts.append((i, decimals, places, samples.values_for(expression)))
                 self.count = places.stop
                 self.units = np.append(self.units, decimals.units)
         if self.count > MAX_SHARED_DECIMALS:
@@ -279,8 +297,8 @@ class SharedDecimals:
         ``shifts`` is ``(K, count)``.
         """
         moved = np.repeat(values[None], len(shifts), axis=0)
-        for i, decimals, places in self._parts:
-            moved[:, i] = decimals.shifted(shifts[:, places], self._samples.values)
+        for i, decimals, places, symbol_values in self._parts:
+            moved[:, i] = decimals.shifted(shifts[:, places], symbol_values)
         return moved
 
 
@@ -290,18 +308,34 @@ def _nearest_inside(unknowns: Numbers, determined: Numbers, bounds: Numbers) -> 
     ``bounds`` ``(2, count)`` are the lower and the upper ones. ``determined`` ``(N, N)`` projects
     unknowns on those that have an effect. Of two decimals of which only the sum counts, one alone
     may not make up for both. Projections on both sets in turn meet in their intersection (von
-    Neumann, Bregman).
+    Neumann, Bregman), or end where a plane lies between the two: then there are none.
     """
     (lower, upper), count = bounds, bounds.shape[1]
     effect = determined @ unknowns
-    for _ in range(PROJECTIONS):
-        clipped = np.clip(unknowns[:count], lower, upper)
-        if (clipped == unknowns[:count]).all():
+    for step in range(PROJECTIONS):
+        outside = unknowns[:count] - np.minimum(np.maximum(unknowns[:count], lower), upper)
+        if not outside.any():
+            break
+        if step % SEPARATIONS == 1 and _is_between(determined[:count].T @ outside, effect, bounds):
             break
         inside = unknowns.copy()
-        inside[:count] += RELAXATION * (clipped - unknowns[:count])
+        inside[:count] -= RELAXATION * outside
         unknowns = inside - determined @ inside + effect
     return unknowns
+
+
+def _is_out_of_reach(error: Numbers, rates: Numbers) -> bool:
+    """Whether shifts alone, each as large as it may be, leave an error far from 0."""
+    return bool((np.abs(error) > OUT_OF_REACH * CUT_OFF * np.abs(rates).sum(axis=1)).any())
+
+
+def _is_between(normal: Numbers, effect: Numbers, bounds: Numbers) -> bool:
+    """Whether no unknowns within the bounds reach as far along ``normal`` as the effect demands."""
+    count, size = bounds.shape[1], math.sqrt(normal @ normal)
+    if np.abs(normal[count:]).max(initial=0.0) > FLAT * size:
+        return False
+    reached = np.maximum(normal[:count] * bounds[0], normal[:count] * bounds[1]).sum()
+    return bool(normal @ effect - reached > SEPARATED * bounds[1].max() * size)
 
 
 def _tolerance(expected: Numbers, scale: ArrayLike) -> Numbers:

@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from service.catalogue import Exercise
+from service.expressions import Expression
 from service.kinematics.transforms import Numbers
 
 HALF = 16
@@ -77,6 +78,11 @@ class Samples:
         drawn = next(iter(self.values.values())).tobytes().hex()
         more = {name: 0.5 + _uniform(name + drawn, self.count) for name in sorted(names)}
         return Samples({**self.values, **more}, self.in_degrees)
+
+    def values_for(self, expression: Expression) -> Mapping[str, Numbers]:
+        """The values of all symbols, with those in it that the robot does not have."""
+        absent = expression.symbols.difference(self.values)
+        return self.with_names(absent).values if absent else self.values
 
     def renamed(self, meanings: Mapping[str, str]) -> "Samples":
         """The same samples with each symbol of ``meanings`` standing for another one."""

@@ -7,6 +7,7 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import Severity, Verdict
+from tests.grading.support.robots import EXACT, STANFORD
 from tests.grading.support.submitting import (
     cell,
     codes,
@@ -234,3 +235,13 @@ def test_more_decimals_than_are_fitted_are_taken_as_written(
     report = graded_table(catalogue["planar-rr"], rows)
     assert report.verdict is not Verdict.CORRECT
     assert report.points < report.max_points
+
+
+def test_decimals_beside_the_variable_of_a_joint_that_slides(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    """Joint 3 of the Stanford arm slides, so that no value of theta3 is drawn for the robot."""
+    rows = [list(row) for row in EXACT.rows(STANFORD)]
+    rows[2][3] = "theta3 + 0.127"
+    report = graded_table(catalogue["stanford-arm"], rows)
+    assert cell(report, "3", "theta").verdict is Verdict.INCORRECT

@@ -269,6 +269,8 @@ CHECKS = (
 )
 # The codes of a joint variable in the column that stays constant.
 MISPLACED = (joint_variable_absent.__name__, joint_variable_column.__name__)
+# The work of one wrong cell, as the budget counts it.
+CELL_WORK = 2.5
 OF_DISTANCE = (distance_left_out, distance_extra)
 OF_ANGLE = (degrees_as_radians, radians_as_degrees, quarter_turn, half_turn)
 MISCONCEPTIONS = (sign, *OF_DISTANCE, *OF_ANGLE)
@@ -301,12 +303,16 @@ def _by_joint(counts: tuple[int, ...] | None, joints: tuple[Joint, ...]) -> dict
 
 
 def diagnose_cells(judgement: Judgement, grading: Grading) -> dict[CellIndex, Finding]:
-    """The finding on each wrong cell that was read, by row and column."""
+    """The finding on each wrong cell that was read, by row and column.
+
+    Once the work budget is used up, no more are found.
+    """
     written = [
         (i, column, judged, row.handed_in[column], expression)
         for i, column in np.argwhere(judgement.matches < Match.ROUNDED).tolist()
         if (row := (judged := judgement.rows[i]).row) is not None
         and (expression := row.entries[column].expression) is not None
+        and grading.affords(CELL_WORK)
     ]
     if not written:
         return {}
