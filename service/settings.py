@@ -114,10 +114,14 @@ def load_settings(**options: Any) -> Settings:
         return Settings(**{name: value for name, value in options.items() if value is not None})
     except ValidationError as error:
         lines = [
-            f"{PREFIX}{str(detail['loc'][0]).upper()}: {detail['msg']}"
+            f"{PREFIX}{str(detail['loc'][0]).upper()}: {_reason(detail['msg'])}"
             for detail in error.errors(include_url=False)
         ]
         raise SettingsError("\n".join(lines)) from error
+
+
+def _reason(message: str) -> str:
+    return message.removeprefix("Value error, ")
 
 
 def _unknown() -> Iterator[str]:

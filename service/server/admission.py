@@ -2,8 +2,12 @@
 
 A grading keeps the process busy until it is done. What arrives meanwhile must be heard before the
 next is begun: else a client that sends on many connections at once is served on all of them first.
-Looking at the sockets after each small request would cost as much as the request, so these go on
-for a slice of time.
+A request of many gradings gives way after each. Looking at the sockets after each small request
+would cost as much as the request, so these go on for a slice of time.
+
+Requests that are likely to be costly have a queue of their own. While there are ordinary ones, the
+process rests from costly ones after each, by far longer than it took: so few of the others find it
+busy, whether they come in a row or now and then, from the same address or not.
 """
 
 import asyncio
@@ -14,9 +18,12 @@ from functools import partial
 from time import thread_time
 from typing import Any, Final
 
+from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.api.problems import ProblemError
+from service.api.turns import TURN
+from service.server.costs import Costs
 from service.server.crowd import client_key
 from service.server.fair_queue import FairQueue, Ticket
 from service.server.limits import HEALTH
@@ -34,6 +41,8 @@ _CALLED: Final = 8
 # How many small answers, on health and refusals, are given each time the sockets are looked at. On
 # a thousand connections, they alone would keep the process busy.
 SMALL: Final = 4
+# Seconds without an ordinary request after which costly ones need not rest.
+_CALM: Final = 1.0
 # The share of the last request in the mean time that a request takes.
 _RECENT: Final = 0.02
 _LONGEST_RETRY: Final = 30
@@ -44,20 +53,26 @@ class Metered:
 
     def __init__(self, awaitable: Awaitable[None]) -> None:
         self._awaitable = awaitable
-        self.seconds = 0.0
+        self._seconds = 0.0
+        self._began: float | None = None
+
+    @property
+    def seconds(self) -> float:
+        """The time so far, that of an unfinished step included."""
+        return self._seconds + (0.0 if self._began is None else thread_time() - self._began)
 
     def __await__(self) -> Generator[Any, Any, None]:
         """Run the steps."""
         steps = self._awaitable.__await__()
         resume: Callable[[], Any] = partial(next, steps)
         while True:
-            began = thread_time()
+            self._began = thread_time()
             try:
                 awaited = resume()
             except StopIteration:
                 return
             finally:
-                self.seconds += thread_time() - began
+                self._seconds, self._began = self.seconds, None
             try:
                 value = yield awaited
             except BaseException as error:  # noqa: BLE001 - handed on to where it belongs
@@ -71,7 +86,11 @@ class FairAdmission:
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
-        self._queue = FairQueue()
+        self._costs = Costs()
+        self._ordinary, self._costly = FairQueue(), FairQueue()
+        # The times of the loop at which a costly one ended, and an ordinary one came.
+        self._costly_ended = self._ordinary_came = float("-inf")
+        self._alarm: asyncio.TimerHandle | None = None
         # Processor time and small answers since the sockets were looked at; whether they will be.
         self._spent = 0.0
         self._small = 0
@@ -93,50 +112,89 @@ class FairAdmission:
             return
         host, port = scope.get("client") or ("", 0)
         ticket = Ticket(client_key(host), port, len(body))
-        if len(self._queue) or self._spent >= SLICE or self._queue.owing(ticket):
+        queue = self._queue(ticket)
+        if self._others_first(queue):
             refusal = self._refusal(ticket)
             if refusal is not None:
                 body = b""
                 await self._small_turn()
                 await refusal.response(scope["path"])(scope, receive, send)
                 return
-            await self._turn(ticket)
+            queue = await self._turn(ticket)
             if ended and _gone(receive):
                 return
-        self._queue.begin(ticket)
-        metered = Metered(self.app(scope, _again(body, ended, receive), send))
+        queue.begin(ticket)
+        charged = 0.0
+
+        async def turn() -> None:
+            nonlocal charged, queue
+            charged += self._charge(queue, ticket, metered.seconds - charged)
+            queue = self._queue(ticket)
+            if self._others_first(queue):
+                queue = await self._turn(ticket)
+                if ended and _gone(receive):
+                    raise ClientDisconnect
+            queue.begin(ticket)
+
+        inner = {**scope, TURN: turn}
+        metered = Metered(self.app(inner, _again(body, ended, receive), send))
         try:
             await metered
         finally:
-            self._spent += metered.seconds
-            self._look_soon()
-            self._queue.charge(ticket, metered.seconds)
-            self._mean += _RECENT * (metered.seconds - self._mean)
+            self._charge(queue, ticket, metered.seconds - charged)
+
+    def _queue(self, ticket: Ticket) -> FairQueue:
+        """The queue of a request that has come."""
+        expected = self._costs.expected(ticket)
+        if self._costs.is_costly(expected):
+            ticket.expected = expected
+            return self._costly
+        ticket.expected = 0.0
+        self._ordinary_came = asyncio.get_running_loop().time()
+        return self._ordinary
+
+    def _others_first(self, queue: FairQueue) -> bool:
+        """Whether others wait, or have to be heard first."""
+        return len(self._ordinary) > 0 or self._spent >= SLICE or queue is self._costly
+
+    def _charge(self, queue: FairQueue, ticket: Ticket, seconds: float) -> float:
+        """Charge what a request, or one of its gradings, has taken; return it."""
+        self._spent += seconds
+        self._look_soon()
+        queue.charge(ticket, seconds)
+        self._costs.note(ticket, seconds, ordinary=queue is self._ordinary)
+        if queue is self._costly or self._costs.is_costly(seconds):
+            self._costly_ended = asyncio.get_running_loop().time()
+        self._mean += _RECENT * (seconds - self._mean)
+        return seconds
 
     def _refusal(self, ticket: Ticket) -> ProblemError | None:
-        """The problem of a request for which there is no place in the queue, or None."""
-        queue = self._queue
-        requests, size = queue.of(ticket.client)
+        """The problem of a request for which there is no place in the queues, or None."""
+        queues = (self._ordinary, self._costly)
+        requests, size = map(sum, zip(*(queue.of(ticket.client) for queue in queues), strict=True))
         if requests >= OF_ONE[0] or size + ticket.size > OF_ONE[1]:
             return too_many(self._seconds(requests))
-        if len(queue) >= OF_ALL[0] or queue.size + ticket.size > OF_ALL[1]:
-            return too_busy(self._seconds(len(queue)))
+        requests = sum(map(len, queues))
+        if requests >= OF_ALL[0] or sum(q.size for q in queues) + ticket.size > OF_ALL[1]:
+            return too_busy(self._seconds(requests))
         return None
 
     def _seconds(self, requests: int) -> int:
         return min(max(1, math.ceil(requests * self._mean)), _LONGEST_RETRY)
 
-    async def _turn(self, ticket: Ticket) -> None:
-        """Wait until it is this request's turn and there is time."""
-        again = False
+    async def _turn(self, ticket: Ticket) -> FairQueue:
+        """Wait until it is this request's turn and there is time; the queue that it came from."""
+        before = None
         while True:
+            # Others like it may have been costly meanwhile.
+            queue = self._queue(ticket)
             ticket.turn = asyncio.get_running_loop().create_future()
-            self._queue.push(ticket, again=again)
+            queue.push(ticket, again=queue is before)
             self._look_soon()
             await ticket.turn
-            if self._spent < SLICE:
-                return
-            again = True
+            if self._spent < SLICE and (queue is self._costly or queue is self._queue(ticket)):
+                return queue
+            before = queue
 
     async def _small_turn(self) -> None:
         """Wait, where too many small answers are asked for at once."""
@@ -159,16 +217,33 @@ class FairAdmission:
     def _next(self) -> None:
         """Call up those whose turn it is; who finds no time waits again."""
         self._looking, self._spent, self._small = False, 0.0, 0
-        called = 0
-        while len(self._queue) and called < _CALLED:
-            if called and self._queue.owing(self._queue.next()):
-                # Others may have arrived by the time that the first is done.
-                break
-            called += _wake(self._queue.pop().turn)
+        called = self._call_costly()
+        if not called:
+            while len(self._ordinary) and called < _CALLED:
+                called += _wake(self._ordinary.pop().turn)
         while self._small_ones and self._small < SMALL:
             self._small += _wake(self._small_ones.popleft())
         if called or self._small:
             self._look_soon()
+
+    def _call_costly(self) -> int:
+        """Call up a costly request if its time has come; how many are called up."""
+        called = 0
+        loop = asyncio.get_running_loop()
+        while len(self._costly) and not called:
+            time = self._costly_ended + self._costs.rest(self._costly.next().expected)
+            if not len(self._ordinary):
+                time = min(time, self._ordinary_came + _CALM)
+            if time > loop.time():
+                if self._alarm is None:
+                    self._alarm = loop.call_at(time, self._ring)
+                break
+            called += _wake(self._costly.pop().turn)
+        return called
+
+    def _ring(self) -> None:
+        self._alarm = None
+        self._look_soon()
 
 
 def _wake(turn: asyncio.Future[None]) -> bool:

@@ -1,22 +1,18 @@
 """Who is next, of the requests that wait.
 
 Start-time fair queueing (Goyal, Vin and Cheng, 1996) between clients, and below each client between
-its connections: always the one that has had the least. What it has had is the processor time of its
-requests, and a request that takes long weighs more than its time: whoever sends costly ones leaves
-room for hundreds of small ones between any two.
+its connections: always the one that has had the least processor time.
 """
 
+import heapq
 from collections import deque
-from collections.abc import Hashable, Iterable
-from dataclasses import dataclass, field
+from collections.abc import Hashable
+from dataclasses import dataclass
 from typing import Any, Final
 
-# Seconds of processor time. A request that takes longer weighs more, by as many times as it does.
-LIGHT: Final = 0.005
-# What any request weighs at least: so clients of small ones come in turn, too.
+# What any request counts at least, in seconds of processor time: so clients of small ones come in
+# turn, too.
 LEAST: Final = 0.0001
-# The weight of the heaviest, so that nobody waits for ever: one second of each of the others.
-HEAVIEST: Final = 1.0
 # How many accounts are kept of those who do not wait.
 _ACCOUNTS: Final = 1000
 
@@ -28,43 +24,56 @@ class Ticket:
     client: str
     connection: Hashable
     size: int
+    # Seconds of processor time by which it comes later than others of its client.
+    expected: float = 0.0
     # What the waiting request waits for.
     turn: Any = None
 
 
-def weight(seconds: float) -> float:
-    """What a request counts that took so much processor time."""
-    return min(max(LEAST, seconds, seconds**2 / LIGHT), HEAVIEST)
-
-
-@dataclass(slots=True)
 class _Accounts:
-    """What each has had, on a scale that runs on with what everybody has."""
+    """What each has had, on a scale that runs on with what everybody has, and who waits."""
 
-    now: float = 0.0
-    spent: dict[Hashable, float] = field(default_factory=dict)
+    def __init__(self) -> None:
+        self.spent: dict[Hashable, float] = {}
+        self._now = 0.0
+        # The tags of those who wait, when last looked at, in the order of their coming; the time
+        # by which each comes later.
+        self._tags: list[tuple[float, int, Any, float]] = []
+        self._came = 0
 
-    def start(self, key: Hashable) -> float:
-        return max(self.now, self.spent.get(key, 0.0))
+    def _start(self, key: Hashable) -> float:
+        return max(self._now, self.spent.get(key, 0.0))
 
-    def owed(self, key: Hashable) -> float:
-        return self.spent.get(key, 0.0) - self.now
+    def wait(self, key: Hashable, later: float = 0.0) -> None:
+        """Let somebody wait who does not yet, as if he had had so much more."""
+        self._came += 1
+        heapq.heappush(self._tags, (self._start(key) + later, self._came, key, later))
 
-    def least(self, keys: Iterable[Any]) -> Any:
-        """Of these, the one that has had the least; of equals the first."""
-        return min(keys, key=self.start)
+    def least(self) -> Any:
+        """Of those who wait, the one that has had the least. Raises IndexError where none waits."""
+        while True:
+            tag, came, key, later = self._tags[0]
+            now = self.spent.get(key, 0.0) + later
+            if now <= tag:
+                return key
+            # Something was charged meanwhile.
+            heapq.heapreplace(self._tags, (now, came, key, later))
+
+    def leave(self) -> None:
+        """Let the one that has had the least wait no more."""
+        heapq.heappop(self._tags)
 
     def begin(self, key: Hashable) -> None:
         """Note that somebody's request is begun: nobody who waits has had less."""
-        self.now = self.start(key)
+        self._now = self._start(key)
 
-    def charge(self, key: Hashable, amount: float) -> None:
+    def charge(self, key: Hashable, seconds: float) -> None:
         """Add to what somebody has had."""
-        self.spent[key] = min(self.start(key) + amount, self.now + HEAVIEST)
+        self.spent[key] = self._start(key) + max(LEAST, seconds)
         if len(self.spent) > _ACCOUNTS:
             # Those who have had no more than everybody need no account.
-            owing = sorted(self.spent.items(), key=lambda item: item[1])[_ACCOUNTS // 2 :]
-            self.spent = dict(owing)
+            most = sorted(self.spent.items(), key=lambda item: item[1])[_ACCOUNTS // 2 :]
+            self.spent = dict(most)
 
 
 class FairQueue:
@@ -90,41 +99,46 @@ class FairQueue:
 
     def push(self, ticket: Ticket, *, again: bool = False) -> None:
         """Let a request wait; ``again`` where it had its turn and found no time."""
-        queues = self._waiting.setdefault(ticket.client, {})
-        queue = queues.setdefault(ticket.connection, deque())
+        if ticket.client not in self._waiting:
+            self._waiting[ticket.client] = {}
+            self._clients.wait(ticket.client)
+        queues = self._waiting[ticket.client]
+        if ticket.connection not in queues:
+            queues[ticket.connection] = deque()
+            self._accounts(ticket.client).wait(ticket.connection, ticket.expected)
         if again:
-            queue.appendleft(ticket)
+            queues[ticket.connection].appendleft(ticket)
         else:
-            queue.append(ticket)
+            queues[ticket.connection].append(ticket)
         self._note(ticket, 1)
 
     def next(self) -> Ticket:
-        """The request whose turn it is. Raises ValueError where none waits."""
-        client = self._clients.least(self._waiting)
-        queues = self._waiting[client]
-        return queues[self._accounts(client).least(queues)][0]
+        """The request whose turn it is. Raises IndexError where none waits."""
+        client = self._clients.least()
+        return self._waiting[client][self._accounts(client).least()][0]
 
     def pop(self) -> Ticket:
-        """Take the request whose turn it is. Raises ValueError where none waits.
+        """Take the request whose turn it is. Raises IndexError where none waits.
 
         It counts as the least that there is, so that several are taken in turn.
         """
         ticket = self.next()
         client, connection = ticket.client, ticket.connection
-        queues = self._waiting[client]
+        queues, accounts = self._waiting[client], self._accounts(client)
         queues[connection].popleft()
-        if not queues[connection]:
+        self._clients.leave()
+        accounts.leave()
+        self.charge(ticket, LEAST)
+        if queues[connection]:
+            accounts.wait(connection, queues[connection][0].expected)
+        else:
             del queues[connection]
-        if not queues:
+        if queues:
+            self._clients.wait(client)
+        else:
             del self._waiting[client]
         self._note(ticket, -1)
-        self.charge(ticket, LEAST)
         return ticket
-
-    def owing(self, ticket: Ticket) -> bool:
-        """Whether a request is of somebody who has had more than others, by more than a little."""
-        accounts = self._accounts(ticket.client)
-        return self._clients.owed(ticket.client) > LIGHT or accounts.owed(ticket.connection) > LIGHT
 
     def begin(self, ticket: Ticket) -> None:
         """Note that a request is begun: nobody who waits has had less."""
@@ -133,8 +147,8 @@ class FairQueue:
 
     def charge(self, ticket: Ticket, seconds: float) -> None:
         """Charge the processor time that a request took."""
-        self._clients.charge(ticket.client, weight(seconds))
-        self._accounts(ticket.client).charge(ticket.connection, weight(seconds))
+        self._clients.charge(ticket.client, seconds)
+        self._accounts(ticket.client).charge(ticket.connection, seconds)
 
     def _accounts(self, client: str) -> _Accounts:
         found = self._connections.get(client)

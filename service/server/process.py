@@ -13,6 +13,7 @@ import uvicorn
 
 from service.server.limits import GRACE
 from service.server.protocol import GuardedProtocol, GuardedState
+from service.server.shared_port import Acceptor, SharedPort
 
 _SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
 
@@ -20,11 +21,13 @@ _SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
 class Server(uvicorn.Server):
     """A server that ends by a signal: it answers what it has, for ten seconds at most."""
 
-    def __init__(self, config: uvicorn.Config, parent: int | None = None) -> None:
+    def __init__(self, config: uvicorn.Config, port: SharedPort | None = None) -> None:
         super().__init__(config)
         self.server_state: GuardedState = GuardedState()
+        self._port = port
         # The supervisor of this worker, which alone sends signals and must not die before it.
-        self._parent = parent
+        self._parent = port.supervisor if port else None
+        self._acceptor: Acceptor | None = None
 
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:
@@ -49,15 +52,30 @@ class Server(uvicorn.Server):
 
     async def on_tick(self, counter: int) -> bool:
         """Whether to end: by a signal, or because nobody is left to send one."""
+        if self._acceptor is not None:
+            self._acceptor.note()
         orphaned = self._parent is not None and os.getppid() != self._parent
         return await super().on_tick(counter) or orphaned
 
-    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Listen, on a port that others share or on one of its own."""
+        if self._port is None:
+            await super().startup(sockets)
+            return
+        await super().startup(sockets=[])
+        self._acceptor = Acceptor(
+            self._port, lambda: len(self.server_state.connections), self._connection
+        )
+
+    def _connection(self) -> GuardedProtocol:
+        return GuardedProtocol(self.config, self.server_state, self.lifespan.state)
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:  # noqa: ARG002
         """Answer what has come whole, wait a while for the rest, and hang up on what is left."""
         for server in self.servers:
             server.close()
-        for listener in sockets or []:
-            listener.close()
+        if self._acceptor is not None:
+            self._acceptor.close()
         connections = self.server_state.connections
         for connection in self._guarded():
             connection.shutdown()

@@ -1,7 +1,6 @@
 """`dh-grader serve`: the settings put into effect, in one process or several."""
 
 import signal
-import socket
 import sys
 from functools import partial
 
@@ -11,6 +10,7 @@ from service.catalogue import CatalogueError
 from service.server.installed import installed_app
 from service.server.process import Server
 from service.server.protocol import GuardedProtocol
+from service.server.shared_port import SharedPort
 from service.server.workers import Supervisor
 from service.settings import Settings
 
@@ -44,7 +44,7 @@ def _config(settings: Settings, app: object) -> uvicorn.Config:
     )
 
 
-def _work(settings: Settings, listener: socket.socket, parent: int) -> None:
+def _work(settings: Settings, port: SharedPort) -> None:
     """Serve in one of several processes."""
     # Until the server has its own handlers, a Ctrl+C of the terminal is the supervisor's affair.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -53,4 +53,4 @@ def _work(settings: Settings, listener: socket.socket, parent: int) -> None:
     except CatalogueError as error:
         print(error, file=sys.stderr)  # noqa: T201 - the reason why this process ends
         raise SystemExit(1) from error
-    Server(_config(settings, app), parent).run(sockets=[listener])
+    Server(_config(settings, app), port).run()

@@ -12,6 +12,7 @@ from multiprocessing.process import BaseProcess
 from typing import Final
 
 from service.server.limits import GRACE
+from service.server.shared_port import Seats, SharedPort
 
 # Seconds beyond the grace of a worker until it is killed.
 _MARGIN: Final = 1.5
@@ -25,11 +26,11 @@ class Supervisor:
     """Keeps so many workers at work until a signal comes."""
 
     def __init__(
-        self, work: Callable[[socket.socket, int], None], listener: socket.socket, number: int
+        self, work: Callable[[SharedPort], None], listener: socket.socket, number: int
     ) -> None:
         self._work = work
         self._listener = listener
-        self._number = number
+        self._seats = Seats.of(number)
         self._workers: list[BaseProcess] = []
         self._signals = 0
 
@@ -42,7 +43,7 @@ class Supervisor:
             signal.set_wakeup_fd(alarm.fileno())
             for number in (signal.SIGINT, signal.SIGTERM):
                 signal.signal(number, self._note)
-            self._workers = [self._start() for _ in range(self._number)]
+            self._workers = [self._start(place) for place in range(len(self._seats.counts))]
             started = self._watch(awake)
             self._listener.close()
             self._end(awake)
@@ -52,10 +53,11 @@ class Supervisor:
     def _note(self, *_: object) -> None:
         self._signals += 1
 
-    def _start(self) -> BaseProcess:
+    def _start(self, place: int) -> BaseProcess:
         # A fresh interpreter: a fork would take over locks that another thread holds.
         context = multiprocessing.get_context("spawn")
-        worker = context.Process(target=self._work, args=(self._listener, os.getpid()))
+        port = SharedPort(self._listener, self._seats, place, os.getpid())
+        worker = context.Process(target=self._work, args=(port,))
         worker.start()
         return worker
 
@@ -70,11 +72,14 @@ class Supervisor:
                 return False
             for worker in gone:
                 _log.error("Worker %s has ended (exit code %s)", worker.pid, worker.exitcode)
+                self._seats.leave(self._workers.index(worker))
             wait([awake], _PAUSE)
             if self._stopped():
                 return True
-            here = [worker for worker in self._workers if worker not in gone]
-            self._workers = here + [self._start() for _ in gone]
+            self._workers = [
+                self._start(place) if worker in gone else worker
+                for place, worker in enumerate(self._workers)
+            ]
 
     def _stopped(self) -> bool:
         return self._signals > 0

@@ -2,7 +2,7 @@
 
 from typing import Any, Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, SkipValidation
+from pydantic import BaseModel, ConfigDict, Field, SkipValidation, StrictBool
 
 from service.catalogue import FeedbackLevel, least
 from service.catalogue.parts import posted_forms
@@ -33,7 +33,7 @@ class GradeRequest(BaseModel):
         "what could not be read. The exercise and the service have ceilings of their own, and the "
         "report says which level it has. Without it, as much as they allow.",
     )
-    echo: bool = Field(
+    echo: StrictBool = Field(
         False, description="Whether the report tells how each cell was read, in its `read`."
     )
 

@@ -1,14 +1,17 @@
 """`python -m tests.attack`: attacks on a real process, while honest clients use it.
 
-Exit code 1 where an honest client goes without an answer, memory grows by more than 100 MB, a
-question about health takes a second, or the process does not end in ten.
+Exit code 1 where an honest client goes without an answer, or waits beside costly requests more than
+three times as long as without them (of 100 one more than five times), where memory grows by more
+than 100 MB, a question about health takes a second, or the process does not end in ten.
 """
 
 import argparse
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
 from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path
 
 from tests.attack.floods import (
@@ -20,34 +23,63 @@ from tests.attack.floods import (
     endless,
     half_bodies,
     half_open,
+    many_costly,
 )
-from tests.attack.honest import watched
-from tests.server.raw import HEALTH, service
+from tests.attack.honest import Waits, watched
+from tests.attack.interface import faults
+from tests.server.raw import HEALTH, Service, service
 
 MEMORY = 100.0
 HEALTH_SECONDS = 1.0
 END_SECONDS = 10.0
+P50, P99 = 3.0, 5.0
+# How many requests schemathesis makes up for each operation.
+EXAMPLES = 300
+INTERFACE = "requests made up from the document of the interface"
+# Seconds between an answer and the next submission of a client that does not submit in a row.
+PAUSE = 0.1
+HONEST_ADDRESS = "127.0.0.2"
 
 
-def floods(scale: float) -> dict[str, Flood]:
+@dataclass(frozen=True)
+class Attack:
+    """What is sent, and how long honest clients pause; whether their waits are compared."""
+
+    flood: Flood
+    pause: float = 0.0
+    compared: bool = False
+
+
+def attacks(scale: float) -> dict[str, Attack]:
     """The attacks, as large as is asked."""
     header = b"Cookie: " + b"x" * 50 + b"\r\n"
-    megabytes = 60 * scale
-    return {
-        "nothing": half_open(0),
+    floods = {
         "8,000 half heads": half_open(int(8000 * scale)),
         "half bodies": half_bodies(int(1000 * scale)),
-        "endless headers": endless(HEAD, header * 1000, megabytes),
-        "an endless header": endless(HEAD + b"A: ", b"x" * 60_000, megabytes),
-        "an endless address": endless(b"GET /", b"x" * 60_000, megabytes),
-        "endless chunks": endless(CHUNKED, b"1000\r\n" + b" " * 4096 + b"\r\n", megabytes),
-        "endless tiny chunks": endless(CHUNKED, b"1\r\n \r\n" * 10_000, megabytes),
-        "an endless extension": endless(CHUNKED + b"1;", b"x" * 60_000, megabytes),
-        "endless trailers": endless(CHUNKED + b"0\r\n", header * 1000, megabytes),
-        "an endless pipeline": endless(b"", HEALTH * 1000, megabytes),
+        "endless headers": endless(HEAD, header * 1000),
+        "an endless header": endless(HEAD + b"A: ", b"x" * 60_000),
+        "an endless address": endless(b"GET /", b"x" * 60_000),
+        "endless chunks": endless(CHUNKED, b"1000\r\n" + b" " * 4096 + b"\r\n"),
+        "endless tiny chunks": endless(CHUNKED, b"1\r\n \r\n" * 10_000),
+        "an endless extension": endless(CHUNKED + b"1;", b"x" * 60_000),
+        "endless trailers": endless(CHUNKED + b"0\r\n", header * 1000),
+        "an endless pipeline": endless(b"", HEALTH * 1000),
         "bodies a byte a second": dripping(int(1000 * scale)),
-        "costly bodies": costly(16),
-        "costly bodies, same address": costly(16, "127.0.0.2"),
+    }
+    costly_ones = {
+        "": costly(),
+        ", many in one": costly(many_costly),
+        ", same address": costly(source=HONEST_ADDRESS),
+        ", each its own connection": costly(again=False),
+        ", same address, each its own connection": costly(source=HONEST_ADDRESS, again=False),
+    }
+    return {name: Attack(flood) for name, flood in floods.items()} | {
+        f"costly bodies{how}, {clients}": Attack(flood, pause, compared=True)
+        for clients, pause in {
+            "honest ones in a row": 0.0,
+            "honest ones now and then": PAUSE,
+        }.items()
+        for how, flood in costly_ones.items()
     }
 
 
@@ -57,23 +89,29 @@ def attack(seconds: float, scale: float, only: str = "") -> list[str]:
     with tempfile.TemporaryDirectory() as folder, ExitStack() as opened:
         running = opened.enter_context(service(Path(folder)))
         running.ask(HEALTH)
+        quiet: dict[float, Waits] = {}
         start = 0.0
-        for name, flood in floods(scale).items():
-            if only and only not in name and name != "nothing":
+        for name, each in attacks(scale).items():
+            if only not in name:
                 continue
-            with watched(running) as (submissions, health):
-                said = flood(running, opened, time.monotonic() + seconds)
-            # The program's own caches are full after the first.
-            start = start or running.memory()
+            if each.pause not in quiet:
+                quiet[each.pause] = _without(running, each.pause, seconds)
+                # The program's own caches are full after the first.
+                start = start or running.memory()
+            with watched(running, each.pause, HONEST_ADDRESS) as (submissions, health):
+                said = each.flood(running, opened, time.monotonic() + seconds)
             grown = running.memory() - start
-            print(f"{name}: {said}; memory +{grown:.0f} MB", flush=True)  # noqa: T201
-            print(f"    honest: {submissions}\n    health: {health}", flush=True)  # noqa: T201
-            if submissions.failures or not submissions.seconds:
-                broken.append(f"{name}: honest clients had no answer")
+            _print(f"{name}: {said}; memory +{grown:.0f} MB", submissions, health)
             if grown > MEMORY:
                 broken.append(f"{name}: memory grew by {grown:.0f} MB")
-            if health.failures or health.quantile(1.0) > HEALTH_SECONDS:
-                broken.append(f"{name}: a question about health took too long")
+            broken += [f"{name}: {what}" for what in _faults(submissions, health)]
+            if each.compared:
+                found = _longer(submissions, quiet[each.pause])
+                broken += [f"{name}: {what}" for what in found]
+        if only in INTERFACE:
+            told = list(faults(running, Path(folder), max(1, int(EXAMPLES * scale))))
+            print(f"{INTERFACE}: {'faults' if told else 'no fault'}", flush=True)  # noqa: T201
+            broken += told
         began = time.monotonic()
         code = running.end()
         took = time.monotonic() - began
@@ -83,10 +121,37 @@ def attack(seconds: float, scale: float, only: str = "") -> list[str]:
     return broken
 
 
+def _without(running: Service, pause: float, seconds: float) -> Waits:
+    """The waits of honest submissions while nobody attacks."""
+    with watched(running, pause, HONEST_ADDRESS) as (submissions, health):
+        time.sleep(seconds)
+    _print(f"nothing, pauses of {pause} s", submissions, health)
+    return submissions
+
+
+def _print(name: str, submissions: Waits, health: Waits) -> None:
+    print(f"{name}\n    honest: {submissions}\n    health: {health}", flush=True)  # noqa: T201
+
+
+def _faults(submissions: Waits, health: Waits) -> Iterator[str]:
+    if submissions.failures or not submissions.seconds:
+        yield "honest clients had no answer"
+    if health.failures or health.quantile(1.0) > HEALTH_SECONDS:
+        yield "a question about health took too long"
+
+
+def _longer(submissions: Waits, quiet: Waits) -> Iterator[str]:
+    for share, most in ((0.5, P50), (0.99, P99)):
+        times = submissions.quantile(share) / quiet.quantile(share)
+        print(f"    p{100 * share:.0f}: {times:.1f} times as long", flush=True)  # noqa: T201
+        if times > most:
+            yield f"p{100 * share:.0f} of honest waits is {times:.1f} times as long"
+
+
 def main() -> int:
     """Run all attacks, or those of which the name holds a word."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seconds", type=float, default=35.0, help="for each attack")
+    parser.add_argument("--seconds", type=float, default=25.0, help="for each attack")
     parser.add_argument("--scale", type=float, default=1.0, help="the size, as a share")
     parser.add_argument("--only", default="", help="a word of the attacks' names")
     options = parser.parse_args()

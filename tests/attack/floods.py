@@ -5,16 +5,19 @@ import json
 import socket
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import ExitStack, suppress
+from typing import Any
 
-from tests.attack.honest import GRADE
+from tests.attack.honest import EXERCISE, GRADE
 from tests.benchmarks.server import request
 from tests.server.raw import Service
 
 HEAD = b"POST /v1/preview HTTP/1.1\r\nHost: x\r\n"
 CHUNKED = HEAD + b"Transfer-Encoding: chunked\r\n\r\n"
 SOURCE = "127.0.0.3"
+# As many costly poses as a body of 256 KiB holds.
+MANY = 32
 
 Flood = Callable[[Service, ExitStack, float], str]
 
@@ -41,24 +44,24 @@ def half_bodies(bodies: int) -> Flood:
             with suppress(OSError):
                 opened.enter_context(running.connect(sent, SOURCE))
                 whole += 1
+        while time.monotonic() < until:
+            time.sleep(0.05)
         return f"{whole * 0.25:.0f} MB sent"
 
     return flood
 
 
-def endless(begin: bytes, piece: bytes, megabytes: float) -> Flood:
-    """The same piece again and again behind a beginning, until so much is sent or refused."""
+def endless(begin: bytes, piece: bytes) -> Flood:
+    """The same piece again and again behind a beginning, as fast as it is taken."""
 
     def flood(running: Service, opened: ExitStack, until: float) -> str:
         sent = tries = 0
-        while time.monotonic() < until and sent < megabytes * 1e6:
+        while time.monotonic() < until:
             tries += 1
-            line = opened.enter_context(running.connect(begin, SOURCE))
-            line.settimeout(1.0)
-            with suppress(OSError):
-                while time.monotonic() < until and sent < megabytes * 1e6:
+            with running.connect(begin, SOURCE) as line, suppress(OSError):
+                line.settimeout(1.0)
+                while time.monotonic() < until:
                     sent += line.send(piece)
-            line.close()
         return f"{sent / 1e6:.0f} MB taken on {tries} connections"
 
     return flood
@@ -83,39 +86,75 @@ def dripping(lines: int) -> Flood:
     return flood
 
 
-def costly_bodies() -> Iterator[bytes]:
-    """Submissions that each take as much work as one may, no two alike."""
-    for number in itertools.count():
-        cells = [
-            ["//".join(["½"] * 78) + str(16 * number + 4 * i + j) for j in range(4)]
-            for i in range(4)
-        ]
-        yield json.dumps({"answers": {"pose": cells}}).encode()
+def costly_pose(number: int) -> dict[str, Any]:
+    """Answers that take as much work as a submission may; no two are alike."""
+    cells = [
+        ["//".join(["½"] * 78) + str(16 * number + 4 * i + j) for j in range(4)] for i in range(4)
+    ]
+    return {"answers": {"pose": cells}}
 
 
-def costly(connections: int, source: str = SOURCE) -> Flood:
-    """Costly submissions on so many connections, each sent as soon as the last is answered."""
+def _written(body: dict[str, Any]) -> bytes:
+    return json.dumps(body, ensure_ascii=False).encode()
+
+
+def one_costly(number: int) -> bytes:
+    """One costly submission as it goes over the wire."""
+    return request(GRADE, _written(costly_pose(number)))
+
+
+def many_costly(number: int) -> bytes:
+    """As many costly submissions as one request may hold."""
+    numbers = range(MANY * number, MANY * (number + 1))
+    submissions = [{"exercise": EXERCISE, **costly_pose(i)} for i in numbers]
+    return request("/v1/grade", _written({"submissions": submissions}))
+
+
+def costly(
+    body: Callable[[int], bytes] = one_costly, source: str = SOURCE, *, again: bool = True
+) -> Flood:
+    """Costly requests on 16 connections, each sent as soon as the last is answered.
+
+    Not ``again`` over the same connection, each has one of its own.
+    """
 
     def flood(running: Service, opened: ExitStack, until: float) -> str:
-        bodies, lock, answered = costly_bodies(), threading.Lock(), itertools.count()
+        numbers, lock, answered = itertools.count(), threading.Lock(), itertools.count()
 
         def attack() -> None:
             while time.monotonic() < until:
                 with suppress(OSError), running.connect(b"", source) as line:
-                    line.settimeout(30.0)
+                    line.settimeout(1.0)
                     while time.monotonic() < until:
                         with lock:
-                            body = next(bodies)
-                        line.sendall(request(GRADE, body))
-                        if not line.recv(10**6):
+                            number = next(numbers)
+                        line.sendall(body(number))
+                        if not _answer(line, until):
                             break
                         next(answered)
+                        if not again:
+                            break
 
-        threads = [threading.Thread(target=attack) for _ in range(connections)]
+        threads = [threading.Thread(target=attack) for _ in range(16)]
         for thread in threads:
             thread.start()
         for thread in threads:
             thread.join()
-        return f"{next(answered)} costly submissions answered"
+        return f"{next(answered)} costly requests answered"
 
     return flood
+
+
+def _answer(line: socket.socket, until: float) -> bool:
+    """Read one answer; false where the connection ends, or the time."""
+    came = b""
+    while time.monotonic() < until:
+        with suppress(TimeoutError):
+            part = line.recv(10**6)
+            if not part:
+                return False
+            came += part
+            head, _, body = came.partition(b"\r\n\r\n")
+            if len(body) >= int(head.lower().partition(b"content-length: ")[2].split()[0]):
+                return True
+    return False

@@ -13,7 +13,8 @@ from tests.guards import ANSWER
 from tests.server.raw import Service
 
 CLIENTS = 6
-GRADE = "/v1/exercises/stanford-arm/grade"
+EXERCISE = "stanford-arm"
+GRADE = f"/v1/exercises/{EXERCISE}/grade"
 
 
 @dataclass
@@ -43,8 +44,13 @@ def submission(number: int) -> bytes:
 
 
 @contextmanager
-def watched(running: Service, source: str = "127.0.0.2") -> Iterator[tuple[Waits, Waits]]:
-    """The waits of honest submissions, and of questions about health, as long as this lasts."""
+def watched(
+    running: Service, pause: float = 0.0, source: str = "127.0.0.2"
+) -> Iterator[tuple[Waits, Waits]]:
+    """The waits of honest submissions, and of questions about health, as long as this lasts.
+
+    Each client makes a ``pause`` after each answer, in seconds.
+    """
     submissions, health = Waits(), Waits()
     over = threading.Event()
 
@@ -80,7 +86,7 @@ def watched(running: Service, source: str = "127.0.0.2") -> Iterator[tuple[Waits
         connection.request("GET", "/healthz")
 
     threads = [
-        *(threading.Thread(target=ask, args=(submissions, grade, 0.0)) for _ in range(CLIENTS)),
+        *(threading.Thread(target=ask, args=(submissions, grade, pause)) for _ in range(CLIENTS)),
         threading.Thread(target=ask, args=(health, alive, 0.05)),
     ]
     for thread in threads:

@@ -5,6 +5,7 @@ checkout, both measured in turn; exit with 1 where a line is slower here by more
 """
 
 import argparse
+import os
 import re
 import tempfile
 from collections.abc import Callable
@@ -127,6 +128,16 @@ def add_server_lines(printed: Table) -> None:
             f"≥ {SHARES[what]:.0%}",
             "met" if share >= SHARES[what] else "missed",
             f"{1e3 / speed['graded']:.3f}",
+        )
+    one = server.graded_per_second(1)
+    for workers in (2, 3):
+        many = server.graded_per_second(workers)
+        printed.add_row(
+            f"graded POSTs with {workers} workers on {os.cpu_count()} cores, of those with one",
+            f"{many / one:.2f}",
+            "",
+            "",
+            f"{1e3 / many:.3f}",
         )
     first = min(server.first_answer_seconds() for _ in range(3))
     printed.add_row(

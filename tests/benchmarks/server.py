@@ -6,15 +6,15 @@ A second is one of the server's processor time, in which other programs have no 
 import asyncio
 import contextlib
 import json
-import os
-import socket
-import subprocess
-import sys
+import statistics
+import tempfile
 import time
 import urllib.request
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 from tests.benchmarks.answers import T06, distinct, one_student_s_table, table
+from tests.server.raw import service
 
 CONNECTIONS = 8
 # Of trivial POSTs, and as many of graded ones; the two take turns so often.
@@ -66,27 +66,14 @@ def request(path: str, body: bytes) -> bytes:
 
 
 @contextlib.contextmanager
-def running_server() -> Iterator[int]:
-    """The service with one trivial route more, in a process of its own; yields the port."""
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    command = [sys.executable, "-m", "uvicorn", "tests.benchmarks.app:app", "--port", str(port)]
-    quiet = ["--log-level", "warning", "--no-access-log"]
-    with subprocess.Popen([*command, *quiet], env=os.environ) as process:
-        try:
-            _wait_for(port)
-            yield port
-        finally:
-            process.terminate()
-
-
-def _wait_for(port: int) -> None:
-    for _ in range(1200):
-        with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), 1):
-            return
-        time.sleep(0.05)
-    raise RuntimeError("the server did not start")
+def running_server(workers: int = 1, module: str = "tests.benchmarks.app") -> Iterator[int]:
+    """The service with one trivial route more, in processes of its own; yields the port."""
+    with tempfile.TemporaryDirectory() as folder:
+        options = ("--workers", str(workers))
+        with service(Path(folder), *options, module=module) as running:
+            while running.log.count("startup complete") < workers:
+                time.sleep(0.02)
+            yield running.port
 
 
 async def _post_all(port: int, requests: list[bytes], deadline: float) -> int:
@@ -133,19 +120,30 @@ def posts_per_second(body: Callable[[int], bytes]) -> dict[str, float]:
     return {"trivial": trivial, "graded": graded}
 
 
+def graded_per_second(workers: int) -> float:
+    """Graded POSTs each second with so many workers; every body is different."""
+    messages = [tables(i) for i in range(400 + ROUNDS * MOST)]
+    with running_server(workers) as port:
+        asyncio.run(_per_second(port, messages[:400]))
+        rates = [
+            asyncio.run(_per_second(port, messages[i : i + MOST]))
+            for i in range(400, len(messages), MOST)
+        ]
+    return statistics.median(rates)
+
+
+async def _per_second(port: int, messages: list[bytes]) -> float:
+    """Graded POSTs each second of the clock."""
+    start = time.perf_counter()
+    count, _ = await _posted(port, GRADE, messages)
+    return count / (time.perf_counter() - start)
+
+
 def first_answer_seconds() -> float:
     """From the start of the process to the first graded answer."""
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
     start = time.perf_counter()
-    command = [sys.executable, "-m", "service", "serve", "--port", str(port)]
-    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
-        try:
-            _wait_for(port)
-            asyncio.run(
-                _post_all(port, [request(GRADE, tables_and_poses(1))], time.perf_counter() + 10)
-            )
-            return time.perf_counter() - start
-        finally:
-            process.terminate()
+    with running_server(module="service") as port:
+        asyncio.run(
+            _post_all(port, [request(GRADE, tables_and_poses(1))], time.perf_counter() + 10)
+        )
+        return time.perf_counter() - start

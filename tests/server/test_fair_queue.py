@@ -4,7 +4,7 @@ from collections import Counter
 
 import pytest
 
-from service.server.fair_queue import HEAVIEST, LEAST, LIGHT, FairQueue, Ticket, weight
+from service.server.fair_queue import FairQueue, Ticket
 
 
 def wait(queue: FairQueue, client: str, connection: int = 0, size: int = 1) -> Ticket:
@@ -46,16 +46,13 @@ def test_sixteen_connections_have_one_turn() -> None:
     assert queue.pop().client == "one"
 
 
-def test_costly_requests_leave_room_for_hundreds_of_small_ones() -> None:
+def test_clients_have_the_same_time_and_not_the_same_number_of_turns() -> None:
     queue = FairQueue()
-    for connection in range(16):
-        wait(queue, "attacker", connection)
-    for client in "abcdef":
+    for client in "ab":
         wait(queue, client)
-    served = serve(queue, {"attacker": 0.040, **dict.fromkeys("abcdef", 0.0015)}, 3000)
-    # 40 ms weigh 320 ms: each of six others has as much before it is the attacker's turn again.
-    assert Counter(served)["attacker"] in (2, 3)
-    assert min(Counter(served)[client] for client in "abcdef") >= 490
+    served = Counter(serve(queue, {"a": 0.010, "b": 0.001}, 1100))
+    # What each weighs at least comes on top.
+    assert served["a"] == pytest.approx(100, rel=0.1)
 
 
 def test_connections_of_one_address_are_told_apart() -> None:
@@ -71,19 +68,15 @@ def test_connections_of_one_address_are_told_apart() -> None:
         costly += attacks
         queue.charge(ticket, 0.040 if attacks else 0.0015)
         queue.push(ticket)
-    # By time alone it would be 16 turns of 22 of the time: 290.
-    assert 16 <= costly <= 48
+    # Each of the six has 0.7 s, and each of the sixteen as much in the end.
+    assert costly == pytest.approx(16 * 0.0015 / 0.040 * 3000 / 6, rel=0.2)
 
 
-def test_nobody_waits_for_ever() -> None:
+def test_of_connections_alike_one_that_is_expected_to_take_longer_comes_later() -> None:
     queue = FairQueue()
-    wait(queue, "heavy")
-    queue.charge(take(queue), 1000.0)
-    wait(queue, "heavy")
-    wait(queue, "light")
-    served = serve(queue, {"heavy": 1000.0, "light": 0.002}, 600)
-    assert Counter(served)["heavy"] >= 1
-    assert served.index("heavy") <= HEAVIEST / 0.002 + 1
+    for connection, expected in enumerate((0.040, 0.010, 0.020)):
+        queue.push(Ticket("a", connection, 1, expected))
+    assert [take(queue).expected for _ in range(3)] == [0.010, 0.020, 0.040]
 
 
 def test_who_was_away_has_no_credit() -> None:
@@ -99,15 +92,8 @@ def test_one_connection_is_served_in_order() -> None:
     queue = FairQueue()
     tickets = [wait(queue, "a", 1) for _ in range(3)]
     assert [queue.pop() for _ in range(3)] == tickets
-    with pytest.raises(ValueError, match="empty"):
+    with pytest.raises(IndexError):
         queue.pop()
-
-
-def test_the_weight_grows_faster_than_the_time() -> None:
-    assert weight(0.0) == LEAST
-    assert weight(LIGHT / 2) == LIGHT / 2
-    assert weight(4 * LIGHT) == pytest.approx(16 * LIGHT)
-    assert weight(10.0) == HEAVIEST
 
 
 def test_requests_and_bytes_are_counted_by_client() -> None:

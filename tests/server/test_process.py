@@ -130,11 +130,31 @@ def test_answers_are_whole_when_it_ends_in_the_midst_of_them(tmp_path: Path) -> 
         assert len(found) < 19 * pipelined
 
 
-def test_a_worker_that_is_lost_is_replaced_and_all_end_in_good_order(tmp_path: Path) -> None:
+def connections(process: int) -> int:
+    """How many sockets a process has open."""
+    files = Path(f"/proc/{process}/fd").iterdir()
+    return sum(str(file.readlink()).startswith("socket:") for file in files)
+
+
+def check_shares(running: Service, staff: set[int]) -> None:
+    """Open connections, and see that no worker has most of them."""
+    before = {worker: connections(worker) for worker in staff}
+    with ExitStack() as lines:
+        for _ in range(40):
+            lines.enter_context(running.connect(HEALTH)).recv(1)
+        more = [connections(worker) - had for worker, had in before.items()]
+    assert sum(more) == 40
+    assert min(more) >= 10
+
+
+def test_workers_share_connections_out_a_lost_one_is_replaced_and_all_end_in_good_order(
+    tmp_path: Path,
+) -> None:
     with service(tmp_path, "--workers", "2") as running:
         until(lambda: running.log.count("startup complete") == 2)
         before = workers(running)
         assert len(before) == 2
+        check_shares(running, before)
         os.kill(min(before), signal.SIGKILL)
         until(lambda: running.log.count("startup complete") == 3)
         after = workers(running)
