@@ -131,11 +131,12 @@ def test_lists_that_make_no_table(catalogue: Mapping[str, Exercise], answer: obj
     assert report.points == 0
 
 
-def test_of_a_long_table_the_beginning_is_read_in_another_order(
+def test_a_long_table_is_not_all_read_again(
     catalogue: Mapping[str, Exercise],
 ) -> None:
+    """Its first row is read twice, for it might be one of headers."""
     exercise = catalogue["planar-rrr"]
-    for cell, rows in (("q1", 3), ("q1" + "+0" * 150, 1)):
+    for cell, rows in (("q1", 3), ("q1" + "+0" * 60, 2)):
         reader = Reader.of(exercise, draw(exercise, cell), "degrees")
         table = read_table("\n".join([", ".join([cell] * 4)] * 3), reader)
         assert len(table.rows) == 3
