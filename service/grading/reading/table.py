@@ -19,7 +19,7 @@ from service.grading.reading.row_entries import read_row, remembered_row
 from service.grading.reading.table_json import canonical_table, has_unnamed_columns
 from service.grading.report import Severity, Verdict
 from service.grading.samples import Samples
-from service.grading.work_budget import WorkBudget
+from service.grading.work_budget import MAX_SYMBOLS_AGAIN, WorkBudget
 from service.grids import GridError
 from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh import Convention
@@ -122,9 +122,13 @@ def read_table(
     written = answer
 
     def reread(other: Sequence[str]) -> StudentTable:
-        # The cells are known by now; what they cost must not be missing for the parts that follow.
-        afresh = replace(reader, budget=WorkBudget())
-        return read_table(written, afresh, other, empty_is_zero=empty_is_zero)
+        # What this costs must not be missing for the parts that follow. A table that is too long
+        # for it has no rows in another order.
+        afresh = replace(reader, budget=WorkBudget(MAX_SYMBOLS_AGAIN))
+        try:
+            return read_table(written, afresh, other, empty_is_zero=empty_is_zero)
+        except UnreadableAnswerError:
+            return StudentTable((), _NO_ROWS, None)
 
     is_unnamed = has_unnamed_columns(answer)
     answer = canonical_table(answer, order)

@@ -8,6 +8,9 @@ import pytest
 from service.catalogue import Exercise
 from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading import PartReport, Verdict
+from service.grading.reading.entry import Reader
+from service.grading.reading.table import read_table
+from service.grading.samples import draw
 from tests.grading.support.submitting import full_marks, handed_in, not_correct, part, table
 
 SCARA = [
@@ -126,3 +129,18 @@ def test_a_list_for_each_parameter(catalogue: Mapping[str, Exercise]) -> None:
 def test_lists_that_make_no_table(catalogue: Mapping[str, Exercise], answer: object) -> None:
     report = graded(catalogue["scara"], answer)
     assert report.points == 0
+
+
+def test_a_long_table_is_not_all_read_again(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    """Its first row is read twice, for it might be one of headers."""
+    exercise = catalogue["planar-rrr"]
+    for cell, rows in (("q1", 3), ("q1" + "+0" * 60, 2)):
+        reader = Reader.of(exercise, draw(exercise, cell), "degrees")
+        table = read_table("\n".join([", ".join([cell] * 4)] * 3), reader)
+        assert len(table.rows) == 3
+        assert table.reread is not None
+        again = table.reread(("alpha", "a", "theta", "d"))
+        readable = [row for row in again.rows if row.entries[3].readable]
+        assert len(readable) == rows
