@@ -9,6 +9,7 @@ COUNT  ?= 100000
 TABLES ?= 1000
 ROBOTS ?= 5000
 SEED   ?= 1
+MINUTES ?= 10
 
 python  := "$(VENV)/bin/python"
 install := $(python) -m pip install --quiet --disable-pip-version-check
@@ -23,7 +24,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test coverage lint format bench fuzz attack campaign policies prints slips clients lock clean
+.PHONY: help install run test coverage lint format bench fuzz attack worst campaign policies prints slips clients lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' Makefile
@@ -59,6 +60,9 @@ fuzz: $(dev) ## read 100,000 hostile texts (COUNT=, SEED=)
 
 attack: $(dev) ## attack a real process for ten minutes, and see that honest clients are served
 	$(python) -m tests.attack
+
+worst: $(dev) ## search for the costliest request for MINUTES= (10), and say where its time goes (SEED=)
+	$(python) -m tests.worst --minutes "$(MINUTES)" --seed "$(SEED)"
 
 campaign: $(dev) ## grade tables in random frames, TABLES= of each robot and convention (SEED=)
 	$(python) -m tests.frame_choice --tables "$(TABLES)" --seed "$(SEED)"

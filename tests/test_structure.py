@@ -28,7 +28,7 @@ PACKAGES = (
 # circle arises.
 GRADING_FLOORS = (
     {"comparison", "feedback", "formula_text", "joint_motion", "misconception", "report"}
-    | {"samples", "tolerances"},
+    | {"samples", "tolerances", "work_budget"},
     {"reading"},
     {"part"},
     {"judging"},  # right or wrong; why it is wrong is diagnosis
@@ -41,7 +41,7 @@ GRADING_ROOMS = 16
 LINES = 400
 
 # Folders of tests that are about something else than a package of service/.
-SUITES = {"docs", "exercises", "frame_choice", "pose_slips", "benchmarks", "attack"}
+SUITES = {"docs", "exercises", "frame_choice", "pose_slips", "benchmarks", "attack", "worst"}
 
 
 def module_name(file: Path) -> str:

@@ -41,6 +41,7 @@ class StudentChain:
 class Grading:
     """One submission being graded: everything that an answer kind may use.
 
+    ``explains`` says that what is wrong is explained, and not only judged.
     ``echo`` says that each cell is reported as it was understood. ``student_chain`` is the earlier
     answer that the part follows from, where there is one. With
     ``following`` the part is judged by that answer and not by the reference.
@@ -53,6 +54,11 @@ class Grading:
     echo: bool = False
     student_chain: StudentChain | None = None
     following: bool = False
+    explains: bool = True
+
+    def affords(self, work: float) -> bool:
+        """Whether the budget has so much work left for an explanation; it is taken from it."""
+        return self.explains and self.reader.budget.affords(work)
 
     def visible(
         self, findings: tuple[Finding, ...], places: tuple[Place, ...] = ()

@@ -15,7 +15,7 @@ from service.expressions import LIMITS, ExpressionError, read
 from service.grading import FeedbackLevel
 from service.grading.reading.preview import preview_pasted
 from service.grading.reading.table import MAX_ROWS
-from service.grading.reading.work_budget import MAX_CHARACTERS
+from service.grading.work_budget import MAX_CHARACTERS
 from service.grids import GRID_LIMITS
 from tests.docs.codes import CodeUse, HiddenCodeError, codes_in, sources
 from tests.expressions.corpus_files import ROBOT

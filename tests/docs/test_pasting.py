@@ -8,7 +8,7 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading.reading.column_headers import read_header
-from service.grading.reading.work_budget import MAX_PASTED
+from service.grading.work_budget import MAX_PASTED
 from service.grids import GRID_LIMITS, GridError, read_grid
 from tests.grading.support.submitting import full_marks, handed_in, part
 

@@ -269,6 +269,8 @@ CHECKS = (
 )
 # The codes of a joint variable in the column that stays constant.
 MISPLACED = (joint_variable_absent.__name__, joint_variable_column.__name__)
+# The work of one wrong cell, as the budget counts it.
+CELL_WORK = 2.5
 OF_DISTANCE = (distance_left_out, distance_extra)
 OF_ANGLE = (degrees_as_radians, radians_as_degrees, quarter_turn, half_turn)
 MISCONCEPTIONS = (sign, *OF_DISTANCE, *OF_ANGLE)
@@ -301,7 +303,10 @@ def _by_joint(counts: tuple[int, ...] | None, joints: tuple[Joint, ...]) -> dict
 
 
 def wrong_cells(judgement: Judgement, grading: Grading) -> dict[CellIndex, WrongCell]:
-    """The wrong cells that were read, by row and column."""
+    """The wrong cells that were read, by row and column.
+
+    Once the work budget is used up, no more are found.
+    """
     if not judgement.wrong:
         return {}
     written = [
@@ -309,6 +314,7 @@ def wrong_cells(judgement: Judgement, grading: Grading) -> dict[CellIndex, Wrong
         for i, column in np.argwhere(judgement.matches < Match.ROUNDED).tolist()
         if (row := (judged := judgement.rows[i]).row) is not None
         and (expression := row.entries[column].expression) is not None
+        and grading.affords(CELL_WORK)
     ]
     if not written:
         return {}

@@ -46,6 +46,8 @@ COST = 0.25
 COSTS = {"other_convention": 0.5}
 _QUANTITIES = tuple(QUANTITIES.values())
 _EXTRA_ROW = "extra_row"
+# The work of finding a freedom that the joints have lost, as the budget counts it.
+FREEDOM_WORK = 8.0
 # With so many wrong cells two misconceptions at once are looked for.
 WRONG_THROUGHOUT = 3
 
@@ -72,7 +74,9 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     if judged.whole_cost is not None:
         return judged
     wrong = _wrong_cells(judged)
-    for intended in in_other_orders(answer, grading):
+    # What was not read is not read in any order.
+    unread = int(np.isnan(answer.values).any(axis=-1).sum())
+    for intended in in_other_orders(answer, grading) if 3 * unread <= wrong else ():
         without = _judged_as_read(part, intended.table, grading)
         if 3 * _wrong_cells(without) <= wrong:
             # Who writes the columns in another order multiplies the links out as they were meant.
@@ -141,7 +145,8 @@ def _judged_as_read(part: DhTableSpec, answer: StudentTable, grading: Grading) -
         return _with_rows_too_many(part, fixed, kept, judged, grading)
     if np.isnan(answer.values).any():
         filled = with_lazy_cells(fixed, convention, grading)
-        return replace(judged, at_most=_judged_as_read(part, filled, grading))
+        in_silence = replace(grading, explains=False)
+        return replace(judged, at_most=_judged_as_read(part, filled, in_silence))
     return judged
 
 
@@ -258,7 +263,8 @@ def _of_the_whole(
     # An explained table is not the one that the student intended, so its freedom says nothing.
     # Axes that lie wrong by another slip, such as an offset of θ, are no matter of a and α.
     of_links = bool((judgement.matches[:, :D] < Match.ROUNDED).any())
-    lost = freedom_lost(roles, convention, grading) if of_links and not found else ()
+    is_asked = of_links and not found and grading.affords(FREEDOM_WORK)
+    lost = freedom_lost(roles, convention, grading) if is_asked else ()
     return judgement, found, lost
 
 

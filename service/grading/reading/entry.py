@@ -21,9 +21,9 @@ from service.expressions import (
 )
 from service.grading.feedback import Finding, reading_error, reading_note
 from service.grading.reading.absent_variables import with_absent_variables
-from service.grading.reading.work_budget import MAX_CHARACTERS, WorkBudget
 from service.grading.report import Verdict
 from service.grading.samples import SAMPLES, Samples
+from service.grading.work_budget import MAX_CHARACTERS, WorkBudget
 from service.kinematics.transforms import Numbers
 
 # Textbooks mark the joint variable so in every table: six notes on it would hide the others.

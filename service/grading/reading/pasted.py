@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from service.grading.feedback import Finding
 from service.grading.reading.entry import Entry, Reader
-from service.grading.reading.work_budget import MAX_PASTED
+from service.grading.work_budget import MAX_PASTED
 from service.grids import (
     GRID_LIMITS,
     Grid,

@@ -9,8 +9,8 @@ from service.grading.feedback import Finding
 from service.grading.reading.cell_names import arranged_row, row_entries
 from service.grading.reading.column_headers import QUANTITIES
 from service.grading.reading.entry import Entry, Reader, unreadable
-from service.grading.reading.work_budget import WorkBudget
 from service.grading.samples import Samples
+from service.grading.work_budget import WorkBudget
 from service.kinematics.chain import COLUMNS
 
 # Rows of more characters are hardly written twice.

@@ -17,9 +17,9 @@ from service.grading.reading.pasted import from_grid_error
 from service.grading.reading.pasted_table import PastedTable, entries_of, read_pasted_table
 from service.grading.reading.row_entries import read_row, remembered_row
 from service.grading.reading.table_json import canonical_table, has_unnamed_columns
-from service.grading.reading.work_budget import WorkBudget
 from service.grading.report import Severity, Verdict
 from service.grading.samples import Samples
+from service.grading.work_budget import WorkBudget
 from service.grids import GridError
 from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh import Convention

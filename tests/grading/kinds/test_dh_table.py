@@ -6,7 +6,7 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading import Correction, PartReport
-from service.grading.reading.work_budget import MAX_REPAIRS
+from service.grading.work_budget import MAX_REPAIRS
 from tests.grading.support.robots import EXACT, STANFORD
 from tests.grading.support.submitting import graded_table, handed_in, not_correct, part, table
 

@@ -9,8 +9,8 @@ from service.expressions import AngleUnit
 from service.grading.feedback import Finding
 from service.grading.reading.entry import Entry, Reader
 from service.grading.reading.row_entries import read_row, remembered_row
-from service.grading.reading.work_budget import WorkBudget
 from service.grading.samples import draw
+from service.grading.work_budget import WorkBudget
 
 ROW = ("0", " -90", "d2 + 1", "theta2")
 

@@ -19,18 +19,29 @@ CHARACTERS_PER_REPAIR = 250
 MAX_PASTED = 36_000
 
 
+# In units of the least work that a grading can be: six links multiplied out at all samples.
+MAX_EXPLANATIONS = 150.0
+
+
 @dataclass(slots=True)
 class WorkBudget:
     """The work left for a submission: one object for all its parts, pasted texts and units.
 
     ``characters`` counts those that may still be read, ``repairs`` the unreadable texts for which
     a repaired one may still be looked for. ``pasted`` counts the characters of texts that may
-    still be cut into cells.
+    still be cut into cells. ``explanations`` is the work that may still be spent on what is wrong
+    and why; verdicts and points draw on nothing.
     """
 
     characters: int = MAX_CHARACTERS
     repairs: int = MAX_REPAIRS
     pasted: int = MAX_PASTED
+    explanations: float = MAX_EXPLANATIONS
+
+    def affords(self, work: float) -> bool:
+        """Whether there is so much left for explanations. It is taken, and what is gone is gone."""
+        self.explanations -= work
+        return self.explanations >= 0
 
     def charge_unreadable(self, characters: int) -> None:
         """Count a text that could not be read, whose characters were counted once before."""

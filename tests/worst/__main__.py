@@ -1,0 +1,74 @@
+"""`python -m tests.worst --minutes 10`: the costliest bodies that a search finds and their stages.
+
+Exit code 1 where one costs more than 400 times the plain-numpy floor of the benchmarks.
+"""
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+from tests.worst.entry_points import FILE, GRADE, PREVIEW, Target, forget
+from tests.worst.exercises import exercises
+from tests.worst.search import Found, Search
+from tests.worst.seeds import attacks, cells
+from tests.worst.stages import Stages
+
+PROMISED = 400
+
+
+def line_of(found: Found, target: Target) -> str:
+    """The cost, the stages and the beginning of a body."""
+    stages = Stages()
+
+    def action() -> None:
+        forget()
+        target.answer(found.attack)
+
+    stages.watch(action)
+    content = found.attack.content
+    return (
+        f"{found.ratio:6.0f} × floor  {found.attack.entry} {found.attack.exercise} "
+        f"({found.status}, {len(content)} bytes): {stages.line()}\n"
+        f"         {content[:160].decode('utf-8', 'replace')!r}"
+    )
+
+
+def main() -> int:
+    """Search and print; return the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m tests.worst", description=__doc__)
+    parser.add_argument("--minutes", type=float, default=10)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--entry", default="", choices=("", GRADE, PREVIEW, FILE))
+    parser.add_argument("--exercise", default="", help="only exercises whose id begins so")
+    parser.add_argument("--most", type=int, default=5, help="bodies of each entry point")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write the bodies here")
+    options = parser.parse_args()
+    until = time.monotonic() + 60 * options.minutes
+    attacked = {
+        name: each for name, each in exercises().items() if name.startswith(options.exercise)
+    }
+    target = Target(attacked)
+    search = Search(target, options.seed, cells())
+    search.evolve(attacks(attacked, options.seed), until, options.entry)
+    worst = 0.0
+    sys.stdout.write(f"{search.tried} bodies, seed {options.seed}\n")
+    for entry in (GRADE, PREVIEW, FILE):
+        for i, found in enumerate(search.costliest(entry, options.most)):
+            again = search.measured(found.attack, 3)
+            worst = max(worst, again.ratio)
+            text = line_of(again, target)
+            sys.stdout.buffer.write(f"{text}\n".encode("utf-8", "replace"))
+            sys.stdout.flush()
+            if options.out is not None:
+                options.out.mkdir(parents=True, exist_ok=True)
+                name = f"{entry}-{found.attack.exercise}-{i}"
+                (options.out / f"{name}.json").write_bytes(found.attack.content)
+                with (options.out / "list.txt").open("a", encoding="utf-8") as listed:
+                    listed.write(f"{again.ratio:.0f}  {name}.json  {text.splitlines()[0]}\n")
+    target.close()
+    return 1 if worst > PROMISED else 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,135 @@
+"""The ways into the program, each called with the bytes of a body and measured cold."""
+
+import asyncio
+import gc
+import json
+import statistics
+import tempfile
+import time
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from fastapi import FastAPI
+from rich.console import Console
+
+from service.api.application import application
+from service.catalogue import Exercise, FeedbackLevel
+from service.cli.submission_files import UnusableFileError, read_submission
+from service.expressions import reader
+from service.expressions.evaluation import decimals
+from service.expressions.parsing import words
+from service.formats import FORMATS, GradedFile
+from service.grading import UnknownPartError, grade
+from tests.benchmarks.floors import stanford_pose
+
+GRADE, PREVIEW, FILE = "grade", "preview", "file"
+_CACHES = (
+    reader._remembered, reader._remembered_long, reader._parsed, words.split, decimals.decimals_of,
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Attack:
+    """One request: where it goes, the exercise in its path, and its body."""
+
+    entry: str
+    exercise: str
+    body: Mapping[str, Any]
+
+    @cached_property
+    def content(self) -> bytes:
+        """The body as it is sent."""
+        return json.dumps(self.body, ensure_ascii=False).encode("utf-8", "replace")
+
+
+def forget() -> None:
+    """Empty what is remembered of texts: an attacker writes another digit into each body."""
+    for cache in _CACHES:
+        cache.cache_clear()
+
+
+def floor_seconds() -> float:
+    """The plain-numpy floor of the benchmarks, in processor time."""
+    times = []
+    for _ in range(20):
+        start = time.process_time()
+        for _ in range(10):
+            stanford_pose(32)
+        times.append((time.process_time() - start) / 10)
+    return statistics.median(times)
+
+
+class Target:
+    """The program in this process."""
+
+    def __init__(self, exercises: Mapping[str, Exercise]) -> None:
+        self.exercises = exercises
+        self._app: FastAPI = application(exercises)
+        self._loop = asyncio.new_event_loop()
+        self._folder = tempfile.TemporaryDirectory()
+        # As the service does at its start.
+        gc.collect()
+        gc.freeze()
+
+    def close(self) -> None:
+        """Drop the loop and the folder."""
+        self._loop.close()
+        self._folder.cleanup()
+
+    def answer(self, attack: Attack) -> int:
+        """Send it; the status of the answer, 200 where the body was accepted."""
+        return self._action(attack)()
+
+    def seconds(self, attack: Attack, rounds: int = 2) -> tuple[float, int]:
+        """The least processor time of so many cold answers, and their status."""
+        action = self._action(attack)
+        best, status = float("inf"), 0
+        for _ in range(rounds):
+            forget()
+            gc.collect()
+            start = time.process_time()
+            status = action()
+            best = min(best, time.process_time() - start)
+        return best, status
+
+    def _action(self, attack: Attack) -> Callable[[], int]:
+        content = attack.content
+        if attack.entry == FILE:
+            path = Path(self._folder.name) / "submission.json"
+            path.write_bytes(content)
+            return lambda: self._file(path, attack.exercise)
+        url = "/v1/preview" if attack.entry == PREVIEW else f"/v1/exercises/{attack.exercise}/grade"
+        return lambda: self._loop.run_until_complete(self._posted(url, content))
+
+    async def _posted(self, url: str, content: bytes) -> int:
+        status = 0
+
+        async def receive() -> dict[str, Any]:
+            return {"type": "http.request", "body": content, "more_body": False}
+
+        async def send(message: Mapping[str, Any]) -> None:
+            nonlocal status
+            status = message.get("status", status)
+
+        length = (b"content-length", str(len(content)).encode())
+        scope = {
+            "type": "http", "asgi": {"version": "3.0"}, "http_version": "1.1", "method": "POST",
+            "scheme": "http", "path": url, "raw_path": url.encode(), "query_string": b"",
+            "root_path": "", "headers": [(b"content-type", b"application/json"), length],
+            "client": ("127.0.0.1", 1), "server": ("127.0.0.1", 80),
+        }  # fmt: skip
+        await self._app(scope, receive, send)
+        return status
+
+    def _file(self, path: Path, exercise: str) -> int:
+        """As `dh-grader grade` does with a file, told as text."""
+        with suppress(UnusableFileError, UnknownPartError), Path("/dev/null").open("w") as nothing:
+            submission = read_submission(path, None).submission(FeedbackLevel.FULL)
+            graded = GradedFile(path, grade(self.exercises[exercise], submission))
+            FORMATS["text"].document([graded], Console(file=nothing, width=80))
+            return 200
+        return 422

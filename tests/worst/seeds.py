@@ -1,0 +1,99 @@
+"""Where the search begins: the bodies that are known to be costly, and what tutors wrote."""
+
+import random
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from service.catalogue import Exercise
+from tests.expressions.fuzzing import hostile, seeds
+from tests.worst.entry_points import FILE, GRADE, PREVIEW, Attack
+
+KEYS = ("a", "alpha", "d", "theta")
+HALVES = "½" * 78
+LONG_TABLE = ["=", "=", "=", {}, "=", ["0^-1", "sqrt(q1)", "theta1", "atan2(0,0)"]]
+
+
+def halves(i: int, runs: int = 6) -> str:
+    """A text that nearly repairs; ``i`` makes another of it."""
+    return "//".join([HALVES] * runs) + str(i)
+
+
+def grid(rows: int, columns: int, runs: int = 6) -> list[list[str]]:
+    """A matrix of such texts."""
+    return [[halves(columns * i + j, runs) for j in range(columns)] for i in range(rows)]
+
+
+def padded(rows: int, size: int = 16_000, pad: str = "$") -> str:
+    """A pasted matrix of four columns, with much behind it that means nothing."""
+    lines = [", ".join(f"c{(i + j) % 3 + 1}" for j in range(4)) for i in range(rows)]
+    return "\n".join(lines) + "\n" + pad * (size - sum(map(len, lines)) - rows)
+
+
+def garbage_table(rows: int, choose: random.Random) -> list[list[str]]:
+    """Rows of cells that are read, mean nothing, and have three figures."""
+    return [[f"{choose.uniform(-3, 3):.3g}" for _ in KEYS] for _ in range(rows)]
+
+
+def cells() -> list[str]:
+    """Cells to put anywhere: every text of the corpora, and known costly ones."""
+    return [
+        *seeds(), *hostile(), HALVES, halves(0), "//" * 200, "=", "sqrt(q1)", "0^-1", "atan2(0,0)",
+        "½" * 240, "(" * 120, "x" * 240, "q9 " * 80, "sin" * 80, "1,5 " * 60, "θ₁" * 100, "$" * 240,
+        r"\frac{" * 40, "a1 + " * 48, "c123 " * 50, "-" * 200 + "1", "sinq1 cosq2 " * 20,
+        "qq1*" * 60, "1.23", "-0.456", "0.785", "1/0", "theta1 + 0.001", "l1 mm", "90deg deg",
+    ]  # fmt: skip
+
+
+def answers_of(exercise: Exercise) -> Iterator[dict[str, Any]]:
+    """The answers that the exercise's own checks hand in."""
+    for check in exercise.checks:
+        yield dict(check.answers)
+
+
+def _spread(exercise: Exercise, choose: random.Random) -> Iterator[dict[str, Any]]:
+    """Known costly answers, to each part that may take them."""
+    tables, matrices, links = {}, {}, {}
+    joints = max(len(exercise.joints), 3)
+    for part in exercise.parts:
+        if part.kind == "dh_table":
+            tables[part.id] = garbage_table(joints, choose)
+        elif part.kind == "link_transforms":
+            links[part.id] = joints
+        else:
+            matrices[part.id] = 4 if part.kind == "transform" else 3
+    if tables:
+        yield dict(tables)
+        for rows in (joints + 1, joints + 3, 12):
+            yield {name: garbage_table(rows, choose) for name in tables}
+        yield {name: {"rows": LONG_TABLE} for name in tables}
+        yield {name: {"rows": [*LONG_TABLE[:4]] + [{}] * joints} for name in tables}
+    for pad in "$ &|,":
+        pasted = {name: padded(4 * count, pad=pad) for name, count in links.items()}
+        yield tables | pasted | {name: padded(size) for name, size in matrices.items()}
+    yield {name: grid(size, size) for name, size in matrices.items()} | {
+        name: [grid(4, 4)] * count for name, count in links.items()
+    }
+
+
+def attacks(exercises: Mapping[str, Exercise], seed: int) -> Iterator[Attack]:
+    """The first bodies of the search."""
+    choose = random.Random(seed)
+    for name, exercise in exercises.items():
+        bodies = [*answers_of(exercise), *(each for each in _spread(exercise, choose) if each)]
+        for answers in bodies:
+            yield Attack(GRADE, name, {"answers": answers})
+            yield Attack(FILE, name, {"answers": answers})
+            for answered, answer in answers.items():
+                if isinstance(answer, str):
+                    body = {"text": answer, "exercise": name, "part": answered}
+                    yield Attack(PREVIEW, name, body)
+        for part in exercise.parts:
+            for runs in (1, 6):
+                text = "\n".join(map(", ".join, grid(8, 4, runs)))
+                body = {"text": text, "exercise": name, "part": part.id}
+                yield Attack(PREVIEW, name, body)
+    name = next(iter(exercises))
+    for text in cells():
+        yield Attack(PREVIEW, name, {"text": text})
+    yield Attack(GRADE, name, {"answers": {f"part{i}": 0 for i in range(20_000)}})
+    yield Attack(FILE, name, {"answers": {f"part{i}": 0 for i in range(20_000)}})

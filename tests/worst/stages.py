@@ -1,0 +1,81 @@
+"""Where the time of a request goes, by looking at the stack a thousand times a second."""
+
+import signal
+from collections import Counter
+from collections.abc import Callable
+from types import FrameType
+
+# The first of these that stands anywhere in the stack names the stage.
+_STAGES = (
+    ("service/expressions/repairs/", "repairs"),
+    ("service/grading/diagnosis/", "diagnosis"),
+    ("service/expressions/printing/", "printing"),
+    ("service/grids/", "grids"),
+    ("service/expressions/reader.py", "reading characters"),
+    ("service/grading/reading/", "reading answers"),
+    ("service/grading/follow_through.py", "follow-through"),
+    ("service/grading/judging/", "judging"),
+    ("service/grading/kinds/", "judging"),
+    ("service/formats/", "rendering"),
+    ("service/submissions/", "body"),
+    ("service/api/", "body"),
+)
+_EVALUATION = "service/expressions/evaluation/"
+INTERVAL = 0.001
+
+
+def _path(frame: FrameType) -> str:
+    return frame.f_code.co_filename.replace("\\", "/")
+
+
+def _stage(frame: FrameType | None) -> tuple[str, str]:
+    """The stage, and the innermost function of the service."""
+    paths: list[str] = []
+    innermost = ""
+    follows = False
+    while frame is not None:
+        path = _path(frame)
+        paths.append(path)
+        if not innermost and "/service/" in path:
+            innermost = f"{path.partition('/service/')[2]}:{frame.f_code.co_name}"
+        if "/grading/kinds/" in path:
+            follows |= bool(getattr(frame.f_locals.get("grading"), "following", False))
+        frame = frame.f_back
+    evaluates = any(_EVALUATION in path for path in paths)
+    for part, stage in _STAGES:
+        if any(part in path for path in paths) and not (evaluates and "reader" in part):
+            return f"{stage}, following through" if follows else stage, innermost
+    return "other", innermost
+
+
+class Stages:
+    """The shares of the stages and of the innermost functions in what is called."""
+
+    def __init__(self) -> None:
+        self.stages: Counter[str] = Counter()
+        self.functions: Counter[str] = Counter()
+
+    def watch(self, action: Callable[[], object], rounds: int = 3) -> None:
+        """Call ``action`` so often and look at the stack meanwhile."""
+
+        def look(_: int, frame: FrameType | None) -> None:
+            stage, function = _stage(frame)
+            self.stages[stage] += 1
+            self.functions[function] += 1
+
+        before = signal.signal(signal.SIGPROF, look)
+        signal.setitimer(signal.ITIMER_PROF, INTERVAL, INTERVAL)
+        try:
+            for _ in range(rounds):
+                action()
+        finally:
+            signal.setitimer(signal.ITIMER_PROF, 0)
+            signal.signal(signal.SIGPROF, before)
+
+    def line(self, most: int = 3) -> str:
+        """The largest shares in words."""
+        return "; ".join(
+            ", ".join(f"{name} {count / (counts.total() or 1):.0%}" for name, count in largest)
+            for counts in (self.stages, self.functions)
+            if (largest := counts.most_common(most))
+        )
