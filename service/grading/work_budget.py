@@ -6,7 +6,7 @@ Counted work is the same on every machine, so that the same submission gives the
 from dataclasses import dataclass
 
 # The pose of a seven-joint arm, multiplied out, not simplified and printed as LaTeX, has 12,400.
-MAX_SYMBOLS = 13_000
+MAX_SYMBOLS = 14_000
 # A table is read a second time with its columns in another order; an ordinary one has 300.
 MAX_SYMBOLS_AGAIN = 1_600
 # To look for the repaired text of an unreadable one costs more than any other reading.
