@@ -6,13 +6,13 @@ from functools import cached_property
 
 from service.catalogue import Exercise, FeedbackLevel, PartSpec
 from service.expressions import AngleUnit
-from service.grading.feedback import UnreadableAnswerError, told_once
+from service.grading.feedback import Finding, UnreadableAnswerError, told_once
 from service.grading.follow_through import STANDS_STILL, can_carry, follows_from
 from service.grading.judging.marks import has_earned, part_report, unjudged_report
 from service.grading.kinds import KINDS
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.entry import Reader
-from service.grading.report import PartReport, Place, Report, Verdict, rounded_points
+from service.grading.report import PartReport, Place, Report, Severity, Verdict, rounded_points
 from service.grading.samples import draw
 from service.version import VERSION
 
@@ -56,7 +56,10 @@ def grade(exercise: Exercise, submission: Submission) -> Report:
     grading = Grading(exercise, samples, reader, submission.feedback, submission.echo)
     graded: dict[str, _Graded] = {}
     for part in exercise.parts:
+        was_told = reader.budget.has_left_out
         graded[part.id] = _graded(part, submission.answers, graded, grading)
+        if reader.budget.has_left_out and not was_told:
+            graded[part.id] = _with_message(graded[part.id], _WORK_LIMIT, grading)
     parts = [told_once(each.report) for each in graded.values()]
     if grading.level is FeedbackLevel.SCORE:
         parts = [_without_rows(part) for part in parts]
@@ -100,6 +103,20 @@ class _Graded:
         if self.judged is None or self.chain is None or not has_earned(self.judged, share):
             return False
         return can_carry(self.chain, grading)
+
+
+_WORK_LIMIT = Finding(
+    "work_limit",
+    "Not every mistake is explained: there are too many for one report. Correct those that are "
+    "explained, then check again.",
+    severity=Severity.INFO,
+)
+
+
+def _with_message(graded: _Graded, finding: Finding, grading: Grading) -> _Graded:
+    messages = grading.visible((finding,))
+    report = replace(graded.report, feedback=(*graded.report.feedback, *messages))
+    return replace(graded, report=report)
 
 
 def _graded(

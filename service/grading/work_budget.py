@@ -33,6 +33,7 @@ class WorkBudget:
     characters of texts that may still be cut into cells. ``explanations`` is the work that may
     still be spent on what is wrong and why: no verdict depends on it. ``searches`` is that for what
     a table may have been meant to be: with what was not read, in another order of its columns.
+    ``has_left_out`` says that an explanation was not afforded.
     """
 
     symbols: int = MAX_SYMBOLS
@@ -40,10 +41,12 @@ class WorkBudget:
     pasted: int = MAX_PASTED
     explanations: float = MAX_EXPLANATIONS
     searches: float = MAX_SEARCHES
+    has_left_out: bool = False
 
     def affords(self, work: float) -> bool:
         """Whether there is so much left for explanations. It is taken, and what is gone is gone."""
         self.explanations -= work
+        self.has_left_out |= self.explanations < 0
         return self.explanations >= 0
 
     def affords_search(self, work: float) -> bool:
@@ -58,4 +61,5 @@ class WorkBudget:
 
     def charge_repair(self, tried: int) -> None:
         """Count an unreadable text, for which texts of so many symbols were tried."""
+        self.has_left_out |= self.repairs <= 0
         self.repairs -= 1 + tried // SYMBOLS_PER_REPAIR

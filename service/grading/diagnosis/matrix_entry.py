@@ -1,6 +1,6 @@
 """Slips in a single matrix entry."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 from service.expressions import Symbol
 from service.expressions.parsing.degrees import in_degrees
@@ -26,6 +26,9 @@ MAX_PLACES = 3
 # less of it, but not nothing: the work must be bounded.
 WORK_BUDGET = 100.0
 COST_IF_EXPLAINED = 0.25
+# The work of an entry, and of each node of a formula that is taken apart, as the budget of the
+# submission counts it.
+ENTRY_WORK, NODE_WORK = 1.0, 0.2
 
 Formulas = Iterator[Rewritten]
 
@@ -178,12 +181,18 @@ def diagnose(
 
 def diagnose_entries(
     wrong: Mapping[tuple[int, int], WrongEntry],
+    affords: Callable[[float], bool],
     work_budget: float = WORK_BUDGET,
     requirements: Requirements | None = None,
 ) -> dict[tuple[int, int], Finding]:
-    """The finding on each wrong entry; once ``work_budget`` is used up, formulas stay whole."""
+    """The finding on each wrong entry, as far as the work budget ``affords`` it.
+
+    Once ``work_budget``, that of the matrix, is used up, formulas stay whole.
+    """
     findings: dict[tuple[int, int], Finding] = {}
     for place, entry in wrong.items():
+        if not affords(ENTRY_WORK + (NODE_WORK * entry.size if work_budget > 0 else 0.0)):
+            continue
         explained = _explained(entry, take_apart=work_budget > 0)
         work_budget -= entry.size * (COST_IF_EXPLAINED if explained else 1.0)
         required = requirements.of(*place) if requirements and not explained else None

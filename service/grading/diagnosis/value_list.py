@@ -5,7 +5,7 @@ import numpy as np
 from service.expressions.printing.spelling import PLAIN
 from service.grading.diagnosis.angle import diagnose_angle
 from service.grading.diagnosis.formula_repair import WrongEntry
-from service.grading.diagnosis.matrix_entry import diagnose
+from service.grading.diagnosis.matrix_entry import ENTRY_WORK, diagnose
 from service.grading.diagnosis.missing_symbol import Requirements
 from service.grading.diagnosis.slip_search import SlipSearch
 from service.grading.diagnosis.slipped_answers import SlippedAnswers
@@ -13,6 +13,9 @@ from service.grading.diagnosis.wrong_value import Mask
 from service.grading.feedback import Finding
 from service.grading.judging.value_list import ComparedValues
 from service.grading.part import Grading
+
+# The work of all that may explain a whole list of values, as the budget counts it.
+SEARCH_WORK = 12.0
 
 
 def search_of(
@@ -41,7 +44,7 @@ def slips_of(
     grading: Grading,
     answers: SlippedAnswers | None = None,
 ) -> dict[tuple[int, int], Finding]:
-    """The finding on each wrong value that was read, at (its place, 0).
+    """The finding on each wrong value that was read, at (its place, 0), as the budget allows.
 
     ``answers`` are those that changed symbols lead to.
     """
@@ -52,7 +55,7 @@ def slips_of(
     spelling = grading.spelling(student.entries) if wrong.any() else PLAIN
     slips: dict[tuple[int, int], Finding] = {}
     for i in np.flatnonzero(wrong).tolist():
-        if (expression := student.entries[i].expression) is None:
+        if (expression := student.entries[i].expression) is None or not grading.affords(ENTRY_WORK):
             continue
         angle = student.quantities[i] == "angle"
         case = WrongEntry(

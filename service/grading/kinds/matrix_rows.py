@@ -28,6 +28,8 @@ from service.grading.samples import Samples
 
 # So many samples of each half tell whole matrices apart.
 SUBSET = 4
+# The work of all that may explain a whole matrix, as the budget counts it.
+MATRIX_WORK = 12.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +81,8 @@ def matrix_rows(
     if (found >= Match.ROUNDED).all():
         rows = entry_rows(student.entries, found, {}, grading, labels=labels)
         return MatrixRows(rows, is_right=True)
+    if not grading.affords(MATRIX_WORK):
+        return MatrixRows(entry_rows(student.entries, found, {}, grading, labels=labels))
     scale = expected.scale(grading.exercise.length_scale)
     actual = Samples.subset_of(student.values, SUBSET)
     right = Samples.subset_of(expected.values, SUBSET)
@@ -129,7 +133,7 @@ def matrix_rows(
         if answers is None
         else Requirements(answers, grading.exercise, grading.samples, expected.values, scale)
     )
-    slips = diagnose_entries(entries, work_budget, requirements)
+    slips = diagnose_entries(entries, grading.affords, work_budget, requirements)
     check = check_yourself(case, slips)
     findings = [(each.finding, _cells(each.entries & case.wrong, labels)) for each in explained]
     findings += [(check, tuple(map(Place, labels[:3])))] if check else []

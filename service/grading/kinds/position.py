@@ -10,7 +10,7 @@ from service.grading.diagnosis.link_products import chains_of
 from service.grading.diagnosis.motion_slips import explain_displacements
 from service.grading.diagnosis.position import WrongPosition, explain_position
 from service.grading.diagnosis.slipped_answers import SlippedAnswers, slipped_answers
-from service.grading.diagnosis.value_list import search_of, slips_of
+from service.grading.diagnosis.value_list import SEARCH_WORK, search_of, slips_of
 from service.grading.diagnosis.wrong_value import Mask
 from service.grading.feedback import Finding
 from service.grading.judging.content import known_cells, of_list
@@ -39,8 +39,9 @@ def judge(part: PositionSpec, answer: StudentValues, grading: Grading) -> Judged
     found = compared.matches(grading)
     wrong = found < Match.ROUNDED
     different = found == Match.DIFFERENT
-    answers = _slipped(part, grading) if wrong.any() else None
-    explained = _explained(part, compared, different, answers, grading) if wrong.any() else None
+    explains = wrong.any() and grading.affords(SEARCH_WORK)
+    answers = _slipped(part, grading) if explains else None
+    explained = _explained(part, compared, different, answers, grading) if explains else None
     slips = slips_of(compared, wrong & ~(different & bool(explained)), grading, answers)
     rows = value_rows(answer, found, slips, grading)
     content = of_list(known_cells(expected, 0.0, compared.scales(grading)))

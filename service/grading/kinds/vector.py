@@ -5,7 +5,7 @@ import numpy as np
 from service.catalogue.parts.vector import VectorSpec
 from service.grading.comparison import Match
 from service.grading.diagnosis.slipped_answers import SlippedAnswers, slipped_answers
-from service.grading.diagnosis.value_list import search_of, slips_of
+from service.grading.diagnosis.value_list import SEARCH_WORK, search_of, slips_of
 from service.grading.diagnosis.wrong_value import Mask
 from service.grading.feedback import Finding
 from service.grading.formula_text import spelled
@@ -39,7 +39,8 @@ def judge(part: VectorSpec, answer: StudentValues, grading: Grading) -> Judged:
         spelling = grading.spelling(answer.entries)
         corrections = [spelled(formula.tree, spelling) for formula in formulas]
     different = found == Match.DIFFERENT
-    answers = slipped_answers(part, grading) if wrong.any() else None
+    explains = wrong.any() and grading.affords(SEARCH_WORK)
+    answers = slipped_answers(part, grading) if explains else None
     answers = answers and answers.of(lambda grid: grid[:, 0])
     explained = _slip(answers, compared, different, grading) if different.sum() > 1 else None
     wrong &= ~(different & bool(explained))

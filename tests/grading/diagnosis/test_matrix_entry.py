@@ -199,5 +199,5 @@ def test_long_formulas_are_only_compared() -> None:
 
 def test_without_work_budget_a_formula_is_only_compared() -> None:
     wrong_entries = {(0, 0): wrong("s1", "c1"), (0, 1): wrong("-c1", "c1")}
-    findings = matrix_entry.diagnose_entries(wrong_entries, work_budget=0)
+    findings = matrix_entry.diagnose_entries(wrong_entries, lambda _: True, work_budget=0)
     assert [finding.code for finding in findings.values()] == ["value", "sign"]
