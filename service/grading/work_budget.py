@@ -19,9 +19,9 @@ SYMBOLS_PER_REPAIR = 100
 MAX_PASTED = 36_000
 
 # In units of the least work that a grading can be: six links multiplied out at all samples.
-MAX_EXPLANATIONS = 150.0
-# Enough to look for a dozen unread cells, or to judge a table of six rows in five ways.
-MAX_SEARCHES = 150.0
+MAX_EXPLANATIONS = 180.0
+# Enough to judge a table of ten rows in free frames as it is written and in another order.
+MAX_SEARCHES = 240.0
 
 
 @dataclass(slots=True)
