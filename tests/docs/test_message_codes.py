@@ -116,7 +116,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
         ),
     ),
     (("Screws",), (f"{DIAGNOSIS}screw_axis.py", f"{DIAGNOSIS}home_position.py")),
-    (("Parts as a whole",), ("grading/follow_through.py",)),
+    (("Parts as a whole",), ("grading/follow_through.py", "grading/grade.py")),
 )
 
 
