@@ -47,6 +47,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
             "grading/reading/pasted.py",
             "grading/reading/matrix_list.py",
             "grading/reading/pasted_table.py",
+            "grading/reading/preview.py",
         ),
     ),
     (
