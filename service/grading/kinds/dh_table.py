@@ -160,7 +160,9 @@ def _judged_as_read(part: DhTableSpec, answer: StudentTable, grading: Grading) -
     kept = rows_of_mechanism(answer.rows, convention, grading)
     if len(kept) < len(answer.rows):
         return _with_rows_too_many(part, fixed, kept, judged, grading)
-    if np.isnan(answer.values).any():
+    unread = np.isnan(answer.values).any(axis=-1)
+    # Where nothing was read, nothing is earned anyway.
+    if unread.any() and not unread.all():
         filled = with_lazy_cells(fixed, convention, grading)
         in_silence = replace(grading, explains=False)
         return replace(judged, at_most=_judged_as_read(part, filled, in_silence))
