@@ -3,8 +3,8 @@
 
 PYTHON ?= python3
 VENV   ?= .venv
-HOST   ?= 127.0.0.1
-PORT   ?= 8000
+HOST   ?= $(or $(DH_GRADER_HOST),127.0.0.1)
+PORT   ?= $(or $(DH_GRADER_PORT),8000)
 COUNT  ?= 100000
 TABLES ?= 1000
 ROBOTS ?= 5000

@@ -65,6 +65,7 @@ class _Api(FastAPI):
                 allow_origins=self._cors_origins,
                 allow_methods=["GET", "POST"],
                 allow_headers=["Content-Type"],
+                expose_headers=["Retry-After"],
             )
         return app
 

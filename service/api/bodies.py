@@ -62,7 +62,7 @@ def _malformed(error: MalformedError, content_type: str) -> ProblemError:
         HTTPStatus.BAD_REQUEST,
         str(error),
         "malformed-json",
-        "The body is not JSON",
+        "The body cannot be read",
         [{"detail": error.reason, **place}],
     )
 

@@ -74,8 +74,8 @@ def exercise_files(*folders: Path) -> list[Path]:
             faults.append(Fault(folder, "", "holds no exercise file (*.toml)"))
         for file in found:
             if files.setdefault(file.stem, file) is not file:
-                reason = f"has the name of {files[file.stem]}; give it another, for it is the id"
-                faults.append(Fault(file, "", reason))
+                reason = f"has the name of {file}; give it another, for it is the id"
+                faults.append(Fault(files[file.stem], "", reason))
     if faults:
         raise CatalogueError(faults)
     return list(files.values())

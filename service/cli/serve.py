@@ -25,4 +25,7 @@ def command(
     from service.server.start import serve
 
     if not serve(settings):
-        give_up("The service could not start.")
+        give_up(
+            f"The service cannot listen on {settings.host}, port {settings.port}. Choose another "
+            "with --host and --port, or with DH_GRADER_HOST and DH_GRADER_PORT."
+        )

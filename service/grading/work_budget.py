@@ -10,7 +10,7 @@ MAX_SYMBOLS = 14_000
 # A table is read a second time with its columns in another order; an ordinary one has 300.
 MAX_SYMBOLS_AGAIN = 1_600
 # To look for the repaired text of an unreadable one costs more than any other reading.
-MAX_REPAIRS = 12
+MAX_REPAIRS = 24
 # A repair that reads so many symbols counts as another one.
 SYMBOLS_PER_REPAIR = 100
 
@@ -66,5 +66,4 @@ class WorkBudget:
 
     def charge_repair(self, tried: int) -> None:
         """Count an unreadable text, for which texts of so many symbols were tried."""
-        self.has_left_out |= self.repairs <= 0
         self.repairs -= 1 + tried // SYMBOLS_PER_REPAIR

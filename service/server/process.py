@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import logging
 import os
 import signal
 import socket
@@ -15,6 +16,13 @@ from service.server.limits import GRACE
 from service.server.protocol import GuardedProtocol, GuardedState
 from service.server.shared_port import Acceptor, SharedPort
 
+_log = logging.getLogger("uvicorn.error")
+
+# Who waits for the end must not send the second signal by mistake.
+ENDING: Final = (
+    f"Ending: requests that have come are answered, for {GRACE:g} s at most. "
+    "A second signal ends at once."
+)
 _SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -49,6 +57,7 @@ class Server(uvicorn.Server):
             signal.raise_signal(sig)
         else:
             self.should_exit = True
+            _log.info(ENDING)
 
     async def on_tick(self, counter: int) -> bool:
         """Whether to end: by a signal, or because nobody is left to send one."""

@@ -27,7 +27,10 @@ def serve(settings: Settings) -> bool:
         return server.started
     config = _config(settings, app)
     # The workers read the exercises themselves: here they were read to see that they can be used.
-    listener = config.bind_socket()
+    try:
+        listener = config.bind_socket()
+    except SystemExit:
+        return False
     return Supervisor(partial(_work, settings), listener, settings.workers).run()
 
 

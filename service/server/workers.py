@@ -12,6 +12,7 @@ from multiprocessing.process import BaseProcess
 from typing import Final
 
 from service.server.limits import GRACE
+from service.server.process import ENDING
 from service.server.shared_port import Seats, SharedPort
 
 # Seconds beyond the grace of a worker until it is killed.
@@ -86,6 +87,7 @@ class Supervisor:
 
     def _end(self, awake: socket.socket) -> None:
         """Have the workers end in good order; by a second signal, or in the end, at once."""
+        _log.info(ENDING)
         for worker in self._workers:
             worker.terminate()
         end = time.monotonic() + GRACE + _MARGIN

@@ -10,7 +10,11 @@ import httpx
 from service.submissions.body import MAX_SUBMISSIONS
 
 ROOT = Path(__file__).parents[2]
-CURL = re.compile(r"^\$ curl -s http://127\.0\.0\.1:8000(\S+) -d @(\S+)$", re.MULTILINE)
+CURL = re.compile(
+    r"^\$ curl -s http://127\.0\.0\.1:8000(\S+) \\\n"
+    r" +-H 'Content-Type: application/json' -d @(\S+)$",
+    re.MULTILINE,
+)
 
 
 def json_blocks(page: str) -> list[dict[str, Any]]:
@@ -21,14 +25,13 @@ def json_blocks(page: str) -> list[dict[str, Any]]:
 def test_the_readme_s_curl_gets_the_answer_that_it_prints(client: httpx.Client) -> None:
     (url, file), _ = CURL.findall((ROOT / "README.md").read_text(encoding="utf-8"))
     (printed,) = json_blocks("README.md")
-    # As curl sends it: a form's content type, whatever the body is.
-    answered = client.post(
-        url,
-        content=(ROOT / file).read_bytes(),
-        headers={"Content-Type": "application/x-www-form-urlencoded"},
-    )
-    assert answered.status_code == 200
-    assert answered.json() == {**printed, "version": answered.json()["version"]}
+    # As curl sends it where nobody says what it is: with a form's content type.
+    for content_type in ("application/json", "application/x-www-form-urlencoded"):
+        answered = client.post(
+            url, content=(ROOT / file).read_bytes(), headers={"Content-Type": content_type}
+        )
+        assert answered.status_code == 200
+        assert answered.json() == {**printed, "version": answered.json()["version"]}
 
 
 def test_the_readme_s_curl_for_many_gets_a_report_and_a_problem(client: httpx.Client) -> None:

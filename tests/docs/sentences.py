@@ -105,6 +105,9 @@ def answers(catalogue: Mapping[str, Exercise]) -> Iterator[Example]:
     yield Example("planar-rr", {"position": ["+" * LIMITS.characters] * 2})
     texts = "1, 2\n" * (GRID_LIMITS.characters // 5)
     yield Example("planar-rr", {"table": texts, "pose": texts})
+    # More than is explained of one.
+    wrong = [["c1 c4", "c1 s4", "c4 s1", "s1 s4"]] * 4
+    yield Example("stanford-arm", {"table": wrong[:1] * 6, "links": [wrong] * 6, "pose": wrong})
 
 
 def _of_the_page(line: messages_page.Line) -> Example | None:
