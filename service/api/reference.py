@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Final
 
 from fastapi import APIRouter
-from starlette.responses import FileResponse, HTMLResponse
+from starlette.responses import HTMLResponse, Response
+from starlette.types import Receive, Scope, Send
 
 from service.api.problems import ProblemError
 
@@ -52,9 +53,26 @@ _FILES: Final = {
 }
 
 
+# Bytes that are handed to the server at once.
+_PIECE: Final = 16 * 1024
+
+
+class _FileResponse(Response):
+    """A file that is in memory, sent piece by piece: whoever does not read it holds one piece."""
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:  # noqa: ARG002
+        """Serve one ASGI connection."""
+        start = {"status": self.status_code, "headers": self.raw_headers}
+        await send({"type": "http.response.start", **start})
+        for i in range(0, len(self.body), _PIECE):
+            piece, more = self.body[i : i + _PIECE], i + _PIECE < len(self.body)
+            await send({"type": "http.response.body", "body": piece, "more_body": more})
+
+
 def routes() -> APIRouter:
     """The page and its files."""
     router = APIRouter(include_in_schema=False)
+    contents = {name: (FOLDER / name).read_bytes() for name in _FILES}
 
     @router.get("/docs")
     async def page() -> HTMLResponse:
@@ -62,12 +80,12 @@ def routes() -> APIRouter:
         return HTMLResponse(_PAGE, headers={"Content-Security-Policy": _POLICY})
 
     @router.get("/docs/{name}")
-    async def file(name: str) -> FileResponse:
+    async def file(name: str) -> Response:
         """A script or style of the page."""
         if name not in _FILES:
             raise ProblemError(HTTPStatus.NOT_FOUND, "The page /docs has no such file.")
         media_type, caching = _FILES[name]
         headers = {"Cache-Control": caching}
-        return FileResponse(FOLDER / name, headers=headers, media_type=media_type)
+        return _FileResponse(contents[name], headers=headers, media_type=media_type)
 
     return router

@@ -56,11 +56,10 @@ def grade(exercise: Exercise, submission: Submission) -> Report:
     grading = Grading(exercise, samples, reader, submission.feedback, submission.echo)
     graded: dict[str, _Graded] = {}
     for part in exercise.parts:
-        was_told = reader.budget.has_left_out
         graded[part.id] = _graded(part, submission.answers, graded, grading)
-        if reader.budget.has_left_out and not was_told:
-            graded[part.id] = _with_message(graded[part.id], _WORK_LIMIT, grading)
     parts = [told_once(each.report) for each in graded.values()]
+    if reader.budget.has_left_out:
+        parts = _with_work_limit(parts, grading)
     if grading.level is FeedbackLevel.SCORE:
         parts = [_without_rows(part) for part in parts]
     points = rounded_points(sum(part.points for part in parts))
@@ -113,10 +112,26 @@ _WORK_LIMIT = Finding(
 )
 
 
-def _with_message(graded: _Graded, finding: Finding, grading: Grading) -> _Graded:
-    messages = grading.visible((finding,))
-    report = replace(graded.report, feedback=(*graded.report.feedback, *messages))
-    return replace(graded, report=report)
+def _with_work_limit(parts: list[PartReport], grading: Grading) -> list[PartReport]:
+    """The parts; the first one that has a wrong cell without a message says that there are such."""
+    for i, part in enumerate(parts):
+        if _has_unexplained_cells(part):
+            told = replace(part, feedback=(*part.feedback, *grading.visible((_WORK_LIMIT,))))
+            return [*parts[:i], told, *parts[i + 1 :]]
+    return parts
+
+
+def _has_unexplained_cells(part: PartReport) -> bool:
+    messages = [each for each in part.feedback if each.severity is Severity.ERROR]
+    if any(message.places is None for message in messages):
+        return False
+    told = {(place.row, place.cell) for each in messages for place in each.places or ()}
+    return any(
+        cell.verdict is Verdict.INCORRECT and not cell.feedback and not row.feedback
+        for row in part.rows
+        for cell in row.cells
+        if (row.label, cell.label) not in told and (row.label, None) not in told
+    )
 
 
 def _graded(

@@ -3,7 +3,7 @@
 Counted work is the same on every machine, so that the same submission gives the same report.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 # The pose of a seven-joint arm, multiplied out, not simplified and printed as LaTeX, has 12,400.
 MAX_SYMBOLS = 14_000
@@ -37,7 +37,8 @@ class WorkBudget:
     still be spent on what is wrong and why: no verdict depends on it. ``searches`` is that for what
     a table may have been meant to be: with what was not read, in another order of its columns.
     ``printed`` counts the characters of formulas that may still be drawn for a preview.
-    ``has_left_out`` says that an explanation was not afforded.
+    ``has_left_out`` says that an explanation was not afforded. ``unreadable`` are the texts that
+    could not be read.
     """
 
     symbols: int = MAX_SYMBOLS
@@ -47,6 +48,7 @@ class WorkBudget:
     searches: float = MAX_SEARCHES
     printed: int = MAX_PRINTED
     has_left_out: bool = False
+    unreadable: set[object] = field(default_factory=set)
 
     def affords(self, work: float) -> bool:
         """Whether there is so much left for explanations. It is taken, and what is gone is gone."""
@@ -64,6 +66,8 @@ class WorkBudget:
         self.symbols -= symbols
         return self.symbols >= 0
 
-    def charge_repair(self, tried: int) -> None:
-        """Count an unreadable text, for which texts of so many symbols were tried."""
-        self.repairs -= 1 + tried // SYMBOLS_PER_REPAIR
+    def charge_repair(self, text: object, tried: int) -> None:
+        """Count an unreadable text, once, for which texts of so many symbols were tried."""
+        if text not in self.unreadable:
+            self.unreadable.add(text)
+            self.repairs -= 1 + tried // SYMBOLS_PER_REPAIR

@@ -38,8 +38,8 @@ OF_ALL: Final = (1024, 32 * 1024 * 1024)
 # once to use them.
 SLICE: Final = 0.002
 _CALLED: Final = 8
-# How many small answers, on health and refusals, are given each time the sockets are looked at. On
-# a thousand connections, they alone would keep the process busy.
+# How many answers on health, and how many refusals, are given each time the sockets are looked at.
+# On a thousand connections, they alone would keep the process busy.
 SMALL: Final = 4
 # Seconds without an ordinary request after which costly ones need not rest.
 _CALM: Final = 1.0
@@ -81,6 +81,14 @@ class Metered:
                 resume = partial(steps.send, value)
 
 
+class _Lane:
+    """Small answers of one kind: those given since the sockets were looked at, those that wait."""
+
+    def __init__(self) -> None:
+        self.given = 0
+        self.waiting: deque[asyncio.Future[None]] = deque()
+
+
 class FairAdmission:
     """Lets whole requests through to the application one by one, in turn by client."""
 
@@ -91,11 +99,11 @@ class FairAdmission:
         # The times of the loop at which a costly one ended, and an ordinary one came.
         self._costly_ended = self._ordinary_came = float("-inf")
         self._alarm: asyncio.TimerHandle | None = None
-        # Processor time and small answers since the sockets were looked at; whether they will be.
+        # Processor time since the sockets were looked at; whether they will be.
         self._spent = 0.0
-        self._small = 0
         self._looking = False
-        self._small_ones: deque[asyncio.Future[None]] = deque()
+        # Of their own each: a thousand refusals must not make a question about health wait.
+        self._health, self._refusals = _Lane(), _Lane()
         self._mean = 0.0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -104,7 +112,7 @@ class FairAdmission:
             await self.app(scope, receive, send)
             return
         if scope["path"] in HEALTH:
-            await self._small_turn()
+            await self._small_turn(self._health)
             await self.app(scope, receive, send)
             return
         body, ended = await _body(receive)
@@ -117,7 +125,7 @@ class FairAdmission:
             refusal = self._refusal(ticket)
             if refusal is not None:
                 body = b""
-                await self._small_turn()
+                await self._small_turn(self._refusals)
                 await refusal.response(scope["path"])(scope, receive, send)
                 return
             queue = await self._turn(ticket)
@@ -196,14 +204,14 @@ class FairAdmission:
                 return queue
             before = queue
 
-    async def _small_turn(self) -> None:
+    async def _small_turn(self, lane: _Lane) -> None:
         """Wait, where too many small answers are asked for at once."""
-        if self._small >= SMALL:
+        if lane.given >= SMALL:
             turn = asyncio.get_running_loop().create_future()
-            self._small_ones.append(turn)
+            lane.waiting.append(turn)
             await turn
         else:
-            self._small += 1
+            lane.given += 1
             self._look_soon()
 
     def _look_soon(self) -> None:
@@ -216,14 +224,17 @@ class FairAdmission:
 
     def _next(self) -> None:
         """Call up those whose turn it is; who finds no time waits again."""
-        self._looking, self._spent, self._small = False, 0.0, 0
+        self._looking, self._spent = False, 0.0
         called = self._call_costly()
         if not called:
             while len(self._ordinary) and called < _CALLED:
                 called += _wake(self._ordinary.pop().turn)
-        while self._small_ones and self._small < SMALL:
-            self._small += _wake(self._small_ones.popleft())
-        if called or self._small:
+        for lane in (self._health, self._refusals):
+            lane.given = 0
+            while lane.waiting and lane.given < SMALL:
+                lane.given += _wake(lane.waiting.popleft())
+            called += lane.given
+        if called:
             self._look_soon()
 
     def _call_costly(self) -> int:

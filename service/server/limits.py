@@ -25,7 +25,11 @@ MAX_CONNECTIONS: Final = 1000
 RESERVE: Final = 32
 # Files that the program itself opens.
 OTHER_FILES: Final = 64
-# Bytes of requests that have not arrived whole, of all connections.
+# Bytes of an answer that wait to be sent until no more of it is asked for: a longer answer that has
+# been made in one piece counts as held by its client, as an unfinished request does.
+MAX_UNREAD: Final = 16 * 1024
+# Bytes of requests that have not arrived whole, and of answers that are not read, of all
+# connections.
 MAX_UNFINISHED: Final = 32 * 1024 * 1024
 
 # From the signal to end until the last answers are given up.

@@ -22,7 +22,7 @@ from uvicorn.server import ServerState
 from service.api.problems import ProblemError
 from service.server.crowd import Crowd, client_key, room_here
 from service.server.framing import Framing
-from service.server.limits import HEALTH, LINGER, MAX_DISCARDED, PATIENCE
+from service.server.limits import HEALTH, LINGER, MAX_DISCARDED, MAX_UNREAD, PATIENCE
 from service.server.refusals import late, malformed, too_busy
 from service.submissions.strict_json import MAX_BODY_SIZE
 
@@ -92,6 +92,7 @@ class GuardedProtocol(HttpToolsProtocol):
         self._finishing = False
         self._stopping = False
         self._discarded = 0
+        self._unread = 0
         self.url = b""
         self.address = ""
         self.unfinished = 0
@@ -107,6 +108,7 @@ class GuardedProtocol(HttpToolsProtocol):
         """Begin, or hang up at once where there is no room."""
         super().connection_made(transport)
         self._raw = transport
+        transport.set_write_buffer_limits(high=MAX_UNREAD)
         self.flow = _Valve(transport)
         self.transport = _Wire(transport, self.finish)  # type: ignore[assignment]
         self.address = client_key(self.client[0]) if self.client else ""
@@ -131,7 +133,8 @@ class GuardedProtocol(HttpToolsProtocol):
             if self._discarded > MAX_DISCARDED:
                 self._raw.abort()
             return
-        if not self._framing.begun and self.waiting_since is not None:
+        # Empty lines before a request do not begin it.
+        if not self._framing.begun and self.waiting_since is not None and data.strip(b"\r\n"):
             self._wait()
         self._framing.receive(data)
         self._advance()
@@ -150,14 +153,20 @@ class GuardedProtocol(HttpToolsProtocol):
         if self._finishing:
             return
         if not framing.whole:
-            self.crowd.hold(self, len(framing) + framing.content)
+            self._note_held()
             if self.flow.shut:
                 self.flow.release()
             return
-        self.crowd.hold(self, 0)
+        self._note_held()
         if len(framing):
             # The next request of a pipeline waits until this one is answered.
             self.flow.hold()
+
+    def _note_held(self) -> None:
+        """Tell the crowd how many bytes are kept because the client does not get on."""
+        framing = self._framing
+        unfinished = 0 if framing.whole else len(framing) + framing.content
+        self.crowd.hold(self, unfinished + self._unread)
 
     def _parse(self, piece: bytes) -> None:
         framing = self._framing
@@ -219,6 +228,7 @@ class GuardedProtocol(HttpToolsProtocol):
     def _advance_if_read(self) -> None:
         if self.flow.write_paused:
             self.flow.hold()
+            self._note_held()
         elif not self._finishing and not self._framing.whole:
             self._advance()
 
@@ -254,15 +264,22 @@ class GuardedProtocol(HttpToolsProtocol):
             self.flow.resume_reading()
 
     def pause_writing(self) -> None:
-        """The client does not read its answers."""
+        """The client does not read its answers: from now on, this process waits for it."""
         super().pause_writing()
+        self._unread = self._raw.get_write_buffer_size()
         if self.waiting_since is None:
-            self.deadline = self.loop.time() + PATIENCE
+            self._wait()
+        self._note_held()
 
     def resume_writing(self) -> None:
         """The client reads."""
         super().resume_writing()
-        if self.waiting_since is None:
+        self._unread = 0
+        self._note_held()
+        if self._finishing:
+            return
+        if self._framing.whole:
+            self.waiting_since = None
             self.deadline = float("inf")
         elif len(self._framing):
             self.loop.call_soon(self._advance_if_read)

@@ -173,6 +173,17 @@ def test_an_idle_connection_is_closed_without_a_word(impatient: Service, sent: b
     assert said.count(b"HTTP/1.1") == (1 if sent else 0)
 
 
+def test_empty_lines_keep_no_connection(impatient: Service) -> None:
+    with impatient.connect(b"\r\n") as connection:
+        connection.settimeout(PATIENCE / 5)
+        end = time.monotonic() + 5 * PATIENCE
+        with pytest.raises((ConnectionResetError, BrokenPipeError)):  # noqa: PT012 - until closed
+            while time.monotonic() < end:
+                connection.sendall(b"\r\n")
+                with contextlib.suppress(TimeoutError):
+                    assert connection.recv(100) == b""
+
+
 def test_answers_that_nobody_reads_stop_the_reading(impatient: Service) -> None:
     # The exercises take 5 kB each time; a client that reads nothing soon has none more begun.
     request = b"GET /v1/exercises HTTP/1.1\r\nHost: x\r\n\r\n" * 1000

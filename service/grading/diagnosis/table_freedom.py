@@ -23,6 +23,8 @@ from service.kinematics.tolerances import SAME_SCREW
 
 # How many samples of each half stand for a generic configuration.
 POSTURES = 2
+# Beside lengths so many times the typical one, what the others do counts as nothing.
+TOO_LONG = 300.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,8 +49,9 @@ def lost_freedom(
     """The findings on joints that share an axis or depend on each other.
 
     ``values`` is the student's table ``(rows, 4, SAMPLES)`` in ``convention``; a table with NaN,
-    where a cell was not read, has no finding. ``joint_rows`` names the row of each of the robot's
-    joints; a joint without a row is left out. One without its variable has a finding in its cell.
+    where a cell was not read, or with a length beyond all others has no finding. ``joint_rows``
+    names the row of each of the robot's joints; a joint without a row is left out. One without its
+    variable has a finding in its cell.
     """
     table = samples.subset_of(values, POSTURES)
     if not np.isfinite(table).all():
@@ -59,7 +62,7 @@ def lost_freedom(
         # Other joints may have lost their freedom only because this one stands still.
         return ()
     written = _arm(table, convention, present, exercise)
-    if rank(written.screws) == len(present):
+    if rank(written.screws) == len(present) or np.abs(written.screws).max() > TOO_LONG:
         return ()
     subset = samples.subset(POSTURES)
     reference = exercise.robot.tables[exercise.robot.convention]
@@ -95,7 +98,8 @@ def _lost_rank(written: _Arm, intended: _Arm, convention: Convention) -> tuple[F
     if rank(written.screws) >= rank(intended.screws):
         return ()
     involved = dependent(written.screws)
-    if not involved.any():
+    if involved.sum() < 2:
+        # No joint depends on itself alone, so the samples do not agree on which they are.
         involved = np.ones_like(involved)
     names = [str(joint.index) for joint, yes in zip(written.joints, involved, strict=True) if yes]
     first, *_, last = np.flatnonzero(involved).tolist()

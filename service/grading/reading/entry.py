@@ -102,7 +102,7 @@ class Reader:
                 repairs=budget.repairs > 0,
             )
         except ExpressionError as error:
-            budget.charge_repair(error.tried)
+            budget.charge_repair(raw, error.tried)
             is_unknown = in_table and error.code in _UNKNOWN_NAMES
             # Its symbols are read again.
             is_unknown = is_unknown and budget.charge_reading(symbols)

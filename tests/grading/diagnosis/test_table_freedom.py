@@ -226,3 +226,16 @@ def test_a_wrong_table_may_be_free_all_the_same(stanford: Exercise) -> None:
     table[4, ALPHA] *= -1
     table[3, A] = 0.3
     assert found(stanford, table) == ()
+
+
+@pytest.mark.parametrize("length", [1e5, 1e7, 1e9])
+@pytest.mark.parametrize(("exercise_id", "convention"), REFERENCES)
+def test_a_length_beyond_all_others_takes_no_freedom(
+    exercise_id: str, convention: Convention, length: float, catalogue: Mapping[str, Exercise]
+) -> None:
+    exercise = catalogue[exercise_id]
+    values = samples_of(exercise).values
+    for row in range(len(exercise.robot.joints)):
+        table = exercise.robot.tables[convention].values(values, SAMPLES)
+        table[row, A] += length
+        assert found(exercise, table, convention) == (), row
