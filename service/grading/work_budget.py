@@ -19,9 +19,12 @@ SYMBOLS_PER_REPAIR = 100
 MAX_PASTED = 36_000
 
 # In units of the least work that a grading can be: six links multiplied out at all samples.
-MAX_EXPLANATIONS = 150.0
-# Enough to look for a dozen unread cells, or to judge a table of six rows in five ways.
-MAX_SEARCHES = 150.0
+MAX_EXPLANATIONS = 180.0
+# Enough to judge a table of ten rows in free frames as it is written and in another order.
+MAX_SEARCHES = 240.0
+
+# The pose of a seven-joint arm, multiplied out, has 92,000 as MathML.
+MAX_PRINTED = 100_000
 
 
 @dataclass(slots=True)
@@ -33,6 +36,7 @@ class WorkBudget:
     characters of texts that may still be cut into cells. ``explanations`` is the work that may
     still be spent on what is wrong and why: no verdict depends on it. ``searches`` is that for what
     a table may have been meant to be: with what was not read, in another order of its columns.
+    ``printed`` counts the characters of formulas that may still be drawn for a preview.
     ``has_left_out`` says that an explanation was not afforded.
     """
 
@@ -41,6 +45,7 @@ class WorkBudget:
     pasted: int = MAX_PASTED
     explanations: float = MAX_EXPLANATIONS
     searches: float = MAX_SEARCHES
+    printed: int = MAX_PRINTED
     has_left_out: bool = False
 
     def affords(self, work: float) -> bool:

@@ -47,6 +47,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
             "grading/reading/pasted.py",
             "grading/reading/matrix_list.py",
             "grading/reading/pasted_table.py",
+            "grading/reading/preview.py",
         ),
     ),
     (
@@ -116,7 +117,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
         ),
     ),
     (("Screws",), (f"{DIAGNOSIS}screw_axis.py", f"{DIAGNOSIS}home_position.py")),
-    (("Parts as a whole",), ("grading/follow_through.py",)),
+    (("Parts as a whole",), ("grading/follow_through.py", "grading/grade.py")),
 )
 
 

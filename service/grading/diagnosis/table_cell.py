@@ -270,7 +270,7 @@ CHECKS = (
 # The codes of a joint variable in the column that stays constant.
 MISPLACED = (joint_variable_absent.__name__, joint_variable_column.__name__)
 # The work of one wrong cell, as the budget counts it.
-CELL_WORK = 2.5
+CELL_WORK = 1.2
 OF_DISTANCE = (distance_left_out, distance_extra)
 OF_ANGLE = (degrees_as_radians, radians_as_degrees, quarter_turn, half_turn)
 MISCONCEPTIONS = (sign, *OF_DISTANCE, *OF_ANGLE)

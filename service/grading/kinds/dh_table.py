@@ -71,6 +71,8 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     judged = _judged_as_read(part, answer, grading)
     if judged.is_right:
         return judged
+    budget, work = grading.reader.budget, _search_work(part, answer, grading)
+    budget.affords_search(work)
     if (intended := by_other_numbering(answer, grading)) is not None:
         without = _judged_as_read(part, intended.table, grading)
         return _with_slip(intended, without, judged, grading)
@@ -80,26 +82,28 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     # What was not read is not read in any order.
     unread = int(np.isnan(answer.values).any(axis=-1).sum())
     for intended in in_other_orders(answer, grading) if 3 * unread <= wrong else ():
-        if not _affords_another(part, answer, grading):
+        if not budget.affords_search(work):
             return judged
         without = _judged_as_read(part, intended.table, grading)
         if 3 * _count_wrong(without) <= wrong:
             # Who writes the columns in another order multiplies the links out as they were meant.
             return replace(_with_slip(intended, without, judged, grading), chain=without.chain)
     convention = part.convention if part.convention != "either" else answer.convention
-    intended_row = with_exchanged_row(answer, convention, grading)
-    if intended_row is not None and _affords_another(part, answer, grading):
-        intended = intended_row
-        without = _judged_as_read(part, intended.table, grading)
+    exchanged = with_exchanged_row(answer, convention, grading)
+    if exchanged is not None and budget.affords_search(work):
+        without = _judged_as_read(part, exchanged.table, grading)
         if 1 < wrong > _count_wrong(without):
-            return _with_slip(intended, without, judged, grading)
+            return _with_slip(exchanged, without, judged, grading)
     return judged
 
 
-def _affords_another(part: DhTableSpec, answer: StudentTable, grading: Grading) -> bool:
-    """Whether the budget allows to judge the table once more, as it may have been intended."""
+def _search_work(part: DhTableSpec, answer: StudentTable, grading: Grading) -> float:
+    """The work of judging a wrong table as it is written, or as it may have been intended."""
     of_row = ROW_WORK if freedom_of(part) == FrameFreedom() else FREE_ROW_WORK
-    return grading.reader.budget.affords_search(of_row * len(answer.rows))
+    ways = 2 if part.convention == "either" and answer.convention is None else 1
+    has_rows_too_many = len(answer.rows) > len(grading.exercise.joints) + 1
+    has_unread_cells = np.isnan(answer.values).any()
+    return of_row * len(answer.rows) * (ways + int(has_rows_too_many) + int(has_unread_cells))
 
 
 def _count_wrong(judged: Judged) -> int:

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
-from service.catalogue import Exercise
+from service.catalogue import Exercise, PartSpec
 from service.catalogue.parts.link_transforms import LinkTransformsSpec
 from service.expressions import AngleUnit, Kind, Note
 from service.expressions.errors import Span
@@ -13,6 +13,7 @@ from service.grading.reading.matrix_list import grids_in_order
 from service.grading.reading.pasted import pasted_grid, placed
 from service.grading.reading.pasted_table import entries_of, read_pasted_table
 from service.grading.samples import draw
+from service.grading.work_budget import WorkBudget
 from service.grids import Grid, GridCell, GridError
 from service.kinematics.chain import COLUMNS
 
@@ -33,7 +34,8 @@ class CellPreview:
 
     ``row`` and ``column`` are labels as in a report: "1", "2" …, and "a", "alpha", "d", "theta" or
     the column's number. ``span`` is the cell's [from, to) in the pasted text, ``typed`` what stands
-    there. A cell left empty is neither read nor a problem.
+    there. A cell left empty is neither read nor a problem. A cell beyond the work budget has no
+    LaTeX and no MathML.
     """
 
     row: str
@@ -79,18 +81,26 @@ def preview_pasted(
         raise LookupError(f"exercise {exercise.id!r} has no part {part!r}")
     reader = Reader.of(exercise, draw(exercise, text), angle_unit)
     try:
-        if spec.pasted_as == "table":
-            return _table(text, reader)
-        if isinstance(spec, LinkTransformsSpec):
-            return _matrices(text, exercise.robot.tables[spec.convention].labels, reader)
-        grid = pasted_grid(text, reader)
-        quantity: Kind = "angle" if spec.pasted_as == "angles" else "number"
-        return PastedPreview(_rows(grid, quantity, reader), grid.notes)
+        preview = _preview(text, exercise, spec, reader)
     except GridError as error:
         return PastedPreview(problem=Problem(error.code, error.message, error.span))
     except UnreadableAnswerError as error:
         finding = error.finding
         return PastedPreview(problem=Problem(finding.code, finding.hint, finding.span or (0, 0)))
+    if all(cell.mathml or not cell.text for row in preview.rows for cell in row):
+        return preview
+    note = Note("work_limit", _WORK_LIMIT, (0, len(text)))
+    return replace(preview, notes=(*preview.notes, note))
+
+
+def _preview(text: str, exercise: Exercise, spec: PartSpec, reader: Reader) -> PastedPreview:
+    if spec.pasted_as == "table":
+        return _table(text, reader)
+    if isinstance(spec, LinkTransformsSpec):
+        return _matrices(text, exercise.robot.tables[spec.convention].labels, reader)
+    grid = pasted_grid(text, reader)
+    quantity: Kind = "angle" if spec.pasted_as == "angles" else "number"
+    return PastedPreview(_rows(grid, quantity, reader), grid.notes)
 
 
 def _table(text: str, reader: Reader) -> PastedPreview:
@@ -105,7 +115,7 @@ def _table(text: str, reader: Reader) -> PastedPreview:
             continue
         rows.append(
             tuple(
-                _cell(entry, cell, (str(i + 1), column))
+                _cell(entry, cell, (str(i + 1), column), reader.budget)
                 for entry, cell, column in zip(entries, row.cells, COLUMNS, strict=True)
             )
         )
@@ -135,7 +145,10 @@ def _rows(
     return tuple(
         tuple(
             _cell(
-                placed(reader.read(cell.text, quantity), cell), cell, (f"{name}{i + 1}", str(j + 1))
+                placed(reader.read(cell.text, quantity), cell),
+                cell,
+                (f"{name}{i + 1}", str(j + 1)),
+                reader.budget,
             )
             for j, cell in enumerate(row)
         )
@@ -147,7 +160,7 @@ def _notes(findings: Iterable[Finding]) -> tuple[Note, ...]:
     return tuple(Note(each.code, each.hint, each.span or (0, 0)) for each in findings)
 
 
-def _cell(entry: Entry, cell: GridCell, place: tuple[str, str]) -> CellPreview:
+def _cell(entry: Entry, cell: GridCell, place: tuple[str, str], budget: WorkBudget) -> CellPreview:
     empty = CellPreview(*place, cell.whole, cell.text)
     if not cell.text:
         return empty
@@ -157,11 +170,18 @@ def _cell(entry: Entry, cell: GridCell, place: tuple[str, str]) -> CellPreview:
         problem = Problem(finding.code, finding.hint, span, finding.suggestion)
         return replace(empty, problem=problem)
     expression = entry.expression
+    latex, mathml = "", ""
+    if budget.printed > 0:
+        latex, mathml = expression.latex(), expression.mathml()
+        budget.printed -= len(mathml)
     return replace(
         empty,
         text=expression.text(),
-        latex=expression.latex(),
-        mathml=expression.mathml(),
+        latex=latex,
+        mathml=mathml,
         symbols=tuple(sorted(expression.symbols)),
         notes=tuple(Note(f.code, f.hint, f.span or cell.whole) for f in entry.findings),
     )
+
+
+_WORK_LIMIT = "The formulas are too long together: some are shown as text only."

@@ -1,0 +1,106 @@
+"""The budget for explanations: what it leaves out is said once, and no verdict depends on it."""
+
+from collections.abc import Iterator, Mapping
+
+import pytest
+
+from service.catalogue import Exercise, FeedbackLevel
+from service.grading import PartReport, Report, Submission, grade
+from service.grading.report import messages_of
+from service.grading.work_budget import WorkBudget
+from tests.grading.support.robots import EXACT, STANFORD
+from tests.solutions.solved import solved
+
+# Wrong in many ways: signs, values, variables of other joints, decimals, what has no value.
+WRONG = ["-theta1", "d2 + 0.333", "0.707", "sin(theta1)", "1", "theta3", "0^-1", "c1*s2"]
+SHIPPED = ["stanford-arm", "scara", "spatial-rrr", "planar-rpr-poe", "simple-twist"]
+
+
+def spoilt(answer: object, every: int) -> object:
+    """The answer with every so many of its cells wrong."""
+    count = 0
+
+    def changed(inside: object) -> object:
+        nonlocal count
+        if isinstance(inside, list):
+            return [changed(each) for each in inside]
+        if isinstance(inside, dict):
+            return {
+                key: each if key == "convention" else changed(each) for key, each in inside.items()
+            }
+        count += 1
+        return WRONG[count % len(WRONG)] if count % every == 0 else inside
+
+    return changed(answer)
+
+
+def spoilt_answers(exercise: Exercise) -> Iterator[dict[str, object]]:
+    for every in (1, 2, 3, 7):
+        yield {part: spoilt(right, every) for part, right in solved(exercise).answers.items()}
+
+
+def marks(report: Report) -> list[tuple[object, ...]]:
+    return [
+        (part.part, part.verdict, part.points, row.label, row.verdict, row.points, cell.verdict)
+        for part in report.parts
+        for row in part.rows
+        for cell in row.cells
+    ]
+
+
+def told(report: Report) -> list[str]:
+    """The parts in which it is said that something was left out."""
+    return [part.part for part in report.parts for m in part.feedback if m.code == "work_limit"]
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_marks_are_the_same_without_any_explanation(
+    name: str, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    exercise = catalogue[name]
+    for answers in spoilt_answers(exercise):
+        explained = grade(exercise, Submission(answers))
+        with monkeypatch.context() as context:
+            context.setattr("service.grading.work_budget.WorkBudget.affords", _affords_nothing)
+            bare = grade(exercise, Submission(answers))
+        assert marks(bare) == marks(explained), answers
+        assert len(told(bare)) <= 1
+
+
+def _affords_nothing(budget: WorkBudget, work: float) -> bool:
+    budget.has_left_out = True
+    return False
+
+
+def everything_wrong(exercise: Exercise) -> dict[str, object]:
+    return {part: spoilt(right, 1) for part, right in solved(exercise).answers.items()}
+
+
+def test_what_is_left_out_is_said_once(catalogue: Mapping[str, Exercise]) -> None:
+    """Twenty-four wrong cells of a table, seven wrong matrices: the table is explained first."""
+    exercise = catalogue["stanford-arm"]
+    report = grade(exercise, Submission(everything_wrong(exercise)))
+    assert len(told(report)) == 1
+    assert "value" in _codes(report.parts[0])
+    # That an entry cannot be read, or has no value, is found before anything is explained.
+    assert _codes(report.parts[-1]) <= {"undefined", "unknown_joint"}
+
+
+def _codes(part: PartReport) -> set[str]:
+    return {message.code for message, *_ in messages_of(part)}
+
+
+@pytest.mark.parametrize("level", [FeedbackLevel.VERDICTS, FeedbackLevel.SCORE])
+def test_where_nothing_is_explained_nothing_is_left_out(
+    level: FeedbackLevel, catalogue: Mapping[str, Exercise]
+) -> None:
+    exercise = catalogue["stanford-arm"]
+    assert told(grade(exercise, Submission(everything_wrong(exercise), feedback=level))) == []
+
+
+def test_an_ordinary_wrong_answer_is_explained_whole(catalogue: Mapping[str, Exercise]) -> None:
+    exercise = catalogue["stanford-arm"]
+    rows = [list(row) for row in EXACT.rows(STANFORD)]
+    rows[1][1], rows[3][1], rows[4][3] = "-pi/2", "0", "theta4"
+    answers = {**solved(exercise).answers, "table": {"rows": rows}}
+    assert told(grade(exercise, Submission(answers))) == []
