@@ -142,6 +142,8 @@ def _origin_in(text: str) -> str:
     except ValueError:
         return ""
     host = (parts.hostname or "").replace("*", "")
+    if not host.isascii():
+        return ""
     bracketed = f"[{host}]" if ":" in host else host
     usual = {"http": ":80", "https": ":443"}.get(parts.scheme)
     return f"{parts.scheme}://{bracketed}{'' if port == usual else port}" if host else ""

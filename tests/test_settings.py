@@ -46,6 +46,7 @@ def test_the_environment_decides(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
         ("DH_GRADER_CORS_ORIGINS", "https://course.example/page"),
         ("DH_GRADER_CORS_ORIGINS", "https://"),
         ("DH_GRADER_CORS_ORIGINS", "https://*.example"),
+        ("DH_GRADER_CORS_ORIGINS", "https://k\u00fcrs.example"),
         ("DH_GRADER_CORS_ORIGINS", "https://user@course.example"),
         ("DH_GRADER_CORS_ORIGINS", "https://course.example:443"),
         ("DH_GRADER_CORS_ORIGINS", "https://Course.example"),

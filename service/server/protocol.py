@@ -171,6 +171,9 @@ class GuardedProtocol(HttpToolsProtocol):
     def _parse(self, piece: bytes) -> None:
         framing = self._framing
         head = framing.in_head
+        # The parser also takes RTSP and ICE for what may be asked for.
+        if head and not piece.partition(b"\r\n")[0].endswith((b" HTTP/1.0", b" HTTP/1.1")):
+            raise malformed("The request line does not end with HTTP/1.1.")
         try:
             self.parser.feed_data(_UPGRADE.sub(b"\r\nignored-", piece) if head else piece)
         except (httptools.HttpParserError, httptools.HttpParserUpgrade) as error:
@@ -236,8 +239,6 @@ class GuardedProtocol(HttpToolsProtocol):
 
     def on_headers_complete(self) -> None:
         """Begin with the answer."""
-        if self.parser.get_http_version() not in ("1.0", "1.1"):
-            raise ValueError("another version of HTTP")
         full = self.crowd.full and self._path() not in HEALTH
         self.app = _no_room if full else self.config.loaded_app
         super().on_headers_complete()

@@ -33,6 +33,8 @@ def impatient(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
         (b"NONSENSE\r\n\r\n", 400),
         (b"GET / HTTP/3.7\r\n\r\n", 400),
         (b"GET /\r\n\r\n", 400),
+        (b"DESCRIBE / RTSP/1.0\r\n\r\n", 400),
+        (b"SOURCE / ICE/1.0\r\n\r\n", 400),
         (b"GET / HTTP/1.1\r\nno colon\r\n\r\n", 400),
         (b"GET /healthz HTTP/1.1\n\n", 400),
         (b"GET /\xff HTTP/1.1\r\n\r\n", 400),
