@@ -20,7 +20,7 @@ from rich.console import Console
 from service.api.application import application
 from service.catalogue import Exercise, FeedbackLevel
 from service.cli.submission_files import UnusableFileError, read_submission
-from service.expressions import reader
+from service.expressions import reader, reading_work
 from service.expressions.evaluation import decimals
 from service.expressions.parsing import words
 from service.formats import report_format
@@ -31,7 +31,8 @@ from tests.benchmarks.floors import stanford_pose
 
 GRADE, PREVIEW, FILE = "grade", "preview", "file"
 _CACHES = (
-    reader._remembered, reader._remembered_long, reader._parsed, words.split, decimals.decimals_of,
+    reader._remembered, reader._remembered_long, reader._parsed, reading_work._remembered,
+    words.split, decimals.decimals_of,
 )  # fmt: skip
 
 
