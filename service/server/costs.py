@@ -13,14 +13,15 @@ from typing import Final
 from service.server.fair_queue import Ticket
 
 # A request is costly that takes so many times the median of the others. A wrong table with its
-# diagnosis takes five to twenty times what a right one takes, the costliest body a hundred times.
-_COSTLY: Final = 15.0
+# diagnosis takes five to twelve times what a right one takes, the costliest body a hundred times.
+_COSTLY: Final = 14.0
 # But no request is that takes less, in seconds of processor time: somebody who asks for nothing but
 # trifles has no say in what is costly.
-_LEAST_COSTLY: Final = 0.010
-# The median until there is one, in seconds of processor time, and its step with each request.
+_LEAST_COSTLY: Final = 0.008
+# The median until there is one, in seconds of processor time, and its steps with each request. It
+# falls faster than it rises, so that a third of ordinary requests hold it against an attacker's.
 _FIRST_MEDIAN: Final = 0.001
-_STEP: Final = 1.02
+_UP, _DOWN = 1.01, 1.02
 # The share of the last request in the expectation: one that is cheap does not hide one that is not.
 _RECENT: Final = 0.5
 # Lengths are alike that differ by less than a fifth.
@@ -65,7 +66,7 @@ class Costs:
         while len(self._means) > _KEPT:
             self._means.popitem(last=False)
         if ordinary:
-            self._median *= _STEP if seconds > self._median else 1 / _STEP
+            self._median *= _UP if seconds > self._median else 1 / _DOWN
 
 
 def _connection(ticket: Ticket) -> Hashable:

@@ -71,8 +71,8 @@ def test_trifles_make_nothing_costly() -> None:
 
 def test_the_costlier_the_longer_is_the_rest() -> None:
     costs = Costs()
-    assert 3 * 0.015 <= costs.rest(0.0151) < 4 * 0.015
-    assert 11 * 0.030 < costs.rest(0.030) < 13 * 0.030
+    assert 3 * 0.014 <= costs.rest(0.0141) < 4 * 0.014
+    assert 11 * 0.028 < costs.rest(0.028) < 13 * 0.028
     assert costs.rest(0.100) == costs.rest(10.0) == 2.0
 
 
