@@ -12,15 +12,16 @@ from typing import Final
 
 from service.server.fair_queue import Ticket
 
-# A request is costly that takes so many times the median of the others. A wrong table with its
+# A request is costly that takes so many times what is typical of the others. A wrong table with its
 # diagnosis takes five to twelve times what a right one takes, the costliest body a hundred times.
 _COSTLY: Final = 14.0
 # But no request is that takes less, in seconds of processor time: somebody who asks for nothing but
 # trifles has no say in what is costly.
 _LEAST_COSTLY: Final = 0.008
-# The median until there is one, in seconds of processor time, and its steps with each request. It
-# falls faster than it rises, so that a third of ordinary requests hold it against an attacker's.
-_FIRST_MEDIAN: Final = 0.001
+# What is typical until that is known, in seconds of processor time, and its steps with each
+# request. It falls faster than it rises: a third of the ordinary requests take less, and hold it
+# against an attacker's.
+_FIRST_TYPICAL: Final = 0.001
 _UP, _DOWN = 1.01, 1.02
 # The share of the last request in the expectation: one that is cheap does not hide one that is not.
 _RECENT: Final = 0.5
@@ -31,11 +32,11 @@ _LONGEST_REST: Final = 2.0
 
 
 class Costs:
-    """The mean processor time of late, by connection and by length; the median of ordinary ones."""
+    """The mean processor time of late, by connection and length, and what is typical."""
 
     def __init__(self) -> None:
         self._means: OrderedDict[Hashable, float] = OrderedDict()
-        self._median = _FIRST_MEDIAN
+        self._typical = _FIRST_TYPICAL
 
     def is_costly(self, seconds: float) -> bool:
         """Whether a request is costly that takes so much time."""
@@ -43,7 +44,7 @@ class Costs:
 
     @property
     def _bound(self) -> float:
-        return max(_COSTLY * self._median, _LEAST_COSTLY)
+        return max(_COSTLY * self._typical, _LEAST_COSTLY)
 
     def rest(self, seconds: float) -> float:
         """How many seconds after another costly request one may come that will take so much time.
@@ -66,7 +67,7 @@ class Costs:
         while len(self._means) > _KEPT:
             self._means.popitem(last=False)
         if ordinary:
-            self._median *= _UP if seconds > self._median else 1 / _DOWN
+            self._typical *= _UP if seconds > self._typical else 1 / _DOWN
 
 
 def _connection(ticket: Ticket) -> Hashable:

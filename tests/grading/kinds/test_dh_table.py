@@ -153,11 +153,11 @@ def test_two_half_turns_are_not_taken_for_a_slip_of_the_whole_table(
 def test_repairs_are_looked_for_in_so_many_cells_and_no_more(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    rows = [[f"(tehta1 + {i}.{j}" for j in range(4)] for i in range(6)]
-    report = part(handed_in(catalogue["stanford-arm"], {"table": table(rows)}), "table")
+    rows = [[f"(tehta1 + {i}.{j}" for j in range(4)] for i in range(7)]
+    report = part(handed_in(catalogue["baxter-left-arm"], {"table": table(rows)}), "table")
     messages = [m for row in report.rows for cell in row.cells for m in cell.feedback]
     helped = [(m.suggestion or "").startswith("(theta1 + ") for m in messages]
-    assert helped == [True] * MAX_REPAIRS + [False] * (24 - MAX_REPAIRS)
+    assert helped == [True] * MAX_REPAIRS + [False] * (28 - MAX_REPAIRS)
 
 
 def test_rounded_angles_and_a_fixed_row_raise_nothing(catalogue: Mapping[str, Exercise]) -> None:
