@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from service.server.limits import MAX_CONNECTIONS
+from tests.attack.floods import many_costly
 from tests.guards import ANSWER
 from tests.server.raw import HEALTH, Service, answers, preview, received, service
 
@@ -98,6 +99,15 @@ def test_half_a_body_does_not_keep_it_and_is_reset(tmp_path: Path) -> None:
         assert time.monotonic() - began < AT_MOST
         with pytest.raises(ConnectionResetError):
             half.recv(100)
+
+
+def test_requests_that_wait_for_their_turn_are_given_up_without_a_word(tmp_path: Path) -> None:
+    # The log may hold no traceback.
+    with service(tmp_path, module=IMPATIENT) as running, ExitStack() as stack:
+        for number in range(16):
+            stack.enter_context(running.connect(many_costly(number)))
+        running.ask(preview())
+        assert running.end() == 0
 
 
 @pytest.mark.parametrize("options", [(), ("--workers", "2")], ids=["alone", "workers"])
