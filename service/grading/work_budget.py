@@ -3,7 +3,10 @@
 Counted work is the same on every machine, so that the same submission gives the same report.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+
+from service.expressions.reading_work import symbols_in
 
 # The pose of a seven-joint arm, multiplied out, not simplified and printed as LaTeX, has 12,400.
 MAX_SYMBOLS = 14_000
@@ -43,6 +46,7 @@ class WorkBudget:
     still be spent on what is wrong and why: no verdict depends on it. ``searches`` is that for what
     a table may have been meant to be: with what was not read, in another order of its columns.
     ``printed`` counts the characters of formulas that may still be drawn for a preview.
+    ``answers`` is the whole submission: what later parts have to read is kept back for them.
     ``has_left_out`` says that an explanation was not afforded. ``unreadable`` are the texts that
     could not be read.
     """
@@ -55,12 +59,16 @@ class WorkBudget:
     printed: int = MAX_PRINTED
     has_left_out: bool = False
     unreadable: set[object] = field(default_factory=set)
+    answers: object = None
+    _expected: int = -1
 
     @property
     def left(self) -> float:
-        """How much of all work the reading and the searches have left."""
+        """How much of all work the reading, also that to come, and the searches have left."""
+        if self._expected < 0:
+            self._expected = min(_symbols_of(self.answers), MAX_SYMBOLS)
         read = (
-            SYMBOL_WORK * (MAX_SYMBOLS - max(self.symbols, 0))
+            SYMBOL_WORK * max(MAX_SYMBOLS - max(self.symbols, 0), self._expected)
             + PASTED_WORK * (MAX_PASTED - max(self.pasted, 0))
             + REPAIR_WORK * (MAX_REPAIRS - max(self.repairs, 0))
         )
@@ -97,3 +105,18 @@ class WorkBudget:
         if text not in self.unreadable:
             self.unreadable.add(text)
             self.repairs -= 1 + tried // SYMBOLS_PER_REPAIR
+
+
+def _symbols_of(answer: object) -> int:
+    """The names, numbers and signs in all texts of a JSON value."""
+    found, waiting = 0, [answer]
+    # Without recursion: lists may stand in each other deeper than Python calls.
+    while waiting:
+        match waiting.pop():
+            case str() as text:
+                found += symbols_in(text)
+            case Mapping() as fields:
+                waiting.extend(fields.values())
+            case list() as items:
+                waiting.extend(items)
+    return found
