@@ -13,6 +13,7 @@ from service.catalogue.load import (
     shipped_folder,
 )
 from service.catalogue.part import PartSpec, PosePartSpec
+from service.catalogue.regular_file import read_regular
 from service.catalogue.robot import Joint, ReferenceTable, Robot
 from service.catalogue.schema import CheckSpec
 from service.catalogue.screw_robot import ScrewRobot
@@ -41,5 +42,6 @@ __all__ = [
     "load_catalogue",
     "load_exercise",
     "open_catalogue",
+    "read_regular",
     "shipped_folder",
 ]
