@@ -8,7 +8,7 @@ from typer.core import TyperGroup
 
 from service.authoring import UnusableIdError
 from service.catalogue import CatalogueError
-from service.cli import exercises, grade, serve
+from service.cli import assignments, exercises, grade, serve
 from service.cli.interrupts import INTERRUPTED
 from service.cli.terminal import complain, give_up
 from service.kinds_check import check_kinds
@@ -41,6 +41,7 @@ program = typer.Typer(
     pretty_exceptions_enable=False,
 )
 program.add_typer(exercises.commands, name="exercises")
+program.add_typer(assignments.commands, name="assignments")
 program.command("grade")(grade.command)
 program.command("serve")(serve.command)
 
