@@ -13,15 +13,17 @@ from rich.console import Console
 
 from service.catalogue import Exercise
 from service.cli.submission_files import UnusableFileError, read_submission
-from service.cli.terminal import UNUSABLE, complain, give_up, installed, stdout
+from service.cli.terminal import UNUSABLE, complain, give_up, installed_exercise, stdout
 from service.formats import FORMAT_NAMES, report_format
 from service.formats.shared.graded import GradedFile, GradedSubmission, Visibility, answered
 from service.formats.shared.plain_text import visible
 from service.formats.shared.report_format import Setting, UnusableSettingError
 from service.grading import FeedbackLevel, Report, UnknownPartError, grade
-from service.submissions.lookup import find_exercise, nearest
+from service.submissions.lookup import nearest
 
 BELOW_PASS_MARK = 1
+
+commands = typer.Typer(add_completion=False)
 
 
 def _known(name: str) -> str:
@@ -34,6 +36,7 @@ def _known(name: str) -> str:
 _NAMES: Final = sorted(FORMAT_NAMES, key=lambda name: name != "text")
 
 
+@commands.command("grade")
 def command(
     files: Annotated[list[Path], typer.Argument(metavar="FILE", show_default=False)],
     exercise: Annotated[
@@ -74,7 +77,7 @@ def command(
 
     Exit code 2: a file, exercise or part is unusable; other files are graded all the same.
     """
-    chosen = _restricted(find_exercise(installed(), exercise), part)
+    chosen = _restricted(installed_exercise(exercise), part)
     taken = report_format(output_format)
     if taken.is_single and len(files) > 1:
         give_up(
