@@ -12,7 +12,8 @@ from typer.core import TyperGroup
 COMMANDS: Final = {
     "serve": "Start the service; the environment variables DH_GRADER_… set it up.",
     "exercises": "The catalogue of exercises.",
-    "grade": "Grade submissions: JSON or TOML files of the same shape as the HTTP body.",
+    "grade": "Grade submissions: JSON, TOML, or the pasted answer to one part (csv, md, tex, m, py, "
+    "…).",
 }
 
 
