@@ -12,6 +12,7 @@ import typer
 from rich.console import Console
 
 from service.catalogue import Exercise
+from service.cli.output_folder import UnusableFolderError, is_for_folder, write_folder
 from service.cli.submission_files import UnusableFileError, read_submission
 from service.cli.terminal import UNUSABLE, complain, give_up, installed, stdout
 from service.formats import FORMAT_NAMES, report_format
@@ -50,7 +51,12 @@ def command(
         ),
     ] = "text",
     output: Annotated[
-        Path | None, typer.Option(metavar="F", help="Write to this file instead.")
+        Path | None,
+        typer.Option(
+            metavar="F",
+            help="Write to this file instead; html writes several submissions to a folder, with "
+            "an overview of the class.",
+        ),
     ] = None,
     pass_mark: Annotated[float, typer.Option(min=0, max=1, help="The score to reach, of 1.")] = 0.8,
     feedback: Annotated[
@@ -103,7 +109,12 @@ def command(
         console = Console(file=page, width=80, highlight=False, markup=False)
     setting = Setting((told,), console, datetime.now(UTC), os.environ, visibility)
     try:
-        _write(taken.pieces(submissions(), setting), output)
+        if output and taken.folder and is_for_folder(output, several=len(files) > 1):
+            write_folder(taken.folder(submissions(), setting), output)
+        else:
+            _write(taken.pieces(submissions(), setting), output)
+    except UnusableFolderError as error:
+        give_up(f"{output}: {error}")
     except UnusableSettingError as error:
         give_up(f"{output_format}: {error}")
     raise SystemExit(max(codes))
