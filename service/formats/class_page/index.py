@@ -80,7 +80,7 @@ def _ungraded(overview: Overview) -> Element:
             "tr",
             element("th", link(overview, line), scope="row"),
             element("td", reason, class_="reason"),
-            element("td", "counts 0 points" if line.is_graded else "is left out"),
+            element("td", f"counts {line.points} points" if line.is_graded else "is left out"),
         )
         for line in overview.ungraded
         for reason in line.problems or ["Nothing in it could be read."]

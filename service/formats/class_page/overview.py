@@ -53,7 +53,7 @@ class Overview:
                 passed=submission.passed,
                 is_graded=submission.is_graded,
                 is_gradable=submission.is_gradable,
-                problems=submission.problems,
+                problems=_problems(submission),
             )
         )
         if submission.is_graded:
@@ -74,5 +74,16 @@ class Overview:
 
     @property
     def ungraded(self) -> list[SubmissionLine]:
-        """The submissions of which something has no report, or nothing could be read."""
+        """The submissions of which something could not be used, or nothing could be read."""
         return [line for line in self.lines if line.problems or not line.is_gradable]
+
+
+def _problems(submission: GradedSubmission) -> tuple[str, ...]:
+    """What could not be used, each once, with the exercise where there are several."""
+    has_several = len(submission.files) > 1
+    told = (
+        f"{file.exercise.title}: {file.problem}" if has_several else file.problem
+        for file in submission.files
+        if file.problem
+    )
+    return tuple(dict.fromkeys(told))

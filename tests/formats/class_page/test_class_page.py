@@ -79,8 +79,15 @@ def test_the_index_tells_the_counts() -> None:
 
 def test_submissions_that_count_nothing_are_told_from_those_that_are_left_out() -> None:
     words = told(folder(cases()["unreadable"], cases()["unusable"])["index.html"])
-    assert "Nothing in it could be read. counts 0 points" in words
+    assert "Nothing in it could be read. counts 0 / 16 points" in words
     assert "is left out" in words
+
+
+def test_a_file_that_could_be_used_in_part_is_listed_with_the_reason() -> None:
+    [file] = class_of_seven()[1].files
+    half = replace(class_of_seven()[1], files=(replace(file, problem="answers nothing for pose"),))
+    words = told(folder(half)["index.html"])
+    assert "ben answers nothing for pose counts 13.89 / 16 points" in words
 
 
 def test_what_the_feedback_level_keeps_back_is_said() -> None:
