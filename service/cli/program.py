@@ -13,8 +13,8 @@ COMMANDS: Final = {
     "serve": "Start the service; the environment variables DH_GRADER_… set it up.",
     "exercises": "The catalogue of exercises.",
     "assignments": "Several exercises that are set together.",
-    "grade": "Grade submissions: JSON, TOML, or the pasted answer to one part (csv, md, tex, m, py, "
-    "…).",
+    "grade": "Grade submissions: JSON, TOML, or the pasted answer to one part (csv, md, tex, m, "
+    "py, …).",
 }
 
 
