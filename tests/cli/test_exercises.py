@@ -150,7 +150,7 @@ def test_a_broken_catalogue_stops_every_command(
 ) -> None:
     (tmp_path / "broken.toml").write_text(BROKEN, encoding="utf-8")
     monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", str(tmp_path))
-    for command in (["exercises", "list"], ["grade", "x.json", "--exercise", "a"], ["serve"]):
+    for command in (["exercises", "list"], ["grade", "x.json", "--exercise", "broken"], ["serve"]):
         result = run(*command)
         assert result.exit_code == 2
         assert "broken.toml: robot.table[0].alpha" in result.stderr
