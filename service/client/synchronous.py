@@ -1,6 +1,6 @@
 """The client for programs without ``await``."""
 
-import time
+import threading
 from collections.abc import Iterable, Iterator, Mapping
 from types import TracebackType
 from typing import Any, Self, TypeVar
@@ -44,6 +44,7 @@ class GraderClient:
         self.server = checked_server(server)
         self._timeout = timeout
         self._retries = retries
+        self._is_closed = threading.Event()
         options = client_options(self.server, key, timeout)
         self._http = httpx.Client(transport=transport, **options)
 
@@ -97,7 +98,8 @@ class GraderClient:
         return self._result(calls.previewing(request))
 
     def close(self) -> None:
-        """Close the connections."""
+        """Close the connections, and try nothing again."""
+        self._is_closed.set()
         self._http.close()
 
     def __enter__(self) -> Self:
@@ -110,6 +112,7 @@ class GraderClient:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
+        self._is_closed.set()
         self._http.__exit__(kind, error, traceback)
 
     def _result(self, call: HttpCall[T]) -> T:
@@ -120,9 +123,9 @@ class GraderClient:
             except GraderClientError as error:
                 failures += 1
                 wait = self._retries.wait(failures, error)
-                if wait is None:
+                # Whoever closes the client need not wait for the waits of other threads.
+                if wait is None or self._is_closed.wait(wait):
                     raise
-            time.sleep(wait)
 
     def _answer(self, call: HttpCall[Any]) -> HttpAnswer:
         try:
