@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
+from service.cli.interrupts import terminable
 from service.cli.local_grading import GradingTerms, graded
 from service.cli.output import console_of, write
+from service.cli.processes import WorkerLostError, jobs_for, mapped
+from service.cli.progress import Progress, progress
 from service.cli.server import REQUESTS, graded_by, server_of, set_exercise
-from service.cli.terminal import (
-    UNUSABLE,
-    complain,
-    give_up,
-)
+from service.cli.terminal import UNUSABLE, give_up
 from service.formats import FORMAT_NAMES, report_format
 from service.formats.shared.graded import GradedSubmission, Visibility
 from service.formats.shared.plain_text import visible
@@ -119,7 +118,8 @@ def command(
         typer.Option(
             min=1,
             max=256,
-            help="How many processes grade, or how many requests a server has at once.",
+            help="How many processes grade, by default as many as there are cores, where there are "
+            f"many submissions; or how many requests a server has at once, by default {REQUESTS}.",
             show_default=False,
         ),
     ] = None,
@@ -173,11 +173,18 @@ def command(
         give_up(f"{', '.join(map(str, paths))}: holds no submission")
     setting = Setting(terms.answered, console_of(output), datetime.now(UTC), os.environ, visibility)
     try:
-        with _grading(grader, terms, found, jobs, output) as all_graded:
-            run = _Run(all_graded)
-            write(taken.pieces(run.submissions(), setting), output)
+        with (
+            terminable(),
+            progress(len(found)) as shown,
+            _grading(grader, terms, found, jobs, output) as all_graded,
+        ):
+            run = _Run(all_graded, shown)
+            pieces = taken.pieces(run.submissions(), setting)
+            write(pieces, output, at_once=shown.is_shown or not taken.is_stream)
     except UnusableSettingError as error:
         give_up(f"{output_format}: {error}")
+    except WorkerLostError:
+        give_up("A process that grades has been ended from outside; try again with fewer --jobs.")
     raise SystemExit(run.exit_code)
 
 
@@ -206,22 +213,25 @@ def _grading(
     """The submissions in order as they are graded, by the server or else here."""
     if server is not None:
         return graded_by(server, terms, found, jobs or REQUESTS, output)
-    return nullcontext(map(partial(graded, terms=terms), found))
+    jobs = min(jobs or jobs_for(len(found)), len(found))
+    return mapped(partial(graded, terms=terms), found, jobs)
 
 
 class _Run:
     """The submissions as they are graded; ``exit_code`` is that of the worst so far."""
 
-    def __init__(self, submissions: Iterable[GradedSubmission]) -> None:
+    def __init__(self, submissions: Iterable[GradedSubmission], shown: Progress) -> None:
         self._submissions = submissions
+        self._shown = shown
         self.exit_code = 0
 
     def submissions(self) -> Iterator[GradedSubmission]:
         for submission in self._submissions:
             for told in _complaints(submission):
-                complain(told)
+                self._shown.complain(told)
             self.exit_code = max(self.exit_code, _exit_code(submission))
             yield submission
+            self._shown.advance()
 
 
 def _complaints(submission: GradedSubmission) -> list[str]:
