@@ -7,11 +7,12 @@ from typing import Annotated, Any, Final
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, model_validator
 
-from service.catalogue import Exercise, FeedbackLevel, load_exercise
+from service.catalogue import FeedbackLevel, load_exercise
 from service.catalogue.fields import Identifier, NotBool, StrictModel, Text
 from service.catalogue.formulas import FieldError
 from service.catalogue.toml_file import load_toml
 from service.submissions.lookup import UnknownExerciseError, nearest
+from service.submissions.outline import ExerciseOutline, SetExercise
 
 PASS_MARK: Final = 0.8
 MAX_EXERCISES: Final = 100
@@ -84,7 +85,7 @@ class AssignedExercise:
     its parts are.
     """
 
-    exercise: Exercise
+    exercise: SetExercise
     worth: float
     left_out: frozenset[str] = frozenset()
     path: Path | None = None
@@ -124,13 +125,13 @@ class UnknownPartNameError(LookupError):
     """An exercise has no part of this name; the text brings the nearest."""
 
 
-def of_one(exercise: Exercise, part: str | None = None) -> Assignment:
+def of_one(exercise: SetExercise, part: str | None = None) -> Assignment:
     """The assignment of one exercise, or of one part of it. Raises UnknownPartNameError."""
     return Assignment((assigned(exercise, None if part is None else [part]),), exercise.title)
 
 
 def assigned(
-    exercise: Exercise, parts: list[str] | None = None, worth: float | None = None
+    exercise: SetExercise, parts: list[str] | None = None, worth: float | None = None
 ) -> AssignedExercise:
     """The exercise with these parts, or all, set for its own points or else for ``worth``.
 
@@ -144,16 +145,34 @@ def assigned(
             raise UnknownPartNameError(
                 f"{exercise.id} has no part {part!r}.{hint} Its parts are: {', '.join(known)}."
             )
-    chosen = tuple(part for part in exercise.parts if parts is None or part.id in parts)
-    own = sum(part.points for part in chosen)
-    return AssignedExercise(
-        replace(exercise, parts=chosen),
-        own if worth is None else worth,
-        frozenset(known) - {part.id for part in chosen},
-    )
+    chosen = frozenset(known if parts is None else parts)
+    restricted = _restricted(exercise, chosen)
+    own = sum(part.points for part in restricted.parts)
+    return AssignedExercise(restricted, own if worth is None else worth, frozenset(known) - chosen)
 
 
-def load_assignment(file: Path, find: Callable[[str], Exercise]) -> Assignment:
+def _restricted(exercise: SetExercise, chosen: frozenset[str]) -> SetExercise:
+    """The exercise with the chosen parts only.
+
+    One that follows a part which is not set follows the part that this one follows, as it would if
+    that part had no answer.
+    """
+    if isinstance(exercise, ExerciseOutline):
+        kept = tuple(part for part in exercise.parts if part.id in chosen)
+        return replace(exercise, parts=kept)
+    follows: dict[str, str | None] = {}
+    parts = []
+    for part in exercise.parts:
+        followed = part.follows
+        if followed is not None and followed not in chosen:
+            followed = follows[followed]
+        follows[part.id] = followed
+        if part.id in chosen:
+            parts.append(part.model_copy(update={"follows": followed}))
+    return replace(exercise, parts=tuple(parts))
+
+
+def load_assignment(file: Path, find: Callable[[str], SetExercise]) -> Assignment:
     """The assignment in a TOML file. Raises CatalogueError.
 
     ``find`` brings the exercise of the catalogue with an id, or raises UnknownExerciseError.
@@ -172,7 +191,7 @@ def load_assignment(file: Path, find: Callable[[str], Exercise]) -> Assignment:
 
 
 def _assigned(
-    spec: AssignedExerciseSpec, place: str, folder: Path, find: Callable[[str], Exercise]
+    spec: AssignedExerciseSpec, place: str, folder: Path, find: Callable[[str], SetExercise]
 ) -> AssignedExercise:
     """One exercise of the assignment. Raises FieldError, and CatalogueError for its own file."""
     path = folder / spec.path if spec.path is not None else None
