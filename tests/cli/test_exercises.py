@@ -145,12 +145,12 @@ def test_check_names_file_field_and_reason(run: Run, tmp_path: Path, whole_folde
     assert result.stdout == ""
 
 
-def test_a_broken_catalogue_stops_every_command(
+def test_a_broken_exercise_stops_every_command_that_needs_it(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "broken.toml").write_text(BROKEN, encoding="utf-8")
     monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", str(tmp_path))
-    for command in (["exercises", "list"], ["grade", "x.json", "--exercise", "a"], ["serve"]):
+    for command in (["exercises", "list"], ["grade", "x.json", "--exercise", "broken"], ["serve"]):
         result = run(*command)
         assert result.exit_code == 2
         assert "broken.toml: robot.table[0].alpha" in result.stderr
