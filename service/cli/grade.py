@@ -119,7 +119,7 @@ def command(
 
     Exit code 2: a file, exercise or part is unusable; other files are graded all the same.
     """
-    chosen = _assignment(exercise, assignment, part)
+    chosen = chosen_assignment(exercise, assignment, part)
     taken = report_format(output_format)
     if taken.is_single and len(paths) > 1:
         give_up(
@@ -147,7 +147,8 @@ def command(
     raise SystemExit(run.exit_code)
 
 
-def _assignment(exercise: str | None, file: Path | None, part: str | None) -> Assignment:
+def chosen_assignment(exercise: str | None, file: Path | None, part: str | None) -> Assignment:
+    """The exercise, a part of it or an assignment, as the options name it; or give up."""
     if (exercise is None) == (file is None):
         give_up("Name what is answered: --exercise ID, or --assignment F instead.")
     if file is not None:

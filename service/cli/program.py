@@ -12,8 +12,9 @@ from typer.core import TyperGroup
 COMMANDS: Final = {
     "serve": "Start the service; the environment variables DH_GRADER_… set it up.",
     "exercises": "The catalogue of exercises.",
-    "grade": "Grade submissions: JSON, TOML, or the pasted answer to one part (csv, md, tex, m, py, "
-    "…).",
+    "grade": "Grade submissions: JSON, TOML, or the pasted answer to one part "
+    "(csv, md, tex, m, py, …).",
+    "bundle": "Write the zip file that a grading platform takes.",
 }
 
 
