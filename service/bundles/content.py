@@ -1,11 +1,12 @@
 """What every bundle holds: the program, its pinned dependencies, the assignment, its exercises."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from service.bundles.archive import BundledFile
 from service.bundles.own_wheel import locked_requirements, own_wheel
+from service.catalogue import Exercise, load_exercise
 from service.submissions.assignment import Assignment
 
 _TEMPLATES = Path(__file__).parent / "templates"
@@ -19,10 +20,12 @@ class BundleError(Exception):
 class BundleContent:
     """An assignment with the files that grading it needs anywhere.
 
-    ``image`` names the container image of the grader, where a platform wants one.
+    ``exercises`` are those that are set, with the parts that are set only. ``image`` names the
+    container image of the grader, where a platform wants one.
     """
 
-    assignment: Assignment
+    title: str
+    exercises: tuple[Exercise, ...]
     files: tuple[BundledFile, ...]
     image: str = ""
 
@@ -40,14 +43,16 @@ def content_of(
     ``catalogue`` has the exercise files of this installation by id: those that are set are bundled,
     so that the platform grades by the version that is here.
     """
-    found = [BundledFile("assignment.toml", _assignment_text(assignment, file))]
+    files = [BundledFile("assignment.toml", _assignment_text(assignment, file))]
+    exercises = []
     for each in assignment.exercises:
-        if each.path is None:
-            source = catalogue[each.exercise.id]
-            found.append(BundledFile(f"exercises/{source.name}", source.read_bytes()))
-        else:
-            found.append(BundledFile(_below(each.path, file), each.path.read_bytes()))
-    return BundleContent(assignment, tuple(found), image)
+        source = each.path or catalogue[each.exercise.id]
+        name = _below(each.path, file) if each.path else f"exercises/{source.name}"
+        files.append(BundledFile(name, source.read_bytes()))
+        whole = load_exercise(source)
+        parts = tuple(part for part in whole.parts if part.id not in each.left_out)
+        exercises.append(replace(whole, parts=parts))
+    return BundleContent(assignment.title, tuple(exercises), tuple(files), image)
 
 
 def setup_script() -> BundledFile:

@@ -41,11 +41,11 @@ def _moved(folder: str, file: BundledFile) -> BundledFile:
 
 
 def _info(content: BundleContent) -> bytes:
-    ids = " ".join(each.exercise.id for each in content.assignment.exercises)
+    ids = " ".join(exercise.id for exercise in content.exercises)
     info = {
         # The same question keeps its uuid when it is bundled anew.
-        "uuid": str(uuid.uuid5(uuid.NAMESPACE_URL, f"dh-grader {content.assignment.title} {ids}")),
-        "title": content.assignment.title,
+        "uuid": str(uuid.uuid5(uuid.NAMESPACE_URL, f"dh-grader {content.title} {ids}")),
+        "title": content.title,
         "topic": "Forward kinematics",
         "type": "v3",
         "singleVariant": True,
@@ -61,9 +61,7 @@ def _info(content: BundleContent) -> bytes:
 
 
 def _page(content: BundleContent) -> bytes:
-    exercises = "".join(
-        line for each in content.assignment.exercises for line in _exercise(each.exercise)
-    )
+    exercises = "".join(line for each in content.exercises for line in _exercise(each))
     return (
         f"<pl-question-panel>\n{exercises}"
         f'  <pl-file-upload optional-file-patterns="{_PATTERNS}"></pl-file-upload>\n'

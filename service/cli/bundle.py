@@ -9,7 +9,7 @@ from service.bundles import BUNDLES, BundleError, content_of, zipped
 from service.catalogue import exercise_files
 from service.cli.grade import chosen_assignment
 from service.cli.output import write
-from service.cli.terminal import give_up
+from service.cli.terminal import give_up, installed_exercise
 from service.settings import load_settings
 
 commands = typer.Typer(
@@ -63,10 +63,10 @@ def ci(output: _Output, exercise: _Exercise = None, assignment: _Assignment = No
 def _write(
     platform: str, output: Path, exercise: str | None, file: Path | None, image: str = ""
 ) -> None:
-    chosen = chosen_assignment(exercise, file, None)
+    chosen = chosen_assignment(exercise, file, None, installed_exercise)
     catalogue = {found.stem: found for found in exercise_files(*load_settings().exercises_dir)}
     try:
         content = content_of(chosen, file, catalogue, image)
     except BundleError as error:
         give_up(str(error))
-    write([zipped(BUNDLES[platform](content))], output)
+    write([zipped(BUNDLES[platform](content))], output, at_once=True)

@@ -1,27 +1,29 @@
 """`dh-grader grade`: submissions in files, graded here and now."""
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
+from service.cli.interrupts import terminable
 from service.cli.local_grading import GradingTerms, graded
 from service.cli.output import console_of, write
-from service.cli.terminal import (
-    UNUSABLE,
-    complain,
-    give_up,
-    installed_exercise,
-)
+from service.cli.output_folder import UnusableFolderError, is_for_folder, write_folder
+from service.cli.processes import WorkerLostError, jobs_for, mapped
+from service.cli.progress import Progress, progress
+from service.cli.server import REQUESTS, graded_by, server_of, set_exercise
+from service.cli.terminal import UNUSABLE, give_up
 from service.formats import FORMAT_NAMES, report_format
 from service.formats.shared.graded import GradedSubmission, Visibility
 from service.formats.shared.plain_text import visible
 from service.formats.shared.report_format import Setting, UnusableSettingError
 from service.grading import FeedbackLevel
+from service.settings import load_settings
 from service.submissions.assignment import (
     Assignment,
     UnknownPartNameError,
@@ -29,6 +31,10 @@ from service.submissions.assignment import (
     of_one,
 )
 from service.submissions.handed_in import HandedIn, all_handed_in
+from service.submissions.outline import SetExercise
+
+if TYPE_CHECKING:
+    from service.client import GraderClient
 
 BELOW_PASS_MARK = 1
 
@@ -47,6 +53,7 @@ _NAMES: Final = sorted(FORMAT_NAMES, key=lambda name: name != "text")
 
 @commands.command("grade")
 def command(
+    context: typer.Context,
     paths: Annotated[
         list[Path],
         typer.Argument(
@@ -87,7 +94,12 @@ def command(
         ),
     ] = "text",
     output: Annotated[
-        Path | None, typer.Option(metavar="F", help="Write to this file instead.")
+        Path | None,
+        typer.Option(
+            metavar="F",
+            help="Write to this file instead; html writes several submissions to a folder, with "
+            "an overview of the class.",
+        ),
     ] = None,
     pass_mark: Annotated[
         float | None,
@@ -107,6 +119,32 @@ def command(
         ),
     ] = None,
     echo: Annotated[bool, typer.Option("--echo", help="Tell how each cell was read.")] = False,
+    jobs: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=256,
+            help="How many processes grade, by default as many as there are cores, where there are "
+            f"many submissions; or how many requests a server has at once, by default {REQUESTS}.",
+            show_default=False,
+        ),
+    ] = None,
+    server: Annotated[
+        str | None,
+        typer.Option(
+            metavar="URL",
+            help="Have this service grade, by its exercises; DH_GRADER_SERVER says the same.",
+            show_default=False,
+        ),
+    ] = None,
+    key: Annotated[
+        str | None,
+        typer.Option(
+            metavar="KEY",
+            help="The key for it. Rather set DH_GRADER_KEY: others may see a command line.",
+            show_default=False,
+        ),
+    ] = None,
     visibility: Annotated[
         Visibility, typer.Option(help="When Gradescope shows the result to students.")
     ] = Visibility.VISIBLE,
@@ -119,7 +157,8 @@ def command(
 
     Exit code 2: a file, exercise or part is unusable; other files are graded all the same.
     """
-    chosen = chosen_assignment(exercise, assignment, part)
+    grader = context.with_resource(server_of(load_settings(server=server, key=key)))
+    chosen = chosen_assignment(exercise, assignment, part, partial(set_exercise, server=grader))
     taken = report_format(output_format)
     if taken.is_single and len(paths) > 1:
         give_up(
@@ -138,43 +177,78 @@ def command(
     )
     if not found:
         give_up(f"{', '.join(map(str, paths))}: holds no submission")
-    run = _Run(found, terms)
+    is_class = any(path.is_dir() for path in paths) and not one_student
     setting = Setting(terms.answered, console_of(output), datetime.now(UTC), os.environ, visibility)
     try:
-        write(taken.pieces(run.submissions(), setting), output)
+        with (
+            terminable(),
+            progress(len(found)) as shown,
+            _grading(grader, terms, found, jobs, output) as all_graded,
+        ):
+            run = _Run(all_graded, shown)
+            if (
+                output
+                and taken.folder
+                and is_for_folder(output, several=is_class or len(found) > 1)
+            ):
+                write_folder(taken.folder(run.submissions(), setting), output)
+            else:
+                pieces = taken.pieces(run.submissions(), setting)
+                write(pieces, output, at_once=shown.is_shown or not taken.is_stream)
+    except UnusableFolderError as error:
+        give_up(f"{output}: {error}")
     except UnusableSettingError as error:
         give_up(f"{output_format}: {error}")
+    except WorkerLostError:
+        give_up("A process that grades has been ended from outside; try again with fewer --jobs.")
     raise SystemExit(run.exit_code)
 
 
-def chosen_assignment(exercise: str | None, file: Path | None, part: str | None) -> Assignment:
+def chosen_assignment(
+    exercise: str | None, file: Path | None, part: str | None, find: Callable[[str], SetExercise]
+) -> Assignment:
     """The exercise, a part of it or an assignment, as the options name it; or give up."""
     if (exercise is None) == (file is None):
         give_up("Name what is answered: --exercise ID, or --assignment F instead.")
     if file is not None:
         if part is not None:
             give_up("--part goes with --exercise; an assignment says itself which parts are set.")
-        return load_assignment(file, installed_exercise)
+        return load_assignment(file, find)
     try:
-        return of_one(installed_exercise(exercise or ""), part)
+        return of_one(find(exercise or ""), part)
     except UnknownPartNameError as error:
         give_up(str(error))
 
 
-class _Run:
-    """The grading of all submissions in order; ``exit_code`` is that of the worst so far."""
+def _grading(
+    server: "GraderClient | None",
+    terms: GradingTerms,
+    found: Sequence[HandedIn],
+    jobs: int | None,
+    output: Path | None,
+) -> AbstractContextManager[Iterator[GradedSubmission]]:
+    """The submissions in order as they are graded, by the server or else here."""
+    if server is not None:
+        return graded_by(server, terms, found, jobs or REQUESTS, output)
+    jobs = min(jobs or jobs_for(len(found)), len(found))
+    return mapped(partial(graded, terms=terms), found, jobs)
 
-    def __init__(self, found: Iterable[HandedIn], terms: GradingTerms) -> None:
-        self._found = found
-        self._grade = partial(graded, terms=terms)
+
+class _Run:
+    """The submissions as they are graded; ``exit_code`` is that of the worst so far."""
+
+    def __init__(self, submissions: Iterable[GradedSubmission], shown: Progress) -> None:
+        self._submissions = submissions
+        self._shown = shown
         self.exit_code = 0
 
     def submissions(self) -> Iterator[GradedSubmission]:
-        for submission in map(self._grade, self._found):
+        for submission in self._submissions:
             for told in _complaints(submission):
-                complain(told)
+                self._shown.complain(told)
             self.exit_code = max(self.exit_code, _exit_code(submission))
             yield submission
+            self._shown.advance()
 
 
 def _complaints(submission: GradedSubmission) -> list[str]:

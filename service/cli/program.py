@@ -12,8 +12,9 @@ from typer.core import TyperGroup
 COMMANDS: Final = {
     "serve": "Start the service; the environment variables DH_GRADER_… set it up.",
     "exercises": "The catalogue of exercises.",
-    "grade": "Grade submissions: JSON, TOML, or the pasted answer to one part "
-    "(csv, md, tex, m, py, …).",
+    "assignments": "Several exercises that are set together.",
+    "grade": "Grade submissions: JSON, TOML, or the pasted answer to one part (csv, md, tex, m, "
+    "py, …).",
     "bundle": "Write the zip file that a grading platform takes.",
 }
 
@@ -29,7 +30,8 @@ class _Commands(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         # Only here, for the same reason.
         from service.catalogue import CatalogueError
-        from service.cli.terminal import give_up
+        from service.cli.interrupts import INTERRUPTED
+        from service.cli.terminal import complain, give_up
         from service.kinds_check import check_kinds
         from service.settings import SettingsError
         from service.submissions.lookup import UnknownExerciseError
@@ -41,6 +43,9 @@ class _Commands(TyperGroup):
             give_up(f"{error} Known are: {', '.join(error.known)}.")
         except (SettingsError, CatalogueError) as error:
             give_up(str(error))
+        except KeyboardInterrupt:
+            complain("Interrupted.")
+            raise SystemExit(INTERRUPTED) from None
 
 
 program = typer.Typer(
