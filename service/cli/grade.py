@@ -158,7 +158,7 @@ def command(
     Exit code 2: a file, exercise or part is unusable; other files are graded all the same.
     """
     grader = context.with_resource(server_of(load_settings(server=server, key=key)))
-    chosen = _assignment(exercise, assignment, part, partial(set_exercise, server=grader))
+    chosen = chosen_assignment(exercise, assignment, part, partial(set_exercise, server=grader))
     taken = report_format(output_format)
     if taken.is_single and len(paths) > 1:
         give_up(
@@ -204,9 +204,10 @@ def command(
     raise SystemExit(run.exit_code)
 
 
-def _assignment(
+def chosen_assignment(
     exercise: str | None, file: Path | None, part: str | None, find: Callable[[str], SetExercise]
 ) -> Assignment:
+    """The exercise, a part of it or an assignment, as the options name it; or give up."""
     if (exercise is None) == (file is None):
         give_up("Name what is answered: --exercise ID, or --assignment F instead.")
     if file is not None:

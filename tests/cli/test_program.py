@@ -75,7 +75,7 @@ def test_grading_loads_what_it_needs_and_no_more(answer: Path) -> None:
     assert {"numpy", "pydantic", "service.grading.kinds.dh_table"} <= modules
     heavy = {"fastapi", "httptools", "httpx", "starlette", "sympy", "mpmath", "uvicorn", "uvloop"}
     # http.client would be loaded with all of the mail package, for nothing.
-    slow = {"http.client", "multiprocessing", "rich.markdown", "rich.table", "scipy", "unittest"}
+    slow = {"http.client", "rich.markdown", "rich.table", "scipy", "unittest"}
     unused = {"service.api", "service.authoring", "service.server", "service.solutions"}
     assert modules & (heavy | slow | unused) == set()
 
