@@ -9,15 +9,13 @@ from typing import Annotated, Final
 
 import typer
 
+from service.cli.interrupts import terminable
 from service.cli.local_grading import GradingTerms, graded
 from service.cli.output import console_of, write
 from service.cli.output_folder import UnusableFolderError, is_for_folder, write_folder
-from service.cli.terminal import (
-    UNUSABLE,
-    complain,
-    give_up,
-    installed_exercise,
-)
+from service.cli.processes import WorkerLostError, jobs_for, mapped
+from service.cli.progress import Progress, progress
+from service.cli.terminal import UNUSABLE, give_up, installed_exercise
 from service.formats import FORMAT_NAMES, report_format
 from service.formats.shared.graded import GradedSubmission, Visibility
 from service.formats.shared.plain_text import visible
@@ -29,7 +27,7 @@ from service.submissions.assignment import (
     load_assignment,
     of_one,
 )
-from service.submissions.handed_in import HandedIn, all_handed_in
+from service.submissions.handed_in import all_handed_in
 
 BELOW_PASS_MARK = 1
 
@@ -113,6 +111,16 @@ def command(
         ),
     ] = None,
     echo: Annotated[bool, typer.Option("--echo", help="Tell how each cell was read.")] = False,
+    jobs: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=256,
+            help="How many processes grade. By default as many as there are cores, where there are "
+            "many submissions.",
+            show_default=False,
+        ),
+    ] = None,
     visibility: Annotated[
         Visibility, typer.Option(help="When Gradescope shows the result to students.")
     ] = Visibility.VISIBLE,
@@ -144,18 +152,28 @@ def command(
     )
     if not found:
         give_up(f"{', '.join(map(str, paths))}: holds no submission")
-    is_class = any(path.is_dir() for path in paths) and not one_student
-    run = _Run(found, terms)
+    jobs = min(jobs or jobs_for(len(found)), len(found))
+    is_class = len(found) > 1 or (any(path.is_dir() for path in paths) and not one_student)
+    folder = output if output and is_for_folder(output, several=is_class) else None
     setting = Setting(terms.answered, console_of(output), datetime.now(UTC), os.environ, visibility)
     try:
-        if output and taken.folder and is_for_folder(output, several=is_class or len(found) > 1):
-            write_folder(taken.folder(run.submissions(), setting), output)
-        else:
-            write(taken.pieces(run.submissions(), setting), output)
+        with (
+            terminable(),
+            progress(len(found)) as shown,
+            mapped(partial(graded, terms=terms), found, jobs) as all_graded,
+        ):
+            run = _Run(all_graded, shown)
+            if folder and taken.folder:
+                write_folder(taken.folder(run.submissions(), setting), folder)
+            else:
+                pieces = taken.pieces(run.submissions(), setting)
+                write(pieces, output, at_once=shown.is_shown or not taken.is_stream)
     except UnusableFolderError as error:
-        give_up(f"{output}: {error}")
+        give_up(f"{folder}: {error}")
     except UnusableSettingError as error:
         give_up(f"{output_format}: {error}")
+    except WorkerLostError:
+        give_up("A process that grades has been ended from outside; try again with fewer --jobs.")
     raise SystemExit(run.exit_code)
 
 
@@ -173,19 +191,20 @@ def _assignment(exercise: str | None, file: Path | None, part: str | None) -> As
 
 
 class _Run:
-    """The grading of all submissions in order; ``exit_code`` is that of the worst so far."""
+    """The submissions as they are graded; ``exit_code`` is that of the worst so far."""
 
-    def __init__(self, found: Iterable[HandedIn], terms: GradingTerms) -> None:
-        self._found = found
-        self._grade = partial(graded, terms=terms)
+    def __init__(self, submissions: Iterable[GradedSubmission], shown: Progress) -> None:
+        self._submissions = submissions
+        self._shown = shown
         self.exit_code = 0
 
     def submissions(self) -> Iterator[GradedSubmission]:
-        for submission in map(self._grade, self._found):
+        for submission in self._submissions:
             for told in _complaints(submission):
-                complain(told)
+                self._shown.complain(told)
             self.exit_code = max(self.exit_code, _exit_code(submission))
             yield submission
+            self._shown.advance()
 
 
 def _complaints(submission: GradedSubmission) -> list[str]:

@@ -3,11 +3,16 @@
 import io
 from collections.abc import Iterable
 from pathlib import Path
+from tempfile import SpooledTemporaryFile
+from typing import Final
 
 import typer
 from rich.console import Console
 
 from service.cli.terminal import give_up, stdout
+
+# More of a document than this waits on the disk.
+_IN_MEMORY: Final = 1024 * 1024
 
 
 def console_of(output: Path | None) -> Console:
@@ -18,12 +23,30 @@ def console_of(output: Path | None) -> Console:
     return Console(file=page, width=80, highlight=False, markup=False)
 
 
-def write(pieces: Iterable[bytes], output: Path | None) -> None:
-    """Write the pieces as they come; a file is there only when it is whole."""
-    if output is None:
-        for piece in pieces:
-            typer.echo(piece, nl=False)
+def write(pieces: Iterable[bytes], output: Path | None, *, at_once: bool) -> None:
+    """Write the pieces; a file is there only when it is whole.
+
+    On the screen they appear as they come, or with ``at_once`` when all have come, so that nothing
+    half-written goes into a pipe.
+    """
+    if output is not None:
+        _write_file(pieces, output)
         return
+    if at_once:
+        with SpooledTemporaryFile(_IN_MEMORY) as whole:
+            whole.writelines(pieces)
+            whole.seek(0)
+            _show(iter(lambda: whole.read(_IN_MEMORY), b""))
+    else:
+        _show(pieces)
+
+
+def _show(pieces: Iterable[bytes]) -> None:
+    for piece in pieces:
+        typer.echo(piece, nl=False)
+
+
+def _write_file(pieces: Iterable[bytes], output: Path) -> None:
     # A pipe or a device is no file to be replaced.
     is_replaced = output.is_file() or not output.exists()
     written = output.with_name(f".{output.name}.part") if is_replaced else output

@@ -9,7 +9,8 @@ from typer.core import TyperGroup
 from service.authoring import UnusableIdError
 from service.catalogue import CatalogueError
 from service.cli import exercises, grade, serve
-from service.cli.terminal import give_up
+from service.cli.interrupts import INTERRUPTED
+from service.cli.terminal import complain, give_up
 from service.kinds_check import check_kinds
 from service.settings import SettingsError
 from service.submissions.lookup import UnknownExerciseError
@@ -26,6 +27,9 @@ class _Commands(TyperGroup):
             give_up(f"{error} Known are: {', '.join(error.known)}.")
         except (SettingsError, CatalogueError, UnusableIdError) as error:
             give_up(str(error))
+        except KeyboardInterrupt:
+            complain("Interrupted.")
+            raise SystemExit(INTERRUPTED) from None
 
 
 program = typer.Typer(

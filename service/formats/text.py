@@ -162,4 +162,4 @@ def _can_write(text: str, encoding: str) -> bool:
     return True
 
 
-FORMAT: Final = ReportFormat(_pieces)
+FORMAT: Final = ReportFormat(_pieces, is_stream=True)
