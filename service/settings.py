@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 from urllib.parse import urlsplit
 
-from pydantic import Field, ValidationError, field_validator
+from pydantic import Field, SecretStr, ValidationError, field_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from service.catalogue import FeedbackLevel, shipped_folder
@@ -54,6 +54,10 @@ class Settings(BaseSettings):
         description="Web pages that may call from a browser, as origins with commas between them "
         "(https://course.example.edu); * for all, and by default none.",
     )
+    server: str | None = Field(
+        None, description="The service that `grade` has submissions graded by; none grades here."
+    )
+    key: SecretStr | None = Field(None, description="The key that `grade` shows this service.")
     log_level: Literal["critical", "error", "warning", "info", "debug"] = Field(
         "info", description="What is logged."
     )

@@ -1,11 +1,12 @@
 """`dh-grader grade`: submissions in files, graded here and now."""
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
@@ -15,19 +16,25 @@ from service.cli.output import console_of, write
 from service.cli.output_folder import UnusableFolderError, is_for_folder, write_folder
 from service.cli.processes import WorkerLostError, jobs_for, mapped
 from service.cli.progress import Progress, progress
-from service.cli.terminal import UNUSABLE, give_up, installed_exercise
+from service.cli.server import REQUESTS, graded_by, server_of, set_exercise
+from service.cli.terminal import UNUSABLE, give_up
 from service.formats import FORMAT_NAMES, report_format
 from service.formats.shared.graded import GradedSubmission, Visibility
 from service.formats.shared.plain_text import visible
 from service.formats.shared.report_format import Setting, UnusableSettingError
 from service.grading import FeedbackLevel
+from service.settings import load_settings
 from service.submissions.assignment import (
     Assignment,
     UnknownPartNameError,
     load_assignment,
     of_one,
 )
-from service.submissions.handed_in import all_handed_in
+from service.submissions.handed_in import HandedIn, all_handed_in
+from service.submissions.outline import SetExercise
+
+if TYPE_CHECKING:
+    from service.client import GraderClient
 
 BELOW_PASS_MARK = 1
 
@@ -46,6 +53,7 @@ _NAMES: Final = sorted(FORMAT_NAMES, key=lambda name: name != "text")
 
 @commands.command("grade")
 def command(
+    context: typer.Context,
     paths: Annotated[
         list[Path],
         typer.Argument(
@@ -116,8 +124,24 @@ def command(
         typer.Option(
             min=1,
             max=256,
-            help="How many processes grade. By default as many as there are cores, where there are "
-            "many submissions.",
+            help="How many processes grade, by default as many as there are cores, where there are "
+            f"many submissions; or how many requests a server has at once, by default {REQUESTS}.",
+            show_default=False,
+        ),
+    ] = None,
+    server: Annotated[
+        str | None,
+        typer.Option(
+            metavar="URL",
+            help="Have this service grade, by its exercises; DH_GRADER_SERVER says the same.",
+            show_default=False,
+        ),
+    ] = None,
+    key: Annotated[
+        str | None,
+        typer.Option(
+            metavar="KEY",
+            help="The key for it. Rather set DH_GRADER_KEY: others may see a command line.",
             show_default=False,
         ),
     ] = None,
@@ -133,7 +157,8 @@ def command(
 
     Exit code 2: a file, exercise or part is unusable; other files are graded all the same.
     """
-    chosen = _assignment(exercise, assignment, part)
+    grader = context.with_resource(server_of(load_settings(server=server, key=key)))
+    chosen = _assignment(exercise, assignment, part, partial(set_exercise, server=grader))
     taken = report_format(output_format)
     if taken.is_single and len(paths) > 1:
         give_up(
@@ -152,24 +177,26 @@ def command(
     )
     if not found:
         give_up(f"{', '.join(map(str, paths))}: holds no submission")
-    jobs = min(jobs or jobs_for(len(found)), len(found))
-    is_class = len(found) > 1 or (any(path.is_dir() for path in paths) and not one_student)
-    folder = output if output and is_for_folder(output, several=is_class) else None
+    is_class = any(path.is_dir() for path in paths) and not one_student
     setting = Setting(terms.answered, console_of(output), datetime.now(UTC), os.environ, visibility)
     try:
         with (
             terminable(),
             progress(len(found)) as shown,
-            mapped(partial(graded, terms=terms), found, jobs) as all_graded,
+            _grading(grader, terms, found, jobs, output) as all_graded,
         ):
             run = _Run(all_graded, shown)
-            if folder and taken.folder:
-                write_folder(taken.folder(run.submissions(), setting), folder)
+            if (
+                output
+                and taken.folder
+                and is_for_folder(output, several=is_class or len(found) > 1)
+            ):
+                write_folder(taken.folder(run.submissions(), setting), output)
             else:
                 pieces = taken.pieces(run.submissions(), setting)
                 write(pieces, output, at_once=shown.is_shown or not taken.is_stream)
     except UnusableFolderError as error:
-        give_up(f"{folder}: {error}")
+        give_up(f"{output}: {error}")
     except UnusableSettingError as error:
         give_up(f"{output_format}: {error}")
     except WorkerLostError:
@@ -177,17 +204,33 @@ def command(
     raise SystemExit(run.exit_code)
 
 
-def _assignment(exercise: str | None, file: Path | None, part: str | None) -> Assignment:
+def _assignment(
+    exercise: str | None, file: Path | None, part: str | None, find: Callable[[str], SetExercise]
+) -> Assignment:
     if (exercise is None) == (file is None):
         give_up("Name what is answered: --exercise ID, or --assignment F instead.")
     if file is not None:
         if part is not None:
             give_up("--part goes with --exercise; an assignment says itself which parts are set.")
-        return load_assignment(file, installed_exercise)
+        return load_assignment(file, find)
     try:
-        return of_one(installed_exercise(exercise or ""), part)
+        return of_one(find(exercise or ""), part)
     except UnknownPartNameError as error:
         give_up(str(error))
+
+
+def _grading(
+    server: "GraderClient | None",
+    terms: GradingTerms,
+    found: Sequence[HandedIn],
+    jobs: int | None,
+    output: Path | None,
+) -> AbstractContextManager[Iterator[GradedSubmission]]:
+    """The submissions in order as they are graded, by the server or else here."""
+    if server is not None:
+        return graded_by(server, terms, found, jobs or REQUESTS, output)
+    jobs = min(jobs or jobs_for(len(found)), len(found))
+    return mapped(partial(graded, terms=terms), found, jobs)
 
 
 class _Run:

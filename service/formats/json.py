@@ -19,6 +19,11 @@ def rendered(report: Report, *, indent: int | None = None) -> bytes:
     return _REPORT.dump_json(report, exclude_none=True, indent=indent)
 
 
+def read_report(content: bytes) -> Report:
+    """The report of ``rendered``. Raises pydantic.ValidationError, a ValueError, for others."""
+    return _REPORT.validate_json(content)
+
+
 def entries(submissions: Iterable[GradedSubmission]) -> Iterator[bytes]:
     """A line of JSON for each file: its report, or the error because of which it has none."""
     for submission in submissions:

@@ -5,13 +5,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Final
 
-from pydantic import BaseModel, BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, model_validator
 
-from service.catalogue import Exercise, FeedbackLevel, load_exercise
+from service.catalogue import FeedbackLevel, load_exercise
 from service.catalogue.fields import Identifier, NotBool, StrictModel, Text
 from service.catalogue.formulas import FieldError
 from service.catalogue.toml_file import load_toml
 from service.submissions.lookup import UnknownExerciseError, nearest
+from service.submissions.outline import ExerciseOutline, SetExercise
 
 PASS_MARK: Final = 0.8
 MAX_EXERCISES: Final = 100
@@ -21,7 +22,14 @@ def _as_list(value: object) -> object:
     return [value] if isinstance(value, str) else value
 
 
-Patterns = Annotated[list[Text], BeforeValidator(_as_list), Field(min_length=1, max_length=100)]
+def _names_a_file(value: str) -> str:
+    if not PurePosixPath(value).name:
+        raise ValueError(f'{value!r} names no file; write a name such as "table.csv" or "*.tex"')
+    return value
+
+
+_Pattern = Annotated[Text, AfterValidator(_names_a_file)]
+Patterns = Annotated[list[_Pattern], BeforeValidator(_as_list), Field(min_length=1, max_length=100)]
 
 
 class AssignedExerciseSpec(StrictModel):
@@ -73,11 +81,11 @@ class AssignedExercise:
 
     ``worth`` are the points that it counts. ``left_out`` are the ids of its parts that are not set.
     ``path`` is the exercise's own file, where it is none of the catalogue. ``files`` and
-    ``part_files`` are the names of files that answer it, in small letters; without ``files``, its
-    id and those of its parts are.
+    ``part_files`` are the names of files that answer it; without ``files``, its id and those of
+    its parts are.
     """
 
-    exercise: Exercise
+    exercise: SetExercise
     worth: float
     left_out: frozenset[str] = frozenset()
     path: Path | None = None
@@ -117,13 +125,13 @@ class UnknownPartNameError(LookupError):
     """An exercise has no part of this name; the text brings the nearest."""
 
 
-def of_one(exercise: Exercise, part: str | None = None) -> Assignment:
+def of_one(exercise: SetExercise, part: str | None = None) -> Assignment:
     """The assignment of one exercise, or of one part of it. Raises UnknownPartNameError."""
     return Assignment((assigned(exercise, None if part is None else [part]),), exercise.title)
 
 
 def assigned(
-    exercise: Exercise, parts: list[str] | None = None, worth: float | None = None
+    exercise: SetExercise, parts: list[str] | None = None, worth: float | None = None
 ) -> AssignedExercise:
     """The exercise with these parts, or all, set for its own points or else for ``worth``.
 
@@ -137,16 +145,34 @@ def assigned(
             raise UnknownPartNameError(
                 f"{exercise.id} has no part {part!r}.{hint} Its parts are: {', '.join(known)}."
             )
-    chosen = tuple(part for part in exercise.parts if parts is None or part.id in parts)
-    own = sum(part.points for part in chosen)
-    return AssignedExercise(
-        replace(exercise, parts=chosen),
-        own if worth is None else worth,
-        frozenset(known) - {part.id for part in chosen},
-    )
+    chosen = frozenset(known if parts is None else parts)
+    restricted = _restricted(exercise, chosen)
+    own = sum(part.points for part in restricted.parts)
+    return AssignedExercise(restricted, own if worth is None else worth, frozenset(known) - chosen)
 
 
-def load_assignment(file: Path, find: Callable[[str], Exercise]) -> Assignment:
+def _restricted(exercise: SetExercise, chosen: frozenset[str]) -> SetExercise:
+    """The exercise with the chosen parts only.
+
+    One that follows a part which is not set follows the part that this one follows, as it would if
+    that part had no answer.
+    """
+    if isinstance(exercise, ExerciseOutline):
+        kept = tuple(part for part in exercise.parts if part.id in chosen)
+        return replace(exercise, parts=kept)
+    follows: dict[str, str | None] = {}
+    parts = []
+    for part in exercise.parts:
+        followed = part.follows
+        if followed is not None and followed not in chosen:
+            followed = follows[followed]
+        follows[part.id] = followed
+        if part.id in chosen:
+            parts.append(part.model_copy(update={"follows": followed}))
+    return replace(exercise, parts=tuple(parts))
+
+
+def load_assignment(file: Path, find: Callable[[str], SetExercise]) -> Assignment:
     """The assignment in a TOML file. Raises CatalogueError.
 
     ``find`` brings the exercise of the catalogue with an id, or raises UnknownExerciseError.
@@ -165,7 +191,7 @@ def load_assignment(file: Path, find: Callable[[str], Exercise]) -> Assignment:
 
 
 def _assigned(
-    spec: AssignedExerciseSpec, place: str, folder: Path, find: Callable[[str], Exercise]
+    spec: AssignedExerciseSpec, place: str, folder: Path, find: Callable[[str], SetExercise]
 ) -> AssignedExercise:
     """One exercise of the assignment. Raises FieldError, and CatalogueError for its own file."""
     path = folder / spec.path if spec.path is not None else None
@@ -186,13 +212,9 @@ def _assigned(
     return replace(
         chosen,
         path=path,
-        files=_lowered(spec.files or []),
-        part_files={part: _lowered(patterns) for part, patterns in spec.part_files.items()},
+        files=tuple(spec.files or ()),
+        part_files={part: tuple(patterns) for part, patterns in spec.part_files.items()},
     )
-
-
-def _lowered(patterns: list[str]) -> tuple[str, ...]:
-    return tuple(PurePosixPath(pattern.lower()).as_posix() for pattern in patterns)
 
 
 def _check_distinct(exercises: tuple[AssignedExercise, ...]) -> None:

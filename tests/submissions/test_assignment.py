@@ -10,8 +10,9 @@ from service.catalogue import (
     load_catalogue,
     shipped_folder,
 )
+from service.grading import Submission, grade
 from service.submissions.answers import answers_in
-from service.submissions.assignment import Assignment, load_assignment
+from service.submissions.assignment import Assignment, assigned, load_assignment
 from service.submissions.handed_in import all_handed_in
 from service.submissions.lookup import find_exercise
 
@@ -87,6 +88,7 @@ def test_its_names_of_files_count(load: Callable[[str], Assignment], tmp_path: P
         ('"planar-rrr"', '"planar-rrx"', "There is no exercise 'planar-rrx'. Did you mean"),
         ('["table"]', '["tabel"]', "exercises[0].parts (line 7): planar-rrr has no part 'tabel'."),
         ("points = 10", "points = 0", "exercises[0].points (line 8): Input should be greater"),
+        ('"dh.csv"', '["a.csv", "."]', "exercises[0].files[1] (line 9): '.' names no file"),
         ("files =", "file =", "no key 'file' here; did you mean 'files'?"),
         ('path = "own/crane.toml"', "", "exercises[1] (line 11): names no exercise"),
         ('path = "own', 'id = "x"\npath = "own', "exercises[1] (line 11): has an id and a path"),
@@ -107,3 +109,18 @@ def test_a_fault_says_where_and_what_to_write(
 def test_no_assignment_is_endless(load: Callable[[str], Assignment]) -> None:
     with pytest.raises(CatalogueError, match="at most 100"):
         load('title = "x"\n' + '[[exercises]]\nid = "scara"\n' * 101)
+
+
+def test_a_part_follows_what_is_set() -> None:
+    exercise = find("planar-rr")
+    follows = {part.id: part.follows for part in exercise.parts}
+    assert follows == {
+        "table": None, "links": "table", "pose": "links", "position": "pose", "task-space": None,
+    }  # fmt: skip
+    chosen = assigned(exercise, ["table", "position"]).exercise
+    assert isinstance(chosen, Exercise)
+    assert {part.id: part.follows for part in chosen.parts} == {"table": None, "position": "table"}
+    report = grade(chosen, Submission({"position": ["a1 c1 + a2 c12", "a1 s1 + a2 s12"]}))
+    assert [part.points for part in report.parts] == [0, 2]
+    (alone,) = assigned(exercise, ["pose"]).exercise.parts
+    assert alone.id == "pose"

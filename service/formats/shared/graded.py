@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
-from service.catalogue import Exercise
 from service.grading import Report
 from service.grading.report import rounded_points
+from service.submissions.outline import SetExercise
 
 # Scores are rounded to six digits, so 1/3 passes a pass mark of 0.33333333.
 _ROUNDED = 5e-7
@@ -40,7 +40,7 @@ class AnsweredExercise:
         return sum(part.points for part in self.parts)
 
 
-def answered(exercise: Exercise, worth: float | None = None) -> AnsweredExercise:
+def answered(exercise: SetExercise, worth: float | None = None) -> AnsweredExercise:
     """The exercise as it stands in results; it counts its own points, or else ``worth``."""
     parts = tuple(AnsweredPart(part.id, part.title, part.points) for part in exercise.parts)
     worth = sum(part.points for part in parts) if worth is None else worth
