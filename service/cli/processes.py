@@ -92,10 +92,13 @@ def _received(worker: "Connection") -> list[Any]:
 def _workers(function: Callable[[Any], Any], jobs: int) -> Iterator[list["Connection"]]:
     """Processes that apply the function, by what leads to each. They end with the context."""
     # Only here: one process needs none of it.
-    from multiprocessing import get_context
+    from multiprocessing import get_context, resource_tracker
 
     # A fork of a process with threads, as numpy has, may hang.
     context = get_context("spawn")
+    if os.name == "posix":
+        # The first process would start it, and let interrupts through again in its own start.
+        resource_tracker.ensure_running()
     processes, connections = [], []
     try:
         for _ in range(jobs):
