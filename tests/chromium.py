@@ -56,6 +56,11 @@ class Page:
         features = [{"name": "prefers-color-scheme", "value": scheme}]
         self._call("Emulation.setEmulatedMedia", media=media, features=features)
 
+    def resize(self, width: int, height: int = 800) -> None:
+        """Show pages in a window of this size, in CSS pixels."""
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        self._call("Emulation.setDeviceMetricsOverride", **size)
+
     def wait_for(self, expression: str) -> Any:
         """The value of an expression of JavaScript as soon as it is true; the test's own timeout
         is the guard."""

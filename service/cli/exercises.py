@@ -11,16 +11,17 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from service.authoring import template
+from service.authoring import UnusableIdError, template
 from service.catalogue import Exercise
 from service.cli import check
-from service.cli.terminal import give_up, installed, stdout
+from service.cli.terminal import give_up, installed, installed_exercise, stdout
 from service.solutions import ModelSolution, Shown, solve
-from service.submissions.lookup import find_exercise
 
 _NARROWEST = 24
 
-commands = typer.Typer(help="The catalogue of exercises.", no_args_is_help=True)
+commands = typer.Typer(
+    help="The catalogue of exercises.", no_args_is_help=True, add_completion=False
+)
 
 
 @commands.command("list")
@@ -42,7 +43,7 @@ def show_exercise(
     ] = False,
 ) -> None:
     """Show one exercise: its statement, symbols and parts. No answer, unless it is asked for."""
-    exercise = find_exercise(installed(), exercise_id)
+    exercise = installed_exercise(exercise_id)
     console = stdout()
     if solution or latex:
         _write_solution(exercise, console, latex=latex)
@@ -81,7 +82,10 @@ def new_exercise(
     ] = Path(),
 ) -> None:
     """Write a commented exercise file to start from. It passes `exercises check` as it is."""
-    text = template(exercise_id)
+    try:
+        text = template(exercise_id)
+    except UnusableIdError as error:
+        give_up(str(error))
     file = output / f"{exercise_id}.toml"
     try:
         output.mkdir(parents=True, exist_ok=True)

@@ -13,6 +13,7 @@ import typer
 from service.cli.interrupts import terminable
 from service.cli.local_grading import GradingTerms, graded
 from service.cli.output import console_of, write
+from service.cli.output_folder import UnusableFolderError, is_for_folder, write_folder
 from service.cli.processes import WorkerLostError, jobs_for, mapped
 from service.cli.progress import Progress, progress
 from service.cli.server import REQUESTS, graded_by, require_no_own_files, server_of, set_exercise
@@ -93,7 +94,12 @@ def command(
         ),
     ] = "text",
     output: Annotated[
-        Path | None, typer.Option(metavar="F", help="Write to this file instead.")
+        Path | None,
+        typer.Option(
+            metavar="F",
+            help="Write to this file instead; html writes several submissions to a folder, with "
+            "an overview of the class.",
+        ),
     ] = None,
     pass_mark: Annotated[
         float | None,
@@ -176,6 +182,7 @@ def command(
     )
     if not found:
         give_up(f"{', '.join(map(str, paths))}: holds no submission")
+    is_class = any(path.is_dir() for path in paths) and not one_student
     setting = Setting(terms.answered, console_of(output), datetime.now(UTC), os.environ, visibility)
     try:
         with (
@@ -184,8 +191,17 @@ def command(
             _grading(grader, terms, found, jobs, output) as all_graded,
         ):
             run = _Run(all_graded, shown)
-            pieces = taken.pieces(run.submissions(), setting)
-            write(pieces, output, at_once=shown.is_shown or not taken.is_stream)
+            if (
+                output
+                and taken.folder
+                and is_for_folder(output, several=is_class or len(found) > 1)
+            ):
+                write_folder(taken.folder(run.submissions(), setting), output)
+            else:
+                pieces = taken.pieces(run.submissions(), setting)
+                write(pieces, output, at_once=shown.is_shown or not taken.is_stream)
+    except UnusableFolderError as error:
+        give_up(f"{output}: {error}")
     except UnusableSettingError as error:
         give_up(f"{output_format}: {error}")
     except WorkerLostError:

@@ -9,8 +9,8 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
 from typing import Any, Final, TypeVar, cast
 
-Item = TypeVar("Item")
-Result = TypeVar("Result")
+_Item = TypeVar("_Item")
+_Result = TypeVar("_Result")
 
 # Large enough that handing over costs little, small enough that no process waits long for another.
 _CHUNK: Final = 8
@@ -33,8 +33,8 @@ def jobs_for(count: int) -> int:
 
 @contextmanager
 def mapped(
-    function: Callable[[Item], Result], items: Sequence[Item], jobs: int
-) -> Iterator[Iterator[Result]]:
+    function: Callable[[_Item], _Result], items: Sequence[_Item], jobs: int
+) -> Iterator[Iterator[_Result]]:
     """The results in the order of the items, worked out as they are asked for.
 
     With one job all is done in this process. The others end with the context, whatever they are
@@ -47,7 +47,7 @@ def mapped(
         yield _in_order(workers, items)
 
 
-def _in_order(workers: Sequence[Connection], items: Sequence[Item]) -> Iterator[Any]:
+def _in_order(workers: Sequence[Connection], items: Sequence[_Item]) -> Iterator[Any]:
     """The results of chunks that the workers are given whenever they have none."""
     chunks = (items[i : i + _CHUNK] for i in range(0, len(items), _CHUNK))
     numbered = enumerate(chunks)

@@ -104,12 +104,17 @@ def _places(name: str, assignment: Assignment) -> list[tuple[int, str]]:
 def _place(path: PurePosixPath, assigned: AssignedExercise, is_one: bool) -> str | None:
     """The part that the file answers, "" where its name says none; None where it answers none."""
     for part, patterns in assigned.part_files.items():
-        if any(map(path.match, patterns)):
+        if _is_named(path, patterns):
             return part
     if assigned.files:
-        is_named = any(map(path.match, assigned.files))
+        is_named = _is_named(path, assigned.files)
         return (_part_in(path.stem, assigned) or "") if is_named else None
     return _place_by_id(path, assigned, is_one)
+
+
+def _is_named(path: PurePosixPath, patterns: Sequence[str]) -> bool:
+    """Whether the path, in small letters, ends as one of the patterns says."""
+    return any(path.match(pattern.lower()) for pattern in patterns)
 
 
 def _place_by_id(path: PurePosixPath, assigned: AssignedExercise, is_one: bool) -> str | None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Final
 
-from pydantic import BaseModel, BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, model_validator
 
 from service.catalogue import FeedbackLevel, load_exercise
 from service.catalogue.fields import Identifier, NotBool, StrictModel, Text
@@ -22,7 +22,14 @@ def _as_list(value: object) -> object:
     return [value] if isinstance(value, str) else value
 
 
-Patterns = Annotated[list[Text], BeforeValidator(_as_list), Field(min_length=1, max_length=100)]
+def _names_a_file(value: str) -> str:
+    if not PurePosixPath(value).name:
+        raise ValueError(f'{value!r} names no file; write a name such as "table.csv" or "*.tex"')
+    return value
+
+
+_Pattern = Annotated[Text, AfterValidator(_names_a_file)]
+Patterns = Annotated[list[_Pattern], BeforeValidator(_as_list), Field(min_length=1, max_length=100)]
 
 
 class AssignedExerciseSpec(StrictModel):
@@ -74,8 +81,8 @@ class AssignedExercise:
 
     ``worth`` are the points that it counts. ``left_out`` are the ids of its parts that are not set.
     ``path`` is the exercise's own file, where it is none of the catalogue. ``files`` and
-    ``part_files`` are the names of files that answer it, in small letters; without ``files``, its
-    id and those of its parts are.
+    ``part_files`` are the names of files that answer it; without ``files``, its id and those of
+    its parts are.
     """
 
     exercise: SetExercise
@@ -205,13 +212,9 @@ def _assigned(
     return replace(
         chosen,
         path=path,
-        files=_lowered(spec.files or []),
-        part_files={part: _lowered(patterns) for part, patterns in spec.part_files.items()},
+        files=tuple(spec.files or ()),
+        part_files={part: tuple(patterns) for part, patterns in spec.part_files.items()},
     )
-
-
-def _lowered(patterns: list[str]) -> tuple[str, ...]:
-    return tuple(PurePosixPath(pattern.lower()).as_posix() for pattern in patterns)
 
 
 def _check_distinct(exercises: tuple[AssignedExercise, ...]) -> None:

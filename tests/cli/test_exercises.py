@@ -145,7 +145,7 @@ def test_check_names_file_field_and_reason(run: Run, tmp_path: Path, whole_folde
     assert result.stdout == ""
 
 
-def test_a_broken_catalogue_stops_every_command(
+def test_a_broken_exercise_stops_every_command_that_needs_it(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "broken.toml").write_text(BROKEN, encoding="utf-8")

@@ -68,7 +68,9 @@ class Reader:
                 case "json":
                     json.loads(block.text)
                     for name in block.words:
-                        (self._folder / name).write_text(block.text, encoding="utf-8")
+                        file = self._folder / name
+                        file.parent.mkdir(parents=True, exist_ok=True)
+                        file.write_text(block.text, encoding="utf-8")
                 case other:
                     pytest.fail(f"line {block.line}: nothing is known of blocks of {other}")
 

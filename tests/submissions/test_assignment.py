@@ -88,6 +88,7 @@ def test_its_names_of_files_count(load: Callable[[str], Assignment], tmp_path: P
         ('"planar-rrr"', '"planar-rrx"', "There is no exercise 'planar-rrx'. Did you mean"),
         ('["table"]', '["tabel"]', "exercises[0].parts (line 7): planar-rrr has no part 'tabel'."),
         ("points = 10", "points = 0", "exercises[0].points (line 8): Input should be greater"),
+        ('"dh.csv"', '["a.csv", "."]', "exercises[0].files[1] (line 9): '.' names no file"),
         ("files =", "file =", "no key 'file' here; did you mean 'files'?"),
         ('path = "own/crane.toml"', "", "exercises[1] (line 11): names no exercise"),
         ('path = "own', 'id = "x"\npath = "own', "exercises[1] (line 11): has an id and a path"),

@@ -56,6 +56,11 @@ def percent(score: float) -> str:
     return f"{int(score * 1000 + 1e-6) / 10:g} %"
 
 
+def whole_percent(share: float) -> str:
+    """A share, 0..1, in whole per cent: ``87 %``, never rounded up."""
+    return f"{int(share * 100 + 1e-6)} %"
+
+
 def number(value: float) -> str:
     """A number with two decimals at most."""
     return f"{value:.2f}".rstrip("0").rstrip(".")
