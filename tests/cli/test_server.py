@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from random import Random
 
+import httpx
 import pytest
 
 from service.cli.journal import Journal
@@ -14,7 +15,11 @@ from tests.api.serving import Served, served
 from tests.cli.conftest import Run
 from tests.client.scripted import http, scripted
 
+PAGE = (Path(__file__).parents[2] / "docs" / "client.md").read_text(encoding="utf-8")
 POSITION = ["a1 c1 + a2 c12", "a1 s1 + a2 s12"]
+REFUSAL = {
+    "type": "about:blank", "title": "No", "status": 422, "detail": "Not so.", "instance": "/",
+}  # fmt: skip
 ASSIGNMENT = """\
 title = "Homework"
 
@@ -113,7 +118,7 @@ def test_killed_in_the_midst_it_is_asked_for_exactly_the_rest(
     assert len(ungraded) == 21 - len(kept) > 10
     *_, told, advice = lines
     assert told.startswith(f"Not graded: {len(ungraded)} of 23, for {first.address} cannot be")
-    assert ".points.json.graded" in advice
+    assert advice.replace(".json", ".csv") in PAGE
     results = {each["file"]: each for each in json.loads(Path("points.json").read_bytes())}
     assert {
         file for file, each in results.items() if "cannot be reached" in each.get("error", "")
@@ -125,6 +130,38 @@ def test_killed_in_the_midst_it_is_asked_for_exactly_the_rest(
     assert again.stderr == expected.stderr
     assert Path("points.json").read_text(encoding="utf-8") == whole
     assert not Path(".points.json.graded").exists()
+
+
+def test_what_the_server_refuses_or_fails_at_costs_no_other(
+    run: Run, server: Served, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with httpx.Client(base_url=server.address, trust_env=False) as client:
+        view = http(200, client.get("/v1/exercises/planar-rr").text)
+        answers = {"answers": {"position": POSITION}}
+        report = http(200, client.post("/v1/exercises/planar-rr/grade", json=answers).text)
+    for name in "abc":
+        # Three that are not alike, so that nothing but the order says which is which.
+        answers["answers"]["position"] = [*POSITION[:1], f"{POSITION[1]} + 0 {ord(name)}"]
+        Path(f"{name}.json").write_text(json.dumps(answers), encoding="utf-8")
+    command = ["grade", "a.json", "b.json", "c.json", "--exercise", "planar-rr", "--format", "csv"]
+    command += ["--jobs", "1", "--server"]
+    refused = http(422, json.dumps(REFUSAL))
+    with scripted(view, http(500), refused, report, view, report, refused) as scripted_server:
+        first = run(*command, scripted_server.address)
+        assert first.exit_code == 2
+        assert first.stderr.splitlines()[:3] == [
+            f"a.json: is not graded: {scripted_server.address} answers with the status 500.",
+            "b.json: is refused by the server: Not so.",
+            f"Not graded: 1 of 3, for {scripted_server.address} answers with the status 500.",
+        ]
+        second = run(*command, scripted_server.address)
+        assert second.stderr == "b.json: is refused by the server: Not so.\n"
+        assert len(scripted_server.requests) == 7
+    assert [line.split(",")[:2] for line in second.stdout.splitlines()[1:]] == [
+        ["a.json", "2"], ["b.json", ""], ["c.json", "2"],
+    ]  # fmt: skip
+    assert list(Path().glob(".*")) == []
 
 
 def test_the_environment_names_server_and_key(
