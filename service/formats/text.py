@@ -12,6 +12,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from service.formats.shared.class_summary import ClassSummary, pass_line, result_line
 from service.formats.shared.graded import GradedSubmission
 from service.formats.shared.messages import SIGNS, Message, messages
 from service.formats.shared.plain_text import percent, points, visible
@@ -25,20 +26,34 @@ _COLOURS: Final[Mapping[Verdict, str]] = {
     Verdict.UNREADABLE: "magenta",
     Verdict.MISSING: "bright_black",
 }
+# More submissions have a line each: other formats tell all of a class.
+_IN_FULL: Final = 8
 _ASCII: Final = str.maketrans("✓✗–", "+x-")
 # Longer lines are hard to read however wide the terminal is.
 _WIDEST: Final = 100
 
 
 def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:
-    """The report on each file, below its name where there are several."""
+    """The reports below each other, or a line for each submission of a class; then a summary."""
     rest = iter(submissions)
-    first = tuple(islice(rest, 2))
+    first = tuple(islice(rest, _IN_FULL + 1))
     are_several = len(first) > 1 or any(len(each.files) > 1 for each in first)
+    summary = ClassSummary()
     console = setting.console
     for submission in chain(first, rest):
+        summary.add(submission)
         with console.capture() as captured:
-            _write_submission(submission, console, are_several=are_several)
+            if len(first) > _IN_FULL:
+                console.print(result_line(submission), soft_wrap=True)
+            else:
+                _write_submission(submission, console, are_several=are_several)
+        yield captured.get().encode(console.encoding, "replace")
+    if len(first) > 1:
+        with console.capture() as captured:
+            if len(first) > _IN_FULL:
+                console.print()
+            for line in summary.lines():
+                _print_indented(line, console)
         yield captured.get().encode(console.encoding, "replace")
 
 
@@ -47,13 +62,30 @@ def _write_submission(submission: GradedSubmission, console: Console, *, are_sev
         if file.report is None:
             continue
         if are_several:
-            console.print(Text(f"== {visible(file.file)}", "bold"))
+            console.print(Text(f"== {visible(file.file or file.exercise.id)}", "bold"))
         write(file.report, console)
-        if are_several:
+        if len(submission.files) > 1:
             console.print()
     if len(submission.files) > 1:
         total = f"{points(submission.points, submission.max_points)} points"
-        console.print(Text(f"{visible(submission.name)}: {total}, {percent(submission.score)}\n"))
+        console.print(Text(f"{visible(submission.name)}: {total}, {percent(submission.score)}"))
+    if submission.is_graded:
+        console.print(pass_line(submission))
+        if are_several:
+            console.print()
+
+
+def _print_indented(line: Text, console: Console) -> None:
+    """Print a line of the summary, what does not fit below its text."""
+    width = min(console.width, _WIDEST)
+    if line.cell_len <= width:
+        console.print(line)
+        return
+    indent = " " * 6
+    first, *more = line.wrap(console, width - len(indent))
+    console.print(first, width=width)
+    for each in more:
+        console.print(Text.assemble(indent, each), width=width)
 
 
 def write(report: Report, console: Console) -> None:
