@@ -5,9 +5,10 @@ import signal
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import islice
-from multiprocessing import get_context
-from multiprocessing.connection import Connection, wait
-from typing import Any, Final, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
+
+if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
 
 _Item = TypeVar("_Item")
 _Result = TypeVar("_Result")
@@ -47,11 +48,13 @@ def mapped(
         yield _in_order(workers, items)
 
 
-def _in_order(workers: Sequence[Connection], items: Sequence[_Item]) -> Iterator[Any]:
+def _in_order(workers: Sequence["Connection"], items: Sequence[_Item]) -> Iterator[Any]:
     """The results of chunks that the workers are given whenever they have none."""
+    from multiprocessing.connection import wait
+
     chunks = (items[i : i + _CHUNK] for i in range(0, len(items), _CHUNK))
     numbered = enumerate(chunks)
-    idle, busy = list(workers), dict[Connection, int]()
+    idle, busy = list(workers), dict["Connection", int]()
     done: dict[int, list[Any]] = {}
     following = 0
     while True:
@@ -71,14 +74,14 @@ def _in_order(workers: Sequence[Connection], items: Sequence[_Item]) -> Iterator
             following += 1
 
 
-def _send(worker: Connection, chunk: Sequence[Any]) -> None:
+def _send(worker: "Connection", chunk: Sequence[Any]) -> None:
     try:
         worker.send(chunk)
     except OSError as error:
         raise WorkerLostError from error
 
 
-def _received(worker: Connection) -> list[Any]:
+def _received(worker: "Connection") -> list[Any]:
     try:
         return cast("list[Any]", worker.recv())
     except (EOFError, OSError) as error:
@@ -86,8 +89,11 @@ def _received(worker: Connection) -> list[Any]:
 
 
 @contextmanager
-def _workers(function: Callable[[Any], Any], jobs: int) -> Iterator[list[Connection]]:
+def _workers(function: Callable[[Any], Any], jobs: int) -> Iterator[list["Connection"]]:
     """Processes that apply the function, by what leads to each. They end with the context."""
+    # Only here: one process needs none of it.
+    from multiprocessing import get_context
+
     # A fork of a process with threads, as numpy has, may hang.
     context = get_context("spawn")
     processes, connections = [], []
@@ -124,7 +130,7 @@ def _no_interrupt() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _work(connection: Connection, function: Callable[[Any], Any]) -> None:
+def _work(connection: "Connection", function: Callable[[Any], Any]) -> None:
     """Apply the function to one chunk after the other."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     while True:

@@ -9,6 +9,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any, Final
 
 from service.catalogue import read_regular
+from service.submissions.documents import pasted_from
 from service.submissions.strict_json import (
     MAX_BODY_SIZE,
     MAX_DEPTH,
@@ -75,7 +76,7 @@ def read_content(data: bytes, name: str) -> FileContent:
         case ".txt":
             return _recognised(data)
         case known if known in PASTED_ENDINGS:
-            return FileContent(_text(data), is_pasted=True)
+            return FileContent(pasted_from(_text(data), known), is_pasted=True)
         case _ if name == STANDARD_INPUT:
             return _recognised(data)
         case known if known in DATA_ENDINGS:

@@ -101,3 +101,20 @@ def test_check_names_the_line_of_a_fault(run: Run, folder: Path) -> None:
     assert "exercises[1].id (line 8): There is no exercise 'skara'. Did you mean 'scara'?" in (
         result.stderr
     )
+
+
+def test_a_file_that_cannot_be_used_stands_beside_the_report_on_the_others(
+    run: Run, folder: Path
+) -> None:
+    (folder / "class/anna/scara").mkdir()
+    (folder / "class/anna/scara/table.csv").write_text("0, 0, 0, q1", encoding="utf-8")
+    (folder / "class/anna/scara/pose.csv").write_bytes(b"\xff")
+    common = ["grade", folder / "class", "--assignment", folder / "hw.toml", "--format"]
+    result = run(*common, "json")
+    assert result.exit_code == 2
+    first, second, *others = json.loads(result.stdout)
+    assert "error" not in first
+    assert second["error"].startswith("scara/pose.csv is not UTF-8 text")
+    assert second["report"]["parts"][0]["verdict"] != "missing"
+    assert not any("error" in entry for entry in others)
+    assert "scara/pose.csv is not UTF-8 text" in run(*common, "csv").stdout

@@ -51,6 +51,8 @@ def answered(exercise: SetExercise, worth: float | None = None) -> AnsweredExerc
 class GradedFile:
     """A file with its report, or with the problem because of which there is none.
 
+    With both, a part of what was handed in could not be used.
+
     ``file`` is its name; empty where an exercise has no file.
     """
 
@@ -110,8 +112,8 @@ class GradedSubmission:
 
     @property
     def problems(self) -> tuple[str, ...]:
-        """The problems because of which files have no report."""
-        return tuple(file.problem for file in self.files if file.report is None)
+        """The problems of its files, each once."""
+        return tuple(dict.fromkeys(file.problem for file in self.files if file.problem))
 
     @property
     def passed(self) -> bool:
