@@ -16,7 +16,7 @@ from service.cli.output import console_of, write
 from service.cli.output_folder import UnusableFolderError, is_for_folder, write_folder
 from service.cli.processes import WorkerLostError, jobs_for, mapped
 from service.cli.progress import Progress, progress
-from service.cli.server import REQUESTS, graded_by, server_of, set_exercise
+from service.cli.server import REQUESTS, graded_by, require_no_own_files, server_of, set_exercise
 from service.cli.terminal import UNUSABLE, give_up
 from service.formats import FORMAT_NAMES, report_format
 from service.formats.shared.graded import GradedSubmission, Visibility
@@ -157,8 +157,13 @@ def command(
 
     Exit code 2: a file, exercise or part is unusable; other files are graded all the same.
     """
-    grader = context.with_resource(server_of(load_settings(server=server, key=key)))
+    settings = load_settings(server=server, key=key)
+    if key is not None and settings.server is None:
+        give_up("--key goes with --server URL.")
+    grader = context.with_resource(server_of(settings))
     chosen = chosen_assignment(exercise, assignment, part, partial(set_exercise, server=grader))
+    if grader is not None:
+        require_no_own_files(chosen)
     taken = report_format(output_format)
     if taken.is_single and len(paths) > 1:
         give_up(

@@ -27,8 +27,8 @@ def journal_beside(output: Path | None) -> Path:
     """
     if output is None or (output.exists() and not (output.is_file() or output.is_dir())):
         return Path(f".{_USUAL}.graded")
-    whole = output.resolve()
-    return whole.with_name(f".{whole.name}.graded")
+    named = output.resolve() if output.name in ("", "..") else output
+    return named.with_name(f".{named.name}.graded")
 
 
 def digest(content: Sequence[object]) -> str:

@@ -12,6 +12,7 @@ from service.cli.threads import mapped_in_threads
 from service.formats.shared.graded import GradedSubmission
 from service.formats.shared.plain_text import visible
 from service.settings import Settings
+from service.submissions.assignment import Assignment
 from service.submissions.handed_in import HandedIn
 from service.submissions.outline import SetExercise
 
@@ -56,6 +57,16 @@ def set_exercise(exercise_id: str, *, server: "GraderClient | None") -> SetExerc
         return exercise_of(server, exercise_id)
     except GraderClientError as error:
         give_up(visible(str(error)))
+
+
+def require_no_own_files(assignment: Assignment) -> None:
+    """End the program with exit code 2 for an exercise that no server has."""
+    for assigned in assignment.exercises:
+        if assigned.path is not None:
+            give_up(
+                f"{assigned.path} is a file of yours, and a server grades by its own exercises: "
+                'name one of them in the assignment, by id = "…".'
+            )
 
 
 @contextmanager

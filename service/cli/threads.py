@@ -2,8 +2,10 @@
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import contextmanager
+from concurrent.futures import Future
+from contextlib import contextmanager, suppress
+from queue import Empty, SimpleQueue
+from threading import Thread
 from typing import TypeVar
 
 Item = TypeVar("Item")
@@ -16,25 +18,51 @@ def mapped_in_threads(
 ) -> Iterator[Iterator[Result]]:
     """The results in the order of the items, with few of them in memory.
 
-    What has not begun when the context ends is never begun, and nobody waits for what has.
+    What has not begun when the context ends is never begun, and nobody waits for what has: the
+    threads of an executor would hold the end of the program up.
     """
-    pool = ThreadPoolExecutor(jobs)
+    tasks: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
+    for _ in range(jobs):
+        Thread(target=_work, args=(tasks,), daemon=True).start()
     try:
-        yield _in_order(pool, function, items, 2 * jobs)
+        yield _in_order(tasks, function, items, 2 * jobs)
     finally:
-        pool.shutdown(wait=False, cancel_futures=True)
+        with suppress(Empty):
+            while True:
+                tasks.get_nowait()
+        for _ in range(jobs):
+            tasks.put(None)
 
 
 def _in_order(
-    pool: ThreadPoolExecutor,
+    tasks: "SimpleQueue[Callable[[], None] | None]",
     function: Callable[[Item], Result],
     items: Iterable[Item],
     ahead: int,
 ) -> Iterator[Result]:
     waiting: deque[Future[Result]] = deque()
     for item in items:
-        waiting.append(pool.submit(function, item))
+        future: Future[Result] = Future()
+        tasks.put(_task(function, item, future))
+        waiting.append(future)
         if len(waiting) > ahead:
             yield waiting.popleft().result()
     while waiting:
         yield waiting.popleft().result()
+
+
+def _task(
+    function: Callable[[Item], Result], item: Item, future: Future[Result]
+) -> Callable[[], None]:
+    def run() -> None:
+        try:
+            future.set_result(function(item))
+        except Exception as error:  # noqa: BLE001 -- raised where the result is asked for
+            future.set_exception(error)
+
+    return run
+
+
+def _work(tasks: "SimpleQueue[Callable[[], None] | None]") -> None:
+    while (task := tasks.get()) is not None:
+        task()

@@ -67,7 +67,7 @@ def unreachable(server: str, error: httpx.TransportError) -> ServerUnreachableEr
     return ServerUnreachableError(message, is_temporary=not any(map(_stays, _causes(error))))
 
 
-def refusal(server: str, answer: HttpAnswer) -> GraderClientError:
+def error_in(server: str, answer: HttpAnswer) -> GraderClientError:
     """The error for an answer that is no success."""
     if location := answer.headers.get("location"):
         return UnexpectedAnswerError(
@@ -80,10 +80,10 @@ def refusal(server: str, answer: HttpAnswer) -> GraderClientError:
         # Of a proxy, perhaps: the page that it shows to people says nothing to a program.
         message = f"{server} answers with the status {answer.status}."
         return RequestRefusedError(answer.status, message, retry_after=wait)
-    code = problem.type.removeprefix(TYPE_PREFIX) if problem.type.startswith(TYPE_PREFIX) else ""
+    name = problem.type.removeprefix(TYPE_PREFIX) if problem.type.startswith(TYPE_PREFIX) else ""
     reasons = tuple(problem.errors or ())
     return RequestRefusedError(
-        answer.status, problem.detail, code=code, reasons=reasons, retry_after=wait
+        answer.status, problem.detail, name=name, reasons=reasons, retry_after=wait
     )
 
 

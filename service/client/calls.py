@@ -10,7 +10,7 @@ from uuid import uuid4
 from pydantic import BaseModel, ValidationError
 
 from service.catalogue import FeedbackLevel
-from service.client.answers import HttpAnswer, refusal
+from service.client.answers import HttpAnswer, error_in
 from service.client.errors import UnexpectedAnswerError
 from service.contract.exercises import ExerciseList, ExerciseSummary, ExerciseView
 from service.contract.grading import GradeManyResponse, GradeResult
@@ -55,7 +55,7 @@ class HttpCall(Generic[T]):
     def result(self, server: str, answer: HttpAnswer) -> T:
         """The result of the call. Raises GraderClientError."""
         if answer.status != 200:
-            raise refusal(server, answer)
+            raise error_in(server, answer)
         try:
             return self.read(answer.content)
         except ValidationError as error:

@@ -42,13 +42,13 @@ class RequestRefusedError(GraderClientError):
         status: int,
         message: str,
         *,
-        code: str = "",
+        name: str = "",
         reasons: tuple[Reason, ...] = (),
         retry_after: float = 0.0,
     ) -> None:
         super().__init__(message, is_temporary=status in _TEMPORARY, retry_after=retry_after)
         self.status = status
-        self.code = code
+        self.code = name
         self.message = message
         self.reasons = reasons
 

@@ -24,7 +24,7 @@ class CountedSlip:
     exercise and part.
     """
 
-    code: str
+    slip_code: str
     kind: str
     is_unreadable: bool
     submissions: "array[int]" = field(default_factory=lambda: array("L"))
@@ -71,7 +71,7 @@ class SlipCounts:
     def counted(self, *, unreadable: bool = False) -> Sequence[CountedSlip]:
         """The slips of what was read, or of what was ``unreadable``; the commonest first."""
         found = (slip for slip in self._found.values() if slip.is_unreadable is unreadable)
-        return sorted(found, key=lambda slip: (-slip.count, slip.code, slip.kind))
+        return sorted(found, key=lambda slip: (-slip.count, slip.slip_code, slip.kind))
 
 
 def _slips(part: PartReport) -> dict[tuple[str, bool], str]:

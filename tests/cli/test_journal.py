@@ -73,6 +73,8 @@ def test_it_stands_beside_the_output_and_is_no_submission_there(
     folder = tmp_path / "pages"
     folder.mkdir()
     assert journal_beside(tmp_path / "a/points.csv") == tmp_path / "a/.points.csv.graded"
-    assert journal_beside(Path("pages/")) == tmp_path / ".pages.graded"
+    assert journal_beside(Path("pages/")) == Path(".pages.graded")
+    monkeypatch.chdir(folder)
+    assert journal_beside(Path()) == tmp_path / ".pages.graded"
     assert journal_beside(None) == Path(".dh-grader.graded")
     assert journal_beside(Path("/dev/null")) == Path(".dh-grader.graded")

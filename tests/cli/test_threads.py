@@ -1,5 +1,7 @@
 import threading
 
+import pytest
+
 from service.cli.threads import mapped_in_threads
 from tests.guards import ANSWER
 
@@ -39,3 +41,10 @@ def test_the_end_waits_for_nobody() -> None:
         assert begun.wait(ANSWER)
     assert not released.is_set()
     released.set()
+
+
+def test_what_a_thread_raises_is_raised_where_its_result_is_due() -> None:
+    with mapped_in_threads(lambda item: 1 // item, [1, 0], 2) as results:
+        assert next(results) == 1
+        with pytest.raises(ZeroDivisionError):
+            next(results)

@@ -35,9 +35,8 @@ class Scripted:
     listener: socket.socket = field(default_factory=lambda: socket.create_server(("127.0.0.1", 0)))
     requests: list[Received] = field(default_factory=list)
 
-    @property
-    def address(self) -> str:
-        return f"http://127.0.0.1:{self.listener.getsockname()[1]}"
+    def __post_init__(self) -> None:
+        self.address = f"http://127.0.0.1:{self.listener.getsockname()[1]}"
 
     def serve(self) -> None:
         """Answer until there is no answer left, then hear nobody."""

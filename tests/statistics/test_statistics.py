@@ -89,7 +89,7 @@ def test_the_commonest_wrong_entries(counted: ClassStatistics) -> None:
 
 
 def test_slips_and_those_who_have_them(counted: ClassStatistics) -> None:
-    found = {slip.code: list(slip.submissions) for slip in counted.slips.counted()}
+    found = {slip.slip_code: list(slip.submissions) for slip in counted.slips.counted()}
     assert found == {
         "quarter_turn": [BEN, CLEO],
         "missing_tool_row": [DANA],
@@ -103,7 +103,7 @@ def test_slips_and_those_who_have_them(counted: ClassStatistics) -> None:
 
 def test_what_could_not_be_read_is_no_slip(counted: ClassStatistics) -> None:
     [slip] = counted.slips.counted(unreadable=True)
-    assert (slip.code, list(slip.submissions)) == ("trailing_operator", [EMRE])
+    assert (slip.slip_code, list(slip.submissions)) == ("trailing_operator", [EMRE])
 
 
 def test_groups_of_identical_mistakes(counted: ClassStatistics) -> None:

@@ -59,7 +59,7 @@ def _slip(overview: Overview, slip: CountedSlip, titles: Mapping[tuple[str, str]
     ]
     where = ", ".join(f"{titles[part]} ({count:,})" for part, count in slip.parts.most_common())
     told = element("span", *words, class_="sentence")
-    code = element("span", element("code", slip.code), f" in {where}", class_="quiet")
+    code = element("span", element("code", slip.slip_code), f" in {where}", class_="quiet")
     share = bar(slip.count / max(overview.statistics.scores.count, 1))
     lines = overview.listed(slip.submissions)
     return folded([_count(slip.count), element("span", told, code, share)], names(overview, lines))

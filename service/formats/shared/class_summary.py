@@ -75,5 +75,5 @@ def _listed(heading: str, slips: Sequence[CountedSlip]) -> Iterator[Text]:
         parts = ", ".join(dict.fromkeys(part for _, part in slip.parts))
         sentence = shortened(visible(slip.sentence), _LONGEST)
         yield Text.assemble(
-            f"{slip.count:>4,}  {sentence} ", (f"({slip.code} in {visible(parts)})", "dim")
+            f"{slip.count:>4,}  {sentence} ", (f"({slip.slip_code} in {visible(parts)})", "dim")
         )
