@@ -8,6 +8,7 @@ from pydantic import BaseModel, Field
 
 from service.api.lookup import Catalogue, ExerciseId, exercise_or_404
 from service.api.openapi import refusals
+from service.api.statement import statement_html
 from service.catalogue import FeedbackLevel, least
 from service.catalogue.fields import Marking
 from service.catalogue.parts import AnyShape
@@ -74,7 +75,11 @@ class ExerciseView(BaseModel):
     title: str
     source: str
     structure: str | None = Field(None, description="Left out where there is no robot.")
-    statement: str
+    statement: str = Field(description="Markdown, with LaTeX between dollars.")
+    statement_html: str = Field(
+        description="The same as HTML and MathML, without scripts, styles and pictures."
+    )
+    figure: bool = Field(description="Whether it has a robot that `figure.svg` draws.")
     feedback: FeedbackLevel = Field(
         description="The most that a report on it tells: `full`, `hints`, `verdicts` or `score`."
     )
@@ -112,7 +117,13 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel) -> APIRouter:
         exercise = exercise_or_404(catalogue, exercise_id)
         fields = {name: getattr(exercise, name, None) for name in ExerciseView.model_fields}
         parts = [{**dict(part), "shape": part.shape(exercise.reference)} for part in exercise.parts]
-        ceiling = least(exercise.feedback, feedback)
-        return {**fields, "feedback": ceiling, "symbols": exercise.variables, "parts": parts}
+        return {
+            **fields,
+            "statement_html": statement_html(exercise.statement),
+            "figure": exercise.reference is not None,
+            "feedback": least(exercise.feedback, feedback),
+            "symbols": exercise.variables,
+            "parts": parts,
+        }
 
     return router
