@@ -23,8 +23,8 @@ from service.grading.feedback import Finding, UnreadableAnswerError
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers
 
-# Joint values in one request: two seconds of a motion at 30 pictures a second.
-MOST_CONFIGURATIONS: Final = 60
+# Joint values in one request: a second of a motion at 30 pictures a second.
+MOST_CONFIGURATIONS: Final = 30
 _MOST_SYMBOLS: Final = 100
 _KEPT: Final = 64
 

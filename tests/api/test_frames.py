@@ -106,7 +106,7 @@ def test_another_choice_of_frames_gives_the_same_mechanism(client: httpx.Client)
         ({"exercise": "planar-rr", "joints": [[0]]}, "#/joints/0"),
         ({"exercise": "planar-rr", "joints": [[0, 1e300]]}, "#/joints/0/1"),
         ({"exercise": "planar-rr", "joints": []}, "#/joints"),
-        ({"exercise": "planar-rr", "joints": [[0, 0]] * 61}, "#/joints"),
+        ({"exercise": "planar-rr", "joints": [[0, 0]] * 31}, "#/joints"),
         ({"exercise": "planar-rr", "symbols": {"b": 1}}, "#/symbols/b"),
         ({"exercise": "planar-rr", "symbols": {"theta1": 1}}, "#/symbols/theta1"),
         ({"exercise": "planar-rr", "symbols": {"a1": "1"}, "more": 1}, "#/more"),
