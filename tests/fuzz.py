@@ -11,7 +11,6 @@ import sys
 import time
 import warnings
 from collections.abc import Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
 
 from tests.attack.hostile import Found, Reading, cases, group, groups, measured
@@ -28,6 +27,10 @@ def _group(count: int, seed: str) -> Found:
     # A warning would fill the log of whoever serves.
     warnings.simplefilter("error")
     return group(list(cases(count, seed)), _reading)
+
+
+def _numbered_group(each: tuple[int, str]) -> Found:
+    return _group(*each)
 
 
 def fuzz(count: int, seed: str, cores: int, minutes: float) -> Found:
@@ -53,12 +56,9 @@ def _each(count: int, seed: str, cores: int) -> Iterator[Found]:
         yield from (_group(*each) for each in sizes)
         return
     # A process that lives for long would hide what a fresh one does: each has its share and ends.
-    with ProcessPoolExecutor(cores, get_context("spawn"), max_tasks_per_child=200) as pool:
-        pending: list[Future[Found]] = [pool.submit(_group, *each) for each in sizes]
-        try:
-            yield from (done.result() for done in as_completed(pending))
-        finally:
-            pool.shutdown(cancel_futures=True)
+    # (An executor of concurrent.futures waits for ever here: CPython's issue 115634.)
+    with get_context("spawn").Pool(cores, maxtasksperchild=200) as pool:
+        yield from pool.imap_unordered(_numbered_group, sizes)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -20,8 +20,14 @@ MAX_PASTED = 36_000
 
 # In units of the least work that a grading can be: six links multiplied out at all samples.
 MAX_EXPLANATIONS = 180.0
-# Enough to judge a table of ten rows in free frames as it is written and in another order.
+# Enough to judge a table of seven rows as it is written and in another order.
 MAX_SEARCHES = 240.0
+# What the search for values of unread cells leaves for judging the table.
+JUDGING_WORK = 90.0
+# All of it together. What was read and searched leaves so much less for explanations.
+MAX_WORK = 330.0
+# The work of reading a symbol, of cutting a character out of a pasted text, of a repair.
+SYMBOL_WORK, PASTED_WORK, REPAIR_WORK = 1 / 100, 1 / 800, 1.5
 
 # The pose of a seven-joint arm, multiplied out, has 92,000 as MathML.
 MAX_PRINTED = 100_000
@@ -50,16 +56,36 @@ class WorkBudget:
     has_left_out: bool = False
     unreadable: set[object] = field(default_factory=set)
 
+    @property
+    def left(self) -> float:
+        """How much of all work the reading and the searches have left."""
+        read = (
+            SYMBOL_WORK * (MAX_SYMBOLS - max(self.symbols, 0))
+            + PASTED_WORK * (MAX_PASTED - max(self.pasted, 0))
+            + REPAIR_WORK * (MAX_REPAIRS - max(self.repairs, 0))
+        )
+        return MAX_WORK - read - (MAX_SEARCHES - self.searches)
+
     def affords(self, work: float) -> bool:
         """Whether there is so much left for explanations. It is taken, and what is gone is gone."""
         self.explanations -= work
-        self.has_left_out |= self.explanations < 0
-        return self.explanations >= 0
+        left = min(self.explanations, self.left - (MAX_EXPLANATIONS - self.explanations))
+        self.has_left_out |= left < 0
+        return left >= 0
 
-    def affords_search(self, work: float) -> bool:
-        """Whether there is so much left for searches. It is taken, and what is gone is gone."""
+    def affords_search(self, work: float, spare: float = 0.0) -> bool:
+        """Whether there is so much left for searches, and ``spare`` for others; if so, it is taken.
+
+        It does not depend on what was explained.
+        """
+        is_afforded = work <= min(self.searches - spare, self.left)
+        if is_afforded:
+            self.charge_search(work)
+        return is_afforded
+
+    def charge_search(self, work: float) -> None:
+        """Count a search that was made, whatever it cost."""
         self.searches -= work
-        return self.searches >= 0
 
     def charge_reading(self, symbols: int) -> bool:
         """Count a text that is to be read; whether it may be."""

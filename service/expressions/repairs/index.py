@@ -27,9 +27,12 @@ def repair(failure: Failure) -> Repair:
     if details["reason"] == "shorthand":
         message += ". Write the shorthand without brackets."
         return error(failure, "index", message, failure.replaced(f"{run}{digits}"))
-    message += f", which is no name here. {_PLAINLY}"
-    plain = failure.replaced(f"{run}{int(digits) - 1}") if details["style"] == "[" else None
-    return error(failure, "index", message, plain)
+    message += ", which is no name here. "
+    if details["style"] == "(":
+        return error(failure, "index", message + _PLAINLY)
+    plain = f"{run}{int(digits) - 1}"
+    message += f"If you mean {plain}, write it without brackets."
+    return error(failure, "index", message, failure.replaced(plain))
 
 
 def _no_number(failure: Failure) -> Repair:

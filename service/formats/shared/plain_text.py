@@ -11,8 +11,9 @@ _COMMAND: Final = re.compile(r"(?<=([:#]))(?=\1)")
 
 def visible(text: str) -> str:
     """The text in one line without control and invisible characters, or commands to a build."""
-    shown = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
-    return _COMMAND.sub(" ", shown)
+    if not text.isprintable():
+        text = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
+    return _COMMAND.sub(" ", text)
 
 
 def code_pieces(text: str) -> list[tuple[str, bool]]:

@@ -195,7 +195,8 @@ def distance_extra(case: WrongCell) -> Hypotheses:
     finding = finding_on(
         case,
         "distance_extra",
-        f"Check the distance in {case.symbol}{_beside(case)}: along which axis does it lie?",
+        f"Check whether the distance in {case.symbol}{_beside(case)} belongs there: it may lie "
+        "along another axis, or stand in another cell already.",
     )
     yield Repaired(0 * case.actual, finding)
 

@@ -29,7 +29,7 @@ def row_places(
     # Rounded angles made exact make a new row of the same entries.
     places = {id(row.entries): i for i, row in enumerate(table.rows)}
     moved = [
-        f"your row {place + 1} with {_of(judged)}"
+        f"row {place + 1} with {_of(judged)}"
         for judged in judgement.rows
         if judged.row is not None
         for place in [places[id(judged.row.entries)]]
@@ -37,9 +37,7 @@ def row_places(
     ]
     if not moved:
         return ()
-    first, *others = moved
-    first = first.replace("your", "Your", 1).replace(" with", " was compared with", 1)
-    message = f"{', '.join([first, *others])}."
+    message = f"Your rows were compared in this way: {', '.join(moved)}."
     return (Finding("rows_matched", message, severity=Severity.INFO),)
 
 

@@ -198,8 +198,8 @@ def _judged_as_read(
 
 _UNREACHED = Finding(
     "tool_not_reached",
-    "Each row fits this robot, but together the rows do not lead to the given end-effector frame: "
-    "compare your last frame with it.",
+    "Each row alone fits this robot, but the product of all rows does not give the end-effector "
+    "frame of the exercise: compare the origin and the axes of your last frame with it.",
 )
 
 

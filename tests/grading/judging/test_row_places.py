@@ -24,14 +24,14 @@ def told(exercise: Exercise, rows: list[Row]) -> str:
 
 def test_a_row_too_few(scara: Exercise) -> None:
     message = told(scara, [ROWS[0], *ROWS[2:]])
-    assert "Your row 2 was compared with joint 3, your row 3 with joint 4." in message
+    assert "Your rows were compared in this way: row 2 with joint 3, row 3 with joint 4." in message
     assert "row 1" not in message
 
 
 def test_a_row_too_many(scara: Exercise) -> None:
     message = told(scara, [ROWS[0], ("7", "1", "7", "7"), *ROWS[1:]])
-    assert "your row 3 with joint 2, your row 4 with joint 3" in message
-    assert "your row 5 with joint 4" in message
+    assert "row 3 with joint 2, row 4 with joint 3" in message
+    assert "row 5 with joint 4" in message
 
 
 @pytest.mark.parametrize("rows", [ROWS, [*ROWS, ZERO], ROWS[:3], [ROWS[0], ROWS[2], *ROWS[2:]]])
