@@ -86,7 +86,7 @@ def _beside(line: _Line, label: Label) -> Iterator[Numbers]:
     if aside @ away < 0:
         aside = -aside
     room = Rectangle.of(label, 0.0, 0.0)
-    near = abs(aside[0]) * room.half_width + abs(aside[1]) * room.half_height + 3.0
+    near = abs(aside[0]) * room.half_width + abs(aside[1]) * room.half_height + 7.5
     for step in (0.5, 0.35, 0.65):
         for side in (near, -near):
             point = line.ends[0] + step * (line.ends[1] - line.ends[0])

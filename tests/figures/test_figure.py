@@ -187,5 +187,12 @@ def test_an_exercise_without_a_robot_has_no_figure() -> None:
 
 
 def test_the_figure_of_the_readme_is_current() -> None:
-    """Refresh it: dh-grader exercises show stanford-arm --figure docs/stanford-arm.svg."""
-    assert (DOCS / "stanford-arm.svg").read_text(encoding="utf-8") == drawn("stanford-arm")
+    """Refresh it: dh-grader exercises show stanford-arm --figure docs/stanford-arm.svg.
+
+    Another processor may round another way in the last digit.
+    """
+    number = re.compile(r"-?\d+(?:\.\d+)?")
+    kept = (DOCS / "stanford-arm.svg").read_text(encoding="utf-8")
+    assert number.sub("0", kept) == number.sub("0", drawn("stanford-arm"))
+    one, other = (list(map(float, number.findall(svg))) for svg in (kept, drawn("stanford-arm")))
+    assert one == pytest.approx(other, abs=0.05)
