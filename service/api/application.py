@@ -9,7 +9,7 @@ from fastapi import FastAPI
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp
 
-from service.api import exercises, grading, health, preview, problems, reference
+from service.api import exercises, figures, frames, grading, health, preview, problems, reference
 from service.api import solutions as model_solutions
 from service.api.boundary import BoundaryMiddleware
 from service.api.lookup import Catalogue
@@ -95,6 +95,8 @@ def application(
         exercises.routes(catalogue, feedback),
         grading.routes(catalogue, feedback),
         preview.routes(catalogue),
+        figures.routes(catalogue),
+        frames.routes(catalogue),
         health.routes(catalogue),
         model_solutions.routes(catalogue, shown=solutions),
     ):

@@ -50,6 +50,10 @@ message of a code that your program does not know. A field that says nothing is 
             "description": "The catalogue, and all that a student sees of an exercise before "
             "answering. Never an answer.",
         },
+        {
+            "name": "drawing",
+            "description": "Numbers to draw with, so that no page needs a kinematics of its own.",
+        },
         {"name": "preview", "description": "How a text is read, while the student still types."},
         {
             "name": "solutions",
@@ -71,7 +75,8 @@ def posting(body: type[BaseModel], model: type, name: str, *further: HTTPStatus)
 
     ``name`` begins the names of its two examples; ``further`` are refusals beside those of a body.
     """
-    content = {"schema": body.model_json_schema(), "example": example(f"{name}-request")}
+    schema = body.model_json_schema(ref_template="#/components/schemas/{model}")
+    content = {"schema": schema, "example": example(f"{name}-request")}
     request = {"required": True, "content": {"application/json": content}}
     responses = answers(model, f"{name}-response", *sorted([*_REFUSED_BODIES, *further]))
     return {"openapi_extra": {"requestBody": request}, "responses": responses}

@@ -42,6 +42,9 @@ DEFAULT_RANGES: dict[Kind, tuple[float, float]] = {
 }
 
 
+_NOT_GRADED = {"checks", "feedback", "view"}
+
+
 def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
     """The exercise that ``spec`` describes. Raises FieldError where a value cannot stand."""
     joints = _joints(spec.robot) if spec.robot is not None else ()
@@ -69,6 +72,7 @@ def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
         length_scale=_length_scale(variables, reference),
         checks=tuple(spec.checks),
         feedback=spec.feedback,
+        view=spec.view,
     )
 
 
@@ -119,11 +123,11 @@ def _length_scale(variables: tuple[Variable, ...], reference: Reference | None) 
 def _version(spec: ExerciseSpec) -> str:
     """A digest of the file's content; comments, layout and checks do not change it.
 
-    Nor does ``feedback``: it changes what is told of a grading, not the grading.
+    Nor do ``feedback`` and ``view``: they change what is told and shown, not the grading.
     What the file leaves to the default is left out, so that a new field of the schema does not
     give every exercise a new version.
     """
-    written = spec.model_dump(mode="json", exclude_defaults=True, exclude={"checks", "feedback"})
+    written = spec.model_dump(mode="json", exclude_defaults=True, exclude=_NOT_GRADED)
     content = json.dumps(written, sort_keys=True)
     return hashlib.blake2b(content.encode(), digest_size=6).hexdigest()
 

@@ -7,7 +7,7 @@ from service.catalogue.feedback_level import FeedbackLevel
 from service.catalogue.formulas import FormulaField, FormulaGrid, fields_of
 from service.catalogue.part import PartSpec
 from service.catalogue.robot import Joint, Robot
-from service.catalogue.schema import CheckSpec
+from service.catalogue.schema import CheckSpec, ViewSpec
 from service.catalogue.screw_robot import Reference
 from service.catalogue.variables import Variable
 from service.expressions import Vocabulary
@@ -17,11 +17,11 @@ from service.expressions import Vocabulary
 class Exercise:
     """One exercise of the catalogue.
 
-    ``version`` changes with anything in its file but its checks and ``feedback``, the most that a
-    student is told.
+    ``version`` changes with anything in its file but its checks, its ``view`` and ``feedback``, the
+    most that a student is told.
     ``reference`` is the robot, None where there is none; ``formulas`` holds the answers that the
     file gives, by the part's id. ``length_scale`` is the longest length, the scale of small
-    differences.
+    differences. ``view`` is where the author has its figure seen from.
     """
 
     id: str
@@ -37,6 +37,7 @@ class Exercise:
     length_scale: float
     checks: tuple[CheckSpec, ...] = ()
     feedback: FeedbackLevel = FeedbackLevel.HINTS
+    view: ViewSpec | None = None
 
     @property
     def robot(self) -> Robot:

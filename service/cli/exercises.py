@@ -13,8 +13,11 @@ from rich.text import Text
 
 from service.authoring import UnusableIdError, template
 from service.catalogue import Exercise
+from service.catalogue.robot import Robot
 from service.cli import check
 from service.cli.terminal import give_up, installed, installed_exercise, stdout
+from service.figures.figure import exercise_figure, reference_figure
+from service.figures.style import Theme
 from service.solutions import ModelSolution, Shown, solve
 
 _NARROWEST = 24
@@ -41,10 +44,23 @@ def show_exercise(
     latex: Annotated[
         bool, typer.Option("--latex", help="Show the model solution in LaTeX.")
     ] = False,
+    figure: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write the drawing of the robot, an SVG, instead."),
+    ] = None,
+    theme: Annotated[
+        Theme, typer.Option(help="Colours of the drawing; auto: as the reader's system asks.")
+    ] = Theme.AUTO,
+    frames: Annotated[
+        bool, typer.Option("--frames", help="Draw the frames of the reference's table, too.")
+    ] = False,
 ) -> None:
     """Show one exercise: its statement, symbols and parts. No answer, unless it is asked for."""
     exercise = installed_exercise(exercise_id)
     console = stdout()
+    if figure is not None:
+        _write_figure(exercise, figure, theme, frames=frames)
+        return
     if solution or latex:
         _write_solution(exercise, console, latex=latex)
         return
@@ -67,6 +83,18 @@ def show_exercise(
         answer = f"Answer: {part.shape(exercise.reference).in_words()}."
         for text in filter(None, (part.prompt, answer)):
             console.print(Padding(Text(text, "dim"), (0, 0, 0, 4), expand=False))
+
+
+def _write_figure(exercise: Exercise, file: Path, theme: Theme, *, frames: bool) -> None:
+    if exercise.reference is None:
+        give_up(f"the exercise {exercise.id} has no robot to draw")
+    if frames and not isinstance(exercise.reference, Robot):
+        give_up(f"the robot of {exercise.id} is given by screw axes, without frames to draw")
+    draw = reference_figure if frames else exercise_figure
+    try:
+        file.write_text(draw(exercise, theme), encoding="utf-8")
+    except OSError as error:
+        give_up(f"{file}: cannot be written: {error.strerror}")
 
 
 commands.command("check")(check.command)

@@ -21,14 +21,15 @@ Schema = dict[str, Any]
 EXAMPLE_URLS = {
     "grade": "/v1/exercises/stanford-arm/grade",
     "grade-many": "/v1/grade",
+    "frames": "/v1/frames",
     "preview": "/v1/preview",
 }
 ROUTES = {**EXAMPLE_URLS, "grade": "/v1/exercises/{exercise_id}/grade"}
 PROBLEM = {"$ref": "#/components/schemas/Problem"}
 # Written out, for they are the names of functions in other people's programs.
 OPERATIONS = {
-    "listExercises", "getExercise", "getSolution", "grade", "gradeMany", "preview", "getLiveness",
-    "getReadiness",
+    "listExercises", "getExercise", "getFigure", "getFrames", "getSolution", "grade",
+    "gradeMany", "preview", "getLiveness", "getReadiness",
 }  # fmt: skip
 NAMES = {
     "Exercise", "ExerciseList", "Part", "GradeRequest", "GradeManyRequest", "GradeManyResponse",
@@ -100,7 +101,7 @@ def test_the_examples_fit_their_schemas(document: Schema) -> None:
             if "example" in content:
                 strictly(document, content["schema"]).validate(content["example"])
                 count += 1
-    assert count == 7
+    assert count == 9
 
 
 def strictly(document: Schema, schema: Schema) -> Draft202012Validator:

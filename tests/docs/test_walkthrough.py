@@ -17,6 +17,7 @@ DOCS = Path(__file__).parents[2] / "docs"
         ("formats.md", 12),
         ("assignments.md", 3),
         ("ci/README.md", 3),
+        ("figures.md", 2),
     ],
 )
 def test_a_page_comes_true(
