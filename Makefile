@@ -24,7 +24,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test coverage lint format bench fuzz attack worst campaign policies prints slips clients wheel image lock clean
+.PHONY: help install run test browser screenshots coverage lint format bench fuzz attack worst campaign policies prints slips clients wheel image lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' Makefile
@@ -38,7 +38,14 @@ run: $(runtime) ## start the service on http://127.0.0.1:8000 (HOST=, PORT=)
 pytest := $(python) -m pytest -n auto --dist worksteal
 
 test: lint ## lint, type-check and test on every core
+	-@$(python) -m tests.browser.chromium
 	$(pytest)
+
+browser: $(dev) ## say which Chromium the browser tests use; fetch one from npm where there is none
+	$(python) -m tests.browser.chromium
+
+screenshots: $(dev) ## photograph every view into docs/screenshots
+	$(python) -m tests.browser.screenshots
 
 coverage: $(dev) ## the same tests, and the lines that none of them runs (twice the time)
 	$(pytest) --cov

@@ -51,6 +51,7 @@ SUITES = {
     "benchmarks",
     "attack",
     "worst",
+    "browser",
 }
 
 

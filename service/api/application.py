@@ -5,7 +5,7 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from typing import Any
 
-from fastapi import FastAPI
+from fastapi import APIRouter, FastAPI
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp
 
@@ -83,11 +83,13 @@ def application(
     solutions: bool = False,
     feedback: FeedbackLevel = FeedbackLevel.FULL,
     turns: Layer | None = None,
+    pages: APIRouter | None = None,
 ) -> FastAPI:
     """The HTTP service for these exercises; pages of ``cors_origins`` may call it.
 
     With ``solutions`` it shows the model solutions to whoever asks. Reports tell no more than
-    ``feedback``, nor than their exercise allows. ``turns`` decides who comes next.
+    ``feedback``, nor than their exercise allows. ``turns`` decides who comes next, ``pages`` are
+    the web pages of the service itself.
     """
     app = _Api(cors_origins, turns)
     problems.install(app)
@@ -102,4 +104,6 @@ def application(
     ):
         app.include_router(router, responses=other_failures())
     app.include_router(reference.routes())
+    if pages is not None:
+        app.include_router(pages)
     return app

@@ -70,12 +70,15 @@ def example(name: str) -> Any:
     return json.loads((EXAMPLES / f"{name}.json").read_text(encoding="utf-8"))
 
 
+_REF_TEMPLATE: Final = "#/components/schemas/{model}"
+
+
 def posting(body: type[BaseModel], model: type, name: str, *further: HTTPStatus) -> dict[str, Any]:
     """Body and responses of a route that reads its body by ``body_as``, as options of the route.
 
     ``name`` begins the names of its two examples; ``further`` are refusals beside those of a body.
     """
-    schema = body.model_json_schema(ref_template="#/components/schemas/{model}")
+    schema = body.model_json_schema(ref_template=_REF_TEMPLATE)
     content = {"schema": schema, "example": example(f"{name}-request")}
     request = {"required": True, "content": {"application/json": content}}
     responses = answers(model, f"{name}-response", *sorted([*_REFUSED_BODIES, *further]))
@@ -102,7 +105,7 @@ def other_failures() -> dict[int | str, dict[str, Any]]:
 
 
 def _problem(description: str) -> dict[str, Any]:
-    schema = ProblemDocument.model_json_schema(ref_template="#/components/schemas/{model}")
+    schema = ProblemDocument.model_json_schema(ref_template=_REF_TEMPLATE)
     return {"description": description, "content": {MEDIA_TYPE: {"schema": schema}}}
 
 

@@ -7,6 +7,7 @@ from service.catalogue import open_catalogue
 from service.server.access_log import set_up_access_log
 from service.server.admission import FairAdmission
 from service.settings import Settings
+from service.web import web_routes
 
 
 def installed_app(settings: Settings) -> FastAPI:
@@ -18,6 +19,7 @@ def installed_app(settings: Settings) -> FastAPI:
         solutions=settings.solutions,
         feedback=settings.feedback,
         turns=FairAdmission,
+        pages=web_routes(catalogue),
     )
     set_up_access_log(addresses=settings.log_addresses)
     return app

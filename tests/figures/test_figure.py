@@ -74,9 +74,7 @@ MISPLACED = """[[...document.querySelectorAll('svg')].flatMap(svg => {
 })]"""
 
 
-@pytest.mark.skipif(
-    chromium.PROGRAM is None or sys.platform == "win32", reason="needs a Chromium on the PATH"
-)
+@pytest.mark.skipif(chromium.FOUND is None or sys.platform == "win32", reason="needs a Chromium")
 def test_no_two_labels_overlap_as_a_browser_sets_them(page: chromium.Page) -> None:
     """A box is as high as the type's tallest letter and deepest stroke; 4 pixels of it are air."""
     [misplaced] = page.wait_for(MISPLACED)

@@ -52,9 +52,7 @@ def page() -> Iterator[chromium.Page]:
         yield page
 
 
-@pytest.mark.skipif(
-    chromium.PROGRAM is None or sys.platform == "win32", reason="needs a Chromium on the PATH"
-)
+@pytest.mark.skipif(chromium.FOUND is None or sys.platform == "win32", reason="needs a Chromium")
 def test_a_browser_shows_it_light_dark_and_on_paper(page: chromium.Page, tmp_path: Path) -> None:
     file = tmp_path / "page.html"
     file.write_text(document("html", *cases().values()), encoding="utf-8")

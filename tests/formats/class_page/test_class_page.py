@@ -183,9 +183,7 @@ CONTRAST = """(() => {
 })()"""
 
 
-@pytest.mark.skipif(
-    chromium.PROGRAM is None or sys.platform == "win32", reason="needs a Chromium on the PATH"
-)
+@pytest.mark.skipif(chromium.FOUND is None or sys.platform == "win32", reason="needs a Chromium")
 def test_a_browser_shows_it_readably_and_asks_for_nothing(
     page: chromium.Page, tmp_path: Path
 ) -> None:
