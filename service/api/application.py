@@ -14,6 +14,7 @@ from service.api import solutions as model_solutions
 from service.api.boundary import BoundaryMiddleware
 from service.api.lookup import Catalogue
 from service.api.openapi import HEADING, completed, other_failures
+from service.api.tutor import tutor_right
 from service.catalogue import FeedbackLevel
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.version import VERSION
@@ -80,14 +81,15 @@ def application(
     catalogue: Catalogue,
     cors_origins: tuple[str, ...] = (),
     *,
-    solutions: bool = False,
+    solutions: bool | None = False,
     feedback: FeedbackLevel = FeedbackLevel.FULL,
     turns: Layer | None = None,
     pages: APIRouter | None = None,
 ) -> FastAPI:
     """The HTTP service for these exercises; pages of ``cors_origins`` may call it.
 
-    With ``solutions`` it shows the model solutions to whoever asks. Reports tell no more than
+    With ``solutions`` it shows the model solutions to whoever asks; None means whoever asks from
+    this machine. Reports tell no more than
     ``feedback``, nor than their exercise allows. ``turns`` decides who comes next, ``pages`` are
     the web pages of the service itself.
     """
@@ -100,7 +102,7 @@ def application(
         figures.routes(catalogue),
         frames.routes(catalogue),
         health.routes(catalogue),
-        model_solutions.routes(catalogue, shown=solutions),
+        model_solutions.routes(catalogue, tutor_right(solutions)),
     ):
         app.include_router(router, responses=other_failures())
     app.include_router(reference.routes())
