@@ -12,6 +12,7 @@ from starlette.types import ASGIApp
 from service.api import exercises, figures, frames, grading, health, preview, problems, reference
 from service.api import solutions as model_solutions
 from service.api.boundary import BoundaryMiddleware
+from service.api.compression import PackedGets
 from service.api.lookup import Catalogue
 from service.api.openapi import HEADING, completed, other_failures
 from service.api.tutor import tutor_right
@@ -52,11 +53,11 @@ class _Api(FastAPI):
         )
 
     def build_middleware_stack(self) -> ASGIApp:
-        """The framework's layers, the turns between clients, the boundary.
+        """The framework's layers, packed answers, the turns between clients, the boundary.
 
         Then CORS: a page may read problems, too.
         """
-        app: ASGIApp = super().build_middleware_stack()
+        app: ASGIApp = PackedGets(super().build_middleware_stack())
         if self._turns is not None:
             app = self._turns(app)
         app = BoundaryMiddleware(app)
