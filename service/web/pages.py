@@ -12,7 +12,7 @@ from service.formats.shared.plain_text import number
 from service.web.assets import Assets
 
 # The entries of the menu: text and address, from the root.
-_MENU: Final = (("Exercises", ""), ("API", "docs"))
+_MENU: Final = (("Exercises", ""), ("Free play", "play"), ("API", "docs"))
 
 _KIND_NAMES: Final = {
     "dh_table": "DH table",
@@ -71,6 +71,21 @@ def exercise_page(exercise: Exercise, assets: Assets) -> bytes:
     )
     main = element("main", inside, id="main", class_="exercise")
     return _page(f"{exercise.title} · DH Grader", main, assets, "../", ["page.js", "embed.js"])
+
+
+def play_page(assets: Assets) -> bytes:
+    """Any table of any robot."""
+    inside = element(
+        "dh-play",
+        element("h1", "Free play"),
+        element("p", "Write any DH table, see its robot, and move it.", class_="lead"),
+        element(
+            "noscript",
+            element("p", "Scripts are off in this browser; free play needs them.", class_="notice"),
+        ),
+    )
+    main = element("main", inside, id="main", class_="exercise")
+    return _page("Free play · DH Grader", main, assets, "", ["page.js", "play.js"])
 
 
 def _search() -> Element:

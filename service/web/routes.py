@@ -10,7 +10,7 @@ from service.api.lookup import Catalogue, exercise_or_404
 from service.api.piecewise import PiecewiseResponse
 from service.api.problems import ProblemError
 from service.web.assets import Asset, load_assets
-from service.web.pages import catalogue_page, exercise_page
+from service.web.pages import catalogue_page, exercise_page, play_page
 
 # Nothing from another host, no script or style in the page itself, and no text that becomes markup
 # but by the one policy of markup.js.
@@ -54,6 +54,11 @@ def web_routes(catalogue: Catalogue) -> APIRouter:
         """One exercise; its statement and figure are there without a script, too."""
         shown = exercise_or_404(catalogue, exercise_id)
         return HTMLResponse(exercise_page(shown, assets), headers=_PAGE_HEADERS)
+
+    @router.get("/play")
+    async def play() -> Response:
+        """Any table of any robot; it is in the browser alone."""
+        return HTMLResponse(play_page(assets), headers=_PAGE_HEADERS)
 
     @router.get(f"/{_ENTRY}")
     async def embed() -> Response:

@@ -32,6 +32,7 @@ export class RobotView {
   #turn = 0;
   #pending = 0;
   #dragging = false;
+  #refit = false;
   #timer = 0;
   #scene = null;
   #hidden = new Set();
@@ -148,6 +149,11 @@ export class RobotView {
     this.#timer = setTimeout(() => this.#refresh(), AFTER_A_KEY);
   }
 
+  /** Have the next picture shown whole. */
+  refit() {
+    this.#refit = true;
+  }
+
   /** Forget the numbers of joints and symbols: they belong to another robot. */
   forget() {
     this.#values = {};
@@ -155,10 +161,10 @@ export class RobotView {
     this.#hidden.clear();
   }
 
-  async #request(sets) {
+  async #request(sets, body = this.host.body()) {
     this.#busy(1);
     try {
-      return await this.host.service.frames({ ...this.host.body(), symbols: this.#symbols, ...(sets ? { joints: sets } : {}) });
+      return await this.host.service.frames({ ...body, symbols: this.#symbols, ...(sets ? { joints: sets } : {}) });
     } finally {
       this.#busy(-1);
     }
@@ -245,6 +251,8 @@ export class RobotView {
       shown: (i) => !this.#hidden.has(i),
     };
     this.#scene.show(subject, this.picture);
+    if (this.#refit) this.#scene.reset();
+    this.#refit = false;
   }
 
   // Joints.
@@ -292,7 +300,7 @@ export class RobotView {
     const values = this.#current;
     const others = JSON.stringify([this.host.body(), this.#symbols, values.with(i, 0)]);
     if (this.#sweep?.index === i && this.#sweep.others === others) return;
-    const sweep = new Sweep((sets) => this.#request(sets), values, i, this.#answer.joints[i]);
+    const sweep = new Sweep((sets) => this.#request(sets, withoutFormulas(this.host.body())), values, i, this.#answer.joints[i]);
     sweep.others = others;
     this.#sweep = sweep;
     // A picture at the very place where the slider was left is better than one from the sweep.
@@ -393,6 +401,11 @@ export class RobotView {
     });
     this.host.moved?.(this.picture, this.#values);
   }
+}
+
+/** A sweep needs numbers only. */
+function withoutFormulas({ table, ...body }) {
+  return table ? { ...body, table: { ...table, formulas: false } } : body;
 }
 
 /** Three decimals, without a negative zero. */
