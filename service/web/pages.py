@@ -12,7 +12,7 @@ from service.formats.shared.plain_text import number
 from service.web.assets import Assets
 
 # The entries of the menu: text and address, from the root.
-_MENU: Final = (("Exercises", ""), ("API", "docs"))
+_MENU: Final = (("Exercises", ""), ("Free play", "play"), ("API", "docs"))
 
 _TUTOR: Final = (("For tutors", "tutor"),)
 
@@ -74,6 +74,22 @@ def exercise_page(exercise: Exercise, assets: Assets, *, tutor: bool = False) ->
     main = element("main", inside, id="main", class_="exercise")
     title = f"{exercise.title} · DH Grader"
     return page(title, main, assets, "../", ["page.js", "embed.js"], tutor=tutor)
+
+
+def play_page(assets: Assets, *, tutor: bool = False) -> bytes:
+    """Any table of any robot."""
+    inside = element(
+        "dh-play",
+        element("h1", "Free play"),
+        element("p", "Write any DH table, see its robot, and move it.", class_="lead"),
+        element(
+            "noscript",
+            element("p", "Scripts are off in this browser; free play needs them.", class_="notice"),
+        ),
+    )
+    main = element("main", inside, id="main", class_="exercise")
+    title = "Free play · DH Grader"
+    return page(title, main, assets, "", ["page.js", "play.js"], tutor=tutor)
 
 
 def _search() -> Element:

@@ -12,7 +12,7 @@ from service.api.problems import ProblemError
 from service.api.tutor import tutor_right
 from service.web.assets import Asset, load_assets
 from service.web.page_headers import PAGE_HEADERS
-from service.web.pages import catalogue_page, exercise_page
+from service.web.pages import catalogue_page, exercise_page, play_page
 from service.web.tutor_routes import Tutoring, tutor_routes
 
 # Any page may load the element; what it may then ask the service is said by DH_GRADER_CORS_ORIGINS.
@@ -53,6 +53,12 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> APIRou
         return HTMLResponse(
             exercise_page(shown, assets, tutor=tutoring.is_tutor(request)), headers=PAGE_HEADERS
         )
+
+    @router.get("/play")
+    async def play(request: Request) -> Response:
+        """Any table of any robot; it is in the browser alone."""
+        shown = play_page(assets, tutor=tutoring.is_tutor(request))
+        return HTMLResponse(shown, headers=PAGE_HEADERS)
 
     @router.get(f"/{_ENTRY}")
     async def embed() -> Response:
