@@ -39,10 +39,15 @@ class Settings(BaseSettings):
         description="Whether a change to an exercise file counts without a restart. A file that is "
         "broken by it keeps its last good version, and the log says what is wrong.",
     )
-    solutions: bool = Field(
-        False,
-        description="Whether GET /v1/exercises/{id}/solution shows the model solutions, to whoever "
-        "can reach the service.",
+    solutions: bool | None = Field(
+        None,
+        description="Whether model solutions and the tutor's pages are shown, to whoever can reach "
+        "the service; by default to whoever asks from this machine itself, without a proxy.",
+    )
+    editor_dir: Path | None = Field(
+        None,
+        description="The folder that the editor of the page writes exercise files to, for whoever "
+        "asks from this machine itself; by default it writes none.",
     )
     feedback: FeedbackLevel = Field(
         FeedbackLevel.FULL,

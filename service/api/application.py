@@ -12,8 +12,10 @@ from starlette.types import ASGIApp
 from service.api import exercises, figures, frames, grading, health, preview, problems, reference
 from service.api import solutions as model_solutions
 from service.api.boundary import BoundaryMiddleware
+from service.api.compression import PackedGets
 from service.api.lookup import Catalogue
 from service.api.openapi import HEADING, completed, other_failures
+from service.api.tutor import tutor_right
 from service.catalogue import FeedbackLevel
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.version import VERSION
@@ -51,11 +53,11 @@ class _Api(FastAPI):
         )
 
     def build_middleware_stack(self) -> ASGIApp:
-        """The framework's layers, the turns between clients, the boundary.
+        """The framework's layers, packed answers, the turns between clients, the boundary.
 
         Then CORS: a page may read problems, too.
         """
-        app: ASGIApp = super().build_middleware_stack()
+        app: ASGIApp = PackedGets(super().build_middleware_stack())
         if self._turns is not None:
             app = self._turns(app)
         app = BoundaryMiddleware(app)
@@ -80,14 +82,15 @@ def application(
     catalogue: Catalogue,
     cors_origins: tuple[str, ...] = (),
     *,
-    solutions: bool = False,
+    solutions: bool | None = False,
     feedback: FeedbackLevel = FeedbackLevel.FULL,
     turns: Layer | None = None,
     pages: APIRouter | None = None,
 ) -> FastAPI:
     """The HTTP service for these exercises; pages of ``cors_origins`` may call it.
 
-    With ``solutions`` it shows the model solutions to whoever asks. Reports tell no more than
+    With ``solutions`` it shows the model solutions to whoever asks; None means whoever asks from
+    this machine. Reports tell no more than
     ``feedback``, nor than their exercise allows. ``turns`` decides who comes next, ``pages`` are
     the web pages of the service itself.
     """
@@ -100,7 +103,7 @@ def application(
         figures.routes(catalogue),
         frames.routes(catalogue),
         health.routes(catalogue),
-        model_solutions.routes(catalogue, shown=solutions),
+        model_solutions.routes(catalogue, tutor_right(solutions)),
     ):
         app.include_router(router, responses=other_failures())
     app.include_router(reference.routes())

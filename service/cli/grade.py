@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated, Final
 import typer
 
 from service.cli.interrupts import terminable
-from service.cli.local_grading import GradingTerms, graded
 from service.cli.output import console_of, write
 from service.cli.output_folder import UnusableFolderError, is_for_folder, write_folder
 from service.cli.processes import WorkerLostError, jobs_for, mapped
@@ -23,6 +22,7 @@ from service.formats.shared.graded import GradedSubmission, Visibility
 from service.formats.shared.plain_text import visible
 from service.formats.shared.report_format import Setting, UnusableSettingError
 from service.grading import FeedbackLevel
+from service.local_grading import GradingTerms, graded
 from service.settings import load_settings
 from service.submissions.assignment import (
     Assignment,

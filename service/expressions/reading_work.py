@@ -19,10 +19,9 @@ _CHARACTERS_PER_SYMBOL: Final = 16
 # A fraction in LaTeX costs as much as eight of its braces, a root or a quotient as three.
 _EXTRA: Final = {r"\frac": 7, r"\dfrac": 7, r"\tfrac": 7, r"\sqrt": 2, "√": 2, "/": 2}
 # A function of degrees becomes two operations. A name of one or two letters is all of a factor.
-_SHORT_AND_COSTLY: Final = re.compile(
-    r"(?:sin|cos|tan)d|(?<![A-Za-z\\])[A-Za-z]{1,2}(?![A-Za-z0-9_])"
-)
-_EXTRA_OF_THESE: Final = 4
+_OF_DEGREES: Final = re.compile(r"(?:sin|cos|tan)d")
+_SHORT_NAME: Final = re.compile(r"(?<![A-Za-z\\])[A-Za-z]{1,2}(?![A-Za-z0-9_])")
+_EXTRA_OF_DEGREES, _EXTRA_OF_SHORT_NAME = 9, 4
 # Shorter texts are not worth the second look: the largest answers have 300 of them.
 _WORTH_IT: Final = 40
 
@@ -49,7 +48,8 @@ def _weigh(text: str) -> int:
         return found
     for symbol, times in Counter(_SYMBOL.findall(text)).items():
         found += times * (1 if symbol[0].isalnum() else _EXTRA.get(symbol, 0))
-    return found + _EXTRA_OF_THESE * len(_SHORT_AND_COSTLY.findall(text))
+    found += _EXTRA_OF_DEGREES * len(_OF_DEGREES.findall(text))
+    return found + _EXTRA_OF_SHORT_NAME * len(_SHORT_NAME.findall(text))
 
 
 def _counted(text: str) -> int:

@@ -33,8 +33,8 @@ MAX_WORK = 330.0
 # The work of reading a symbol, of cutting a character out of a pasted text, of a repair.
 SYMBOL_WORK, PASTED_WORK, REPAIR_WORK = 1 / 100, 1 / 800, 1.5
 
-# The pose of a seven-joint arm, multiplied out, has 92,000 as MathML.
-MAX_PRINTED = 100_000
+# The pose of a seven-joint arm has 57,000 as MathML. Nobody looks at longer formulas.
+MAX_PRINTED = 60_000
 
 
 @dataclass(slots=True)

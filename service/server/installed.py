@@ -3,23 +3,26 @@
 from fastapi import FastAPI
 
 from service.api.application import application
+from service.api.tutor import tutor_right
 from service.catalogue import open_catalogue
 from service.server.access_log import set_up_access_log
 from service.server.admission import FairAdmission
 from service.settings import Settings
-from service.web import web_routes
+from service.web import Tutoring, web_routes
 
 
 def installed_app(settings: Settings) -> FastAPI:
     """The application, with fair admission. Raises CatalogueError."""
     catalogue = open_catalogue(settings.exercises_dir, reload=settings.reload_exercises)
+    is_tutor = tutor_right(settings.solutions)
+    tutoring = Tutoring(is_tutor, settings.exercises_dir, settings.editor_dir)
     app = application(
         catalogue,
         settings.cors_origins,
         solutions=settings.solutions,
         feedback=settings.feedback,
         turns=FairAdmission,
-        pages=web_routes(catalogue),
+        pages=web_routes(catalogue, tutoring),
     )
     set_up_access_log(addresses=settings.log_addresses)
     return app

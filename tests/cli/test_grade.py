@@ -166,7 +166,7 @@ def test_an_interrupted_run_leaves_no_half_of_a_file(
             raise KeyboardInterrupt
         return grade(*arguments)
 
-    monkeypatch.setattr("service.cli.local_grading.grade", interrupted)
+    monkeypatch.setattr("service.local_grading.grade", interrupted)
     result = table_only(run, answer, answer, "--format", "csv", "--output", target)
     assert result.exit_code != 0
     assert len(graded) == 2

@@ -33,7 +33,7 @@ def test_names_numbers_and_signs_are_counted(text: str, symbols: int) -> None:
         (r"\frac{1}{2}", 16),
         ("pi ", 6),
         ("√2 ", 4),
-        ("sind(30)", 12),
+        ("sind(30)", 17),
         ("sin(q1)", 10),
         (r"\cos\left(\theta_{1}\right)", 12),
     ],

@@ -18,12 +18,12 @@ from rich.console import Console
 
 from service.api.application import application
 from service.catalogue import Exercise
-from service.cli.local_grading import GradingTerms, graded
 from service.expressions import reader, reading_work
 from service.expressions.evaluation import decimals
 from service.expressions.parsing import words
 from service.formats import report_format
 from service.formats.shared.report_format import Setting
+from service.local_grading import GradingTerms, graded
 from service.submissions.assignment import of_one
 from service.submissions.handed_in import all_handed_in
 from tests.benchmarks.floors import stanford_pose

@@ -45,6 +45,11 @@ export function mathml(text) {
   return root?.namespaceURI === MATHML && root.localName === "math" ? copied(root) : null;
 }
 
+/** A page that the service wrote, to be shown where a policy lets no script run. */
+export function documentOf(text) {
+  return parsed(text, "text/html");
+}
+
 /** The statement of an exercise as nodes. */
 export function html(text) {
   return [...parsed(text, "text/html").body.childNodes].map(copied).filter(Boolean);
