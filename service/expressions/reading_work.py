@@ -16,12 +16,17 @@ _SYMBOLS_IN_COMPOSED: Final = 5
 _CHARACTERS_PER_SYMBOL: Final = 16
 
 
-# A fraction in LaTeX costs as much as eight of its braces, a root or a quotient as three.
-_EXTRA: Final = {r"\frac": 7, r"\dfrac": 7, r"\tfrac": 7, r"\sqrt": 2, "√": 2, "/": 2}
+# A fraction in LaTeX costs as much as ten of its braces, a root as six, a quotient as three.
+_EXTRA: Final = {r"\frac": 9, r"\dfrac": 9, r"\tfrac": 9, r"\sqrt": 5, "√": 5, "/": 2}
 # A function of degrees becomes two operations. A name of one or two letters is all of a factor.
 _OF_DEGREES: Final = re.compile(r"(?:sin|cos|tan)d")
 _SHORT_NAME: Final = re.compile(r"(?<![A-Za-z\\])[A-Za-z]{1,2}(?![A-Za-z0-9_])")
-_EXTRA_OF_DEGREES, _EXTRA_OF_SHORT_NAME = 9, 4
+# ½ is a quotient in brackets.
+_FRACTION: Final = re.compile("[¼-¾⅐-⅞↉]")
+_EXTRA_OF_FRACTION: Final = 3
+# c12 is the cosine of a sum.
+_SHORTHAND: Final = re.compile(r"(?<![A-Za-z\\])[cs]\d{2}")
+_EXTRA_OF_DEGREES, _EXTRA_OF_SHORT_NAME, _EXTRA_OF_SHORTHAND = 10, 4, 2
 # Shorter texts are not worth the second look: the largest answers have 300 of them.
 _WORTH_IT: Final = 40
 
@@ -49,6 +54,9 @@ def _weigh(text: str) -> int:
     for symbol, times in Counter(_SYMBOL.findall(text)).items():
         found += times * (1 if symbol[0].isalnum() else _EXTRA.get(symbol, 0))
     found += _EXTRA_OF_DEGREES * len(_OF_DEGREES.findall(text))
+    found += _EXTRA_OF_SHORTHAND * len(_SHORTHAND.findall(text))
+    if not text.isascii():
+        found += _EXTRA_OF_FRACTION * len(_FRACTION.findall(text))
     return found + _EXTRA_OF_SHORT_NAME * len(_SHORT_NAME.findall(text))
 
 

@@ -30,11 +30,13 @@ def test_names_numbers_and_signs_are_counted(text: str, symbols: int) -> None:
     ("text", "cost"),
     [
         # As measured: the processor time, in that of an opening brace of LaTeX.
-        (r"\frac{1}{2}", 16),
+        (r"\frac{1}{2}", 18),
         ("pi ", 6),
-        ("√2 ", 4),
+        ("√2 ", 7),
         ("sind(30)", 17),
         ("sin(q1)", 10),
+        ("c12 ", 6),
+        ("½", 10),
         (r"\cos\left(\theta_{1}\right)", 12),
     ],
 )
