@@ -41,7 +41,14 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel) -> APIRouter:
         """Show an exercise: its statement, its symbols, and what each part asks for."""
         exercise = exercise_or_404(catalogue, exercise_id)
         fields = {name: getattr(exercise, name, None) for name in ExerciseView.model_fields}
-        parts = [{**dict(part), "shape": part.shape(exercise.reference)} for part in exercise.parts]
+        parts = [
+            {
+                **dict(part),
+                "prompt_html": statement_html(part.prompt),
+                "shape": part.shape(exercise.reference),
+            }
+            for part in exercise.parts
+        ]
         return {
             **fields,
             "statement_html": statement_html(exercise.statement),

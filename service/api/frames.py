@@ -1,7 +1,7 @@
 """The route that says where everything is: the frames of a table, the parts of a mechanism."""
 
 from collections import OrderedDict
-from collections.abc import Hashable, Iterator, Mapping, Set
+from collections.abc import Hashable, Iterator, Mapping, Sequence, Set
 from typing import Any, Final
 
 import numpy as np
@@ -31,8 +31,9 @@ from service.expressions import Expression
 from service.figures.figure import plainest_view, subject_of
 from service.figures.mechanism import Configuration, MovableMechanism, mechanism_of
 from service.figures.scope import DrawingScope, free_scope
+from service.figures.table_figure import SeenMechanism, WrittenChain, table_figure
 from service.figures.table_formulas import table_formulas
-from service.figures.table_frames import table_frames
+from service.figures.table_frames import TableFrames, table_frames
 from service.figures.view import View
 from service.grading.feedback import Finding, UnreadableAnswerError
 from service.kinematics.transforms import Numbers
@@ -94,19 +95,27 @@ def _answered(catalogue: Catalogue, body: FramesRequest, mechanisms: _Mechanisms
         raise _refused(("symbols", unknown[0]), "There is no such symbol")
     numbers = scope.numbers(body.symbols)
     amounts = _amounts(body, scope, numbers)
-    table = mechanism = None
+    table = mechanism = written = seen = None
     used: Set[str] = set(constants)
     if body.table is not None:
-        table, symbols = _table(body.table, body, scope, numbers, amounts)
+        table, found = _table(body.table, body, scope, numbers, amounts)
+        if found is not None:
+            written = WrittenChain(found.frames[0], found.row_joints, body.table.convention)
         # Of the letters of a book only those that the table uses.
-        used = used if exercise else symbols
+        used = used if exercise else found.symbols if found else set()
     if exercise is not None:
-        mechanism = _mechanism(exercise, numbers, amounts, mechanisms)
+        movable, view = mechanisms.of(exercise, numbers)
+        shown = movable.at(amounts)
+        mechanism = _mechanism(movable, view, shown)
+        seen = SeenMechanism(movable, shown[0], view)
     return FramesAnswer(
         symbols={name: numbers[name] for name in constants if name in used},
         joints=list(_joints(scope, numbers)),
         table=table,
         mechanism=mechanism,
+        figure=table_figure(written, seen, body.figure)
+        if body.figure and (written or seen)
+        else None,
     )
 
 
@@ -164,19 +173,20 @@ def _table(
     scope: DrawingScope,
     numbers: Mapping[str, float],
     amounts: Numbers,
-) -> tuple[FramesOfTable, Set[str]]:
-    """The frames of the table, and the symbols in it."""
+) -> tuple[FramesOfTable, TableFrames | None]:
+    """The frames of the table, as they are told and as they are drawn."""
     try:
         found = table_frames(table.rows, table.convention, scope, numbers, amounts, body.angle_unit)
     except UnreadableAnswerError as error:
         reason = _error(error.finding)
         nothing = FramesOfTable(
-            complete=False, frames=[], unread=[], error=reason, lost_freedoms=[]
+            complete=False, frames=[], row_joints=[], unread=[], error=reason, lost_freedoms=[]
         )
-        return nothing, set()
+        return nothing, None
     drawn = FramesOfTable(
         complete=found.complete,
         frames=_plain(found.frames),
+        row_joints=[joint.index if joint else 0 for joint in found.row_joints],
         unread=[
             UnreadCell(row=cell.row, column=cell.column, error=_error(cell.finding))
             for cell in found.unread
@@ -185,7 +195,7 @@ def _table(
         lost_freedoms=[LostFreedom.model_validate(each) for each in found.lost],
         formulas=_formulas(table, body, scope) if table.formulas else None,
     )
-    return drawn, found.symbols
+    return drawn, found
 
 
 def _formulas(table: TableToDraw, body: FramesRequest, scope: DrawingScope) -> TableInFormulas:
@@ -219,14 +229,13 @@ def _error(finding: Finding) -> PreviewError:
 
 
 def _mechanism(
-    exercise: Exercise, numbers: Mapping[str, float], amounts: Numbers, mechanisms: _Mechanisms
+    mechanism: MovableMechanism, view: View, shown: Sequence[Configuration]
 ) -> DrawnMechanism:
-    mechanism, view = mechanisms.of(exercise, numbers)
     return DrawnMechanism(
         size=mechanism.size,
         azimuth=view.azimuth,
         elevation=view.elevation,
-        configurations=[_configuration(each) for each in mechanism.at(amounts)],
+        configurations=[_configuration(each) for each in shown],
     )
 
 

@@ -40,7 +40,7 @@ class PartSpec(StrictModel, ABC):
     title: Text
     """The title that students see."""
     prompt: str = ""
-    """The task, in one sentence or more."""
+    """The task, in one sentence or more: Markdown, like the statement."""
     points: Annotated[float, Field(gt=0, le=1000, strict=True), NotBool] = 1.0
     """The points for a right answer; its rows share them."""
     marking: Marking = "content"

@@ -49,7 +49,8 @@ class PartView(BaseModel):
 
     id: str
     title: str
-    prompt: str
+    prompt: str = Field(description="Markdown, with LaTeX between dollars.")
+    prompt_html: str = Field(description="The same as HTML and MathML, like the statement.")
     kind: str = Field(description="The kind of answer that it asks for.")
     points: float
     marking: Marking = Field(description="How the cells of an answer share its points.")

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Final, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.contract.preview import PreviewError
+from service.figures.style import Theme
 from service.figures.table_frames import LARGEST
 from service.kinematics.dh import Convention
 
@@ -64,6 +65,10 @@ class FramesRequest(BaseModel):
     )
     angle_unit: Literal["radians", "degrees"] = Field(
         "radians", description="What a bare number means in the angles of the table."
+    )
+    figure: Theme | None = Field(
+        None,
+        description="Draw the first picture, too: light, dark, or as the reader's system asks.",
     )
 
 
@@ -137,6 +142,9 @@ class FramesOfTable(BaseModel):
         description="For each picture every frame in the base frame, 4×4 by rows, from the base "
         "frame on."
     )
+    row_joints: list[int] = Field(
+        description="For each row that has a frame the joint whose variable stands in it, or 0."
+    )
     unread: list[UnreadCell]
     error: PreviewError | None = Field(None, description="Why there are no rows at all.")
     degrees_of_freedom: int | None = Field(
@@ -180,3 +188,6 @@ class FramesAnswer(BaseModel):
     joints: list[MovingJoint]
     table: FramesOfTable | None = None
     mechanism: DrawnMechanism | None = None
+    figure: str | None = Field(
+        None, description="The first picture as SVG, where it is asked for; no names but of frames."
+    )

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from service.figures.dimensions import arrowhead
-from service.figures.names import SIZE, list_label
-from service.figures.placing import TakenRoom, around
+from service.figures.names import SIZE, Label, list_label
+from service.figures.placing import Rectangle, TakenRoom, around
 from service.figures.solids import Camera, polyline
 from service.kinematics.transforms import Matrices, Numbers
 
@@ -22,29 +22,37 @@ def frame_axes(
     Axes that coincide are drawn once, with all their names.
     """
     found: list[tuple[Numbers, Numbers, str, list[str]]] = []
-    for frame, label in zip(frames, labels, strict=True):
+    for frame, index in zip(frames, labels, strict=True):
         for i, axis in enumerate("xyz"):
             origin, direction = frame[:3, 3], frame[:3, i]
             for known_origin, known_direction, _, names in found:
                 apart = np.abs([known_origin - origin, (known_direction - direction) * length])
                 if apart.max() < _SAME * length:
-                    names.append(f"{axis}{label}")
+                    names.append(f"{axis}{index}")
                     break
             else:
-                found.append((origin, direction, axis, [f"{axis}{label}"]))
+                found.append((origin, direction, axis, [f"{axis}{index}"]))
     drawn: list[str] = []
     tips = []
     for origin, direction, axis, names in found:
         line = camera.seen(np.array([origin, origin + length * direction]))
         room.take_line(line, 2.0)
-        tips.append((line[1], axis, names))
         drawn.append(polyline(line, f"frame frame-{axis}"))
         step = line[1] - line[0]
         size = float(np.linalg.norm(step))
+        ahead = step / max(size, _SAME)
         if size > _HEAD:
-            tip = line[1] + 0.5 * _HEAD * step / size
-            drawn.append(arrowhead(tip, step / size, f"head-{axis}", _HEAD))
-    for tip, axis, names in tips:
-        place = room.place(list_label(names), around(tip, 0.9 * SIZE))
-        drawn.append(list_label(names).svg(place.x, place.y, f"name-{axis}"))
+            tip = line[1] + 0.5 * _HEAD * ahead
+            drawn.append(arrowhead(tip, ahead, f"head-{axis}", _HEAD))
+        tips.append((line[1], ahead, axis, list_label(names)))
+    for tip, ahead, axis, label in tips:
+        place = room.place(label, [_beyond(tip, ahead, label), *around(tip, 0.9 * SIZE)])
+        drawn.append(label.svg(place.x, place.y, f"name-{axis}"))
     return drawn
+
+
+def _beyond(tip: Numbers, ahead: Numbers, label: Label) -> Numbers:
+    """The point at which a label stands right before an arrow that points ``ahead``."""
+    room = Rectangle.of(label, 0.0, 0.0)
+    near = abs(ahead[0]) * room.half_width + abs(ahead[1]) * room.half_height + 0.7 * _HEAD
+    return np.asarray(tip + near * ahead)

@@ -4,7 +4,7 @@ All in pixels, x to the right and y down. The same figure is always placed alike
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -48,8 +48,12 @@ class Rectangle:
 
 @dataclass(slots=True)
 class TakenRoom:
-    """What is taken: strokes with a radius and a weight, and the rectangles of labels."""
+    """What is taken: strokes with a radius and a weight, and the rectangles of labels.
 
+    ``hasty`` keeps labels off each other only: keeping them off strokes, too, is most of the work.
+    """
+
+    hasty: bool = False
     _starts: list[Numbers] = field(default_factory=list)
     _ends: list[Numbers] = field(default_factory=list)
     _radii: list[float] = field(default_factory=list)
@@ -88,13 +92,14 @@ class TakenRoom:
         No place overlaps another label: where all wanted ones do, the label goes farther away.
         """
         best: tuple[float, Rectangle] | None = None
+        size = Rectangle.of(label, 0.0, 0.0)
         for rank, point in enumerate(_farther(list(wanted))):
             if best is not None and best[0] <= 0.08 * rank:
                 break
-            place = Rectangle.of(label, float(point[0]), float(point[1]))
+            place = replace(size, x=float(point[0]), y=float(point[1]))
             if any(place.overlaps(other, _APART) for other in self.labels):
                 continue
-            badness = 0.08 * rank + self.crowd(place.points, 5.0)
+            badness = 0.08 * rank + (0.0 if self.hasty else self.crowd(place.points, 5.0))
             if best is None or badness < best[0]:
                 best = (badness, place)
         assert best is not None

@@ -17,13 +17,13 @@ _LIGHT: Final = {
     "paper": "#ffffff", "ink": "#1c2430", "rod": "#d5dae1", "turning": "#7fb0e6",
     "turning-light": "#e9f3fd", "cap": "#d3e6f9", "side0": "#fbe9c6", "side1": "#f3d596",
     "side2": "#e2b964", "ground": "#eef0f3", "soft": "#5d6877", "axis": "#7b8696",
-    "motion": "#b3261e", "x": "#c62828", "y": "#1f7a34", "z": "#1d4fc4",
+    "motion": "#b3261e", "chain": "#8e44ad", "x": "#c62828", "y": "#1f7a34", "z": "#1d4fc4",
 }  # fmt: skip
 _DARK: Final = {
     "paper": "#12161d", "ink": "#e8ecf2", "rod": "#465061", "turning": "#2f5f96",
     "turning-light": "#6da3dd", "cap": "#4a7fb9", "side0": "#c99a44", "side1": "#a67c31",
     "side2": "#7f5e22", "ground": "#232a35", "soft": "#a7b2c2", "axis": "#8b97a8",
-    "motion": "#ff8a7a", "x": "#ff8080", "y": "#6fd68a", "z": "#8ab4ff",
+    "motion": "#ff8a7a", "chain": "#d19cf0", "x": "#ff8080", "y": "#6fd68a", "z": "#8ab4ff",
 }  # fmt: skip
 _SHAPES: Final = """\
 text{font:italic 17px "STIX Two Text","Latin Modern Roman",Cambria,Georgia,"Times New Roman",serif;\
@@ -42,6 +42,7 @@ polyline{fill:none}
 .motion{stroke-width:1.7px}
 .motion-halo{stroke-width:4px}
 .frame{stroke-width:2.2px}
+.chain{stroke-width:2.6px;stroke-linejoin:round;stroke-linecap:round}
 """
 
 
@@ -84,6 +85,7 @@ def _colours(of: Mapping[str, str]) -> str:
         ".witness,.dimension": f"stroke:{soft}",
         ".dimension-head": f"fill:{soft}",
         ".motion": f"stroke:{of['motion']}",
+        ".chain": f"stroke:{of['chain']}",
         ".motion-halo": f"stroke:{paper}",
         ".motion-head,.variable": f"fill:{of['motion']}",
     }

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from service.catalogue import Joint
 from service.expressions import AngleUnit, Expression, evaluate_all
 from service.figures.scope import DrawingScope
 from service.grading.diagnosis.wording import listed
 from service.grading.feedback import Finding, reading_error
 from service.grading.reading.entry import Reader
-from service.grading.reading.table import StudentTable, read_table
+from service.grading.reading.table import StudentRow, StudentTable, read_table
 from service.grading.samples import SAMPLES, Samples
 from service.kinematics.chain import COLUMNS, Table, frames
 from service.kinematics.dh import Convention
@@ -45,12 +46,14 @@ class FreedomLoss:
 class TableFrames:
     """The frames of a table ``(configurations, frames, 4, 4)``, the base frame first.
 
-    They end before the first row with a cell that has no number: ``unread`` says which. Only a
+    They end before the first row with a cell that has no number: ``unread`` says which.
+    ``row_joints`` has for each row before that the joint whose variable stands in it. Only a
     complete table has ``freedoms``, how many degrees of freedom its joints have. ``symbols`` are
     those that stand in it.
     """
 
     frames: Matrices
+    row_joints: tuple[Joint | None, ...]
     symbols: Set[str]
     unread: tuple[CellWithoutNumber, ...] = ()
     complete: bool = True
@@ -86,13 +89,22 @@ def table_frames(
     whole = np.asarray(is_number.all(axis=-1))
     end = len(whole) if whole.all() else int(whole.argmin())
     reached = np.moveaxis(frames(table[:end, :, :count], convention), 1, 0)
-    symbols = set[str]().union(
-        *(each.symbols for row in written.rows for each in row.expressions if each is not None)
-    )
+    used = [_symbols(row) for row in written.rows]
+    symbols = set[str]().union(*used)
+    joints = tuple(_joint(row, scope) for row in used[:end])
     if unread or end < len(scope.joints):
-        return TableFrames(reached, symbols, unread, complete=False)
+        return TableFrames(reached, joints, symbols, unread, complete=False)
     freedoms, lost = _freedoms(table[..., count:], convention, scope, symbols)
-    return TableFrames(reached, symbols, freedoms=freedoms, lost=lost)
+    return TableFrames(reached, joints, symbols, freedoms=freedoms, lost=lost)
+
+
+def _symbols(row: StudentRow) -> Set[str]:
+    return set[str]().union(*(each.symbols for each in row.expressions if each is not None))
+
+
+def _joint(symbols: Set[str], scope: DrawingScope) -> Joint | None:
+    """The first joint whose variable is among the symbols of a row."""
+    return next((joint for joint in scope.joints if joint.variable in symbols), None)
 
 
 def cell_reader(scope: DrawingScope, angle_unit: AngleUnit) -> Reader:

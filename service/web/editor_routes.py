@@ -15,11 +15,9 @@ from service.web.assets import Assets
 from service.web.bounded_work import BoundedWork
 from service.web.exercise_check import CheckRequest, checked
 from service.web.exercise_folder import ExerciseFolder, SaveRequest
-from service.web.page_headers import NO_STORE, PRIVATE_HEADERS, policy
+from service.web.page_headers import NO_STORE, PRIVATE_HEADERS
 from service.web.tutor_pages import editor_page
 
-# The figure of a text that is being written comes with its findings.
-_HEADERS: Final = {**PRIVATE_HEADERS, "Content-Security-Policy": policy(img_src="'self' blob:")}
 _NEW: Final = "my-exercise"
 
 
@@ -47,7 +45,7 @@ def editor_routes(
             assets,
             can_write=folder.can_write and is_at_the_machine(request),
         )
-        return HTMLResponse(page, headers=_HEADERS)
+        return HTMLResponse(page, headers=PRIVATE_HEADERS)
 
     @router.post("/check")
     async def check(request: Request) -> Response:

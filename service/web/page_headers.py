@@ -6,14 +6,14 @@ from typing import Final
 def policy(**more: str) -> str:
     """The policy of a page; ``more`` are directives that take the place of the usual ones.
 
-    Nothing from another host, no script or style in the page itself, and no text that becomes
-    markup but by the one policy of markup.js.
+    Nothing from another host, but for pictures what the page itself was sent. No script or style in
+    the page itself, and no text that becomes markup but by the one policy of markup.js.
     """
     directives = {
         "default_src": "'none'",
         "script_src": "'self'",
         "style_src": "'self'",
-        "img_src": "'self'",
+        "img_src": "'self' blob:",
         "connect_src": "'self'",
         "base_uri": "'none'",
         "form_action": "'self'",

@@ -137,11 +137,16 @@ def _item(exercise: Exercise) -> Element:
 def _statement(exercise: Exercise) -> Iterable[Element]:
     if exercise.reference is not None:
         yield element("figure", _figure(exercise, "../", f"The robot: {exercise.title}"))
-    written = fromstring(f"<div>{statement_html(exercise.statement)}</div>")
+    yield _written(exercise.statement)
+
+
+def _written(markdown: str) -> Element:
+    """A text of the exercise's author."""
+    written = fromstring(f"<div>{statement_html(markdown)}</div>")
     for each in written.iter():
         # HTML knows MathML by its names alone.
         each.tag = each.tag.rpartition("}")[2]
-    yield written
+    return written
 
 
 def _figure(exercise: Exercise, root: str, alt: str) -> Element:
@@ -150,7 +155,7 @@ def _figure(exercise: Exercise, root: str, alt: str) -> Element:
 
 
 def _part(part: PartSpec) -> Element:
-    return element("section", element("h2", part.title), element("p", part.prompt))
+    return element("section", element("h2", part.title), _written(part.prompt))
 
 
 def page(

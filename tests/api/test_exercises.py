@@ -132,6 +132,7 @@ def part(part_id: str, kind: str, title: str, prompt: str, points: float) -> dic
         "kind": kind,
         "title": title,
         "prompt": prompt,
+        "prompt_html": f"<p>{prompt}</p>\n" if prompt else "",
         "points": points,
         "marking": "content",
     }

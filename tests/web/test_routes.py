@@ -67,6 +67,8 @@ def test_the_policy_lets_in_nothing_from_elsewhere_and_nothing_inline(client: Cl
     sources = {name: set(value.split()) for name, value in directives.items()}
     assert sources.pop("require-trusted-types-for") == {"'script'"}
     assert sources.pop("trusted-types") == {"dh-grader"}
+    # A drawing that the service sent is shown as an image, which can do nothing.
+    assert sources.pop("img-src") == {"'self'", "blob:"}
     assert set().union(*sources.values()) == {"'none'", "'self'"}
     assert sources["default-src"] == {"'none'"}
     assert "<style" not in page.text

@@ -198,7 +198,6 @@ export class DhExercise extends HTMLElement {
       service: this.service,
       body: () => ({ exercise: this.exercise.id, angle_unit: this.unit.value, ...this.#tableToDraw() }),
       descriptions: Object.fromEntries(this.exercise.symbols.map(({ name, description }) => [name, description])),
-      instead: this.figure.cloneNode(true),
       announce: (text) => this.announce(text),
     };
   }

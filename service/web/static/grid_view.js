@@ -40,6 +40,7 @@ function headOf(column) {
 /** One row: `cells`, its mark, its points, and the row of messages below it. */
 export class RowView {
   constructor(row, grid, part, owner, id) {
+    this.grid = grid;
     this.label = row.label;
     this.name = row.spoken || part.title;
     this.sign = h("span", { class: "sign" });

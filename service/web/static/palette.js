@@ -9,8 +9,11 @@ const DARK = {
   chain: 0xd19cf0, ink: "#e8ecf2", paper: "#12161d", x: 0xff8080, y: 0x6fd68a, z: 0x8ab4ff,
 };
 
-/** The colours that suit an element's own: a light text has a dark ground. */
-export function paletteOf(element) {
+/** Whether an element's text is light, on a dark ground. */
+export function isDark(element) {
   const [red, green, blue] = getComputedStyle(element).color.match(/[\d.]+/g).map(Number);
-  return red + green + blue > 384 ? DARK : LIGHT;
+  return red + green + blue > 384;
 }
+
+/** The colours that suit an element's own. */
+export const paletteOf = (element) => (isDark(element) ? DARK : LIGHT);

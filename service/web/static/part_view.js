@@ -5,11 +5,12 @@ import { gridsOf } from "./grid_view.js";
 import { layoutOf } from "./kinds.js";
 import { html, mathml } from "./markup.js";
 import { cellName, item } from "./messages.js";
+import { blockOf, placedFrom } from "./pasted_block.js";
 import { target, undoKey } from "./keyboard.js";
 
 // A text with one of these may hold several cells; the service says whether it does.
 const BETWEEN_CELLS = /[\n\t;|&,[]|\\\\/;
-const HELP = "Arrow keys and Enter move between cells. Paste a whole table or matrix into one cell.";
+const HELP = "Arrow keys and Enter move between cells. A table, a matrix or a block of cells can be pasted into one.";
 
 export class PartView {
   changedAt = 0;
@@ -34,7 +35,7 @@ export class PartView {
       "section",
       { class: "card part", "aria-labelledby": id },
       h("header", {}, h(`h${level}`, { id }, part.title), this.badge, this.worth),
-      h("div", { class: "prompt" }, ...promptOf(part)),
+      h("div", { class: "prompt" }, ...html(part.prompt_html)),
       this.list,
       this.choice,
       h("div", { class: "grids" }, ...elements),
@@ -182,12 +183,13 @@ export class PartView {
     } catch (error) {
       this.host.failed(error);
     }
-    const pairs = grid?.rows ? this.#placed(grid.rows, cell) : null;
+    const block = blockOf(text);
+    const pairs = (grid?.rows && this.#placed(grid.rows, cell)) ?? (block && this.#placedBlock(block, cell));
     if (pairs) {
       this.host.history.note(this.#fill(pairs));
       this.host.edited();
       this.focus(pairs[0][0]);
-      this.#say(`The pasted text filled ${pairs.length} cells. Ctrl+Z takes it back.`, grid.notes);
+      this.#say(`The pasted text filled ${pairs.length} cells. Ctrl+Z takes it back.`, grid?.notes);
       return;
     }
     const before = cell.text;
@@ -214,6 +216,12 @@ export class PartView {
     const first = this.#firstRow(read, cell);
     if (first + read.length > rows.length) return null;
     return read.flatMap((row, i) => rows[first + i].map((each, j) => [each, row[j].entry]));
+  }
+
+  /** The cells that a block from a spreadsheet goes to, within the one grid of the cell. */
+  #placedBlock(block, cell) {
+    const rows = this.rows.filter((row) => row.grid === cell.row.grid).map((row) => row.cells);
+    return placedFrom(cell, rows, block);
   }
 
   /** Where a pasted grid begins: by its labels, or the one matrix in the matrix of the cell. */
@@ -284,8 +292,4 @@ export class PartView {
     for (const row of this.rows) row.mark(null);
     this.worth.textContent = `${points(0, this.part.points).split(" / ")[1]} points`;
   }
-}
-
-function promptOf(part) {
-  return part.prompt_html ? html(part.prompt_html) : [h("p", {}, visible(part.prompt))];
 }

@@ -1,6 +1,7 @@
 // <dh-play>: any table of any robot, with its 3D view, its pose, and its equivalent in the other convention.
 
 import { h, visible } from "./dom.js";
+import { History } from "./history.js";
 import { mathml, matrix } from "./markup.js";
 import { freshCells, jointNumbers, MOST_JOINTS, MOST_ROWS, PlayTable, rowsOf } from "./play_table.js";
 import { RobotView } from "./robot_view.js";
@@ -29,6 +30,7 @@ export class DhPlay extends HTMLElement {
   connectedCallback() {
     this.service = new Service(HOME);
     this.table = new PlayTable(this);
+    this.history = new History();
     this.view = new RobotView({
       service: this.service,
       body: () => this.#body(),
@@ -40,6 +42,7 @@ export class DhPlay extends HTMLElement {
     const shared = location.hash.startsWith(NAME) ? checked(unpacked(location.hash.slice(NAME.length))) : null;
     if (shared) history.replaceState(null, "", location.pathname);
     this.#show(shared ?? this.#kept() ?? ROBOTS[FIRST]);
+    this.before = this.state;
     this.view.open();
   }
 
@@ -51,7 +54,7 @@ export class DhPlay extends HTMLElement {
     const option = (text, value = text) => h("option", { value }, text);
     this.robot = h("select", { "aria-label": "Start from a robot", onchange: () => this.#chosen() }, option("Start from …", ""), ...Object.keys(ROBOTS).map((name) => option(name)));
     this.convention = h("select", { "aria-label": "Convention", onchange: () => this.#conventionChosen() }, ...Object.entries(LETTERS).map(([value, text]) => option(text, value)));
-    this.unit = h("select", { "aria-label": "Plain numbers in angles are", onchange: () => this.changed() }, option("radians"), option("degrees"));
+    this.unit = h("select", { "aria-label": "Plain numbers in angles are", onchange: () => this.#edited() }, option("radians"), option("degrees"));
     this.said = h("p", { class: "quiet saved" });
     this.add = h("button", { type: "button", class: "quiet-button", onclick: () => this.#addRow() }, "Add a row");
     const share = h("button", { type: "button", class: "quiet-button", onclick: () => this.#share() }, "Copy link");
@@ -78,7 +81,7 @@ export class DhPlay extends HTMLElement {
           [h("h2", {}, "Table"), this.freedoms],
           h("div", { class: "tools" }, this.convention, h("label", { class: "unit" }, h("span", { "aria-hidden": "true" }, "Plain angles in "), this.unit)),
           h("div", { class: "grids" }, this.table.element),
-          h("p", { class: "reading" }, "Joint i turns by theta_i or slides by d_i. Other letters (a1, alpha1, d1, theta1, l1 …) stand for numbers that you choose below the view. Paste a whole table into one cell."),
+          h("p", { class: "reading" }, "Joint i turns by theta_i or slides by d_i. Other letters (a1, alpha1, d1, theta1, l1 …) stand for numbers that you choose below the view. Paste a whole table into one cell, or a block of cells."),
           h("div", { class: "tools" }, this.add),
         ),
         card([h("h2", {}, "Pose of the last frame"), this.latex], this.pose, this.formula),
@@ -126,31 +129,73 @@ export class DhPlay extends HTMLElement {
     this.saving = setTimeout(() => keep(this.state), 250);
   }
 
+  // What changes the table. Each change is a step that can be taken back.
+
+  /** Note that the table was changed; what is typed into one cell is one step. */
+  #edited(cell = null) {
+    const before = this.before;
+    this.before = this.state;
+    this.history.note([{ target: this.#place(cell?.place ?? [0, 0]), before, after: this.before }], cell !== null);
+    this.changed();
+  }
+
+  /** What puts a table of the past back, and the cursor where it was changed. */
+  #place([i, j]) {
+    const key = `${i} ${j}`;
+    this.places ??= new Map();
+    if (!this.places.has(key)) this.places.set(key, { put: (state) => this.#show(state), focus: () => this.table.rows[Math.min(i, this.rows.length - 1)].cells[j].input.focus() });
+    return this.places.get(key);
+  }
+
+  undone(direction) {
+    const place = this.history[direction]();
+    if (!place) return this.announce(direction === "undo" ? "Nothing to undo" : "Nothing to redo");
+    this.before = this.state;
+    return place.focus();
+  }
+
+  typed(cell) {
+    this.#edited(cell);
+  }
+
+  /** Put texts into cells, as one step. */
+  filled(pairs) {
+    for (const [cell, text] of pairs) cell.put(text);
+    this.#edited();
+    if (pairs.length > 1) this.#say(`${pairs.length} cells are filled; Ctrl+Z takes it back`);
+  }
+
+  /** Show another table, as one step. */
+  #change(state) {
+    this.#show(state);
+    this.#edited();
+  }
+
   #chosen() {
     const robot = ROBOTS[this.robot.value];
     this.robot.value = "";
     if (!robot) return;
     this.view.forget();
-    this.#show(robot);
+    this.#change(robot);
     this.announce("The table is filled in.");
   }
 
   #conventionChosen() {
-    this.#show(this.state);
+    this.#change(this.state);
   }
 
   #addRow() {
     const { rows, ...rest } = this.state;
     const joints = jointNumbers(rows).filter(Boolean).length;
     const kind = joints < MOST_JOINTS ? "R" : "F";
-    this.#show({ ...rest, rows: [...rows, { kind, cells: freshCells(kind, joints + 1) }] });
+    this.#change({ ...rest, rows: [...rows, { kind, cells: freshCells(kind, joints + 1) }] });
     this.table.rows.at(-1).cells[0].input.focus();
   }
 
   removed(i) {
     const { rows, ...rest } = this.state;
     if (rows.length === 1) return this.#say("A table has a row at least");
-    this.#show({ ...rest, rows: renumbered(rows, rows.toSpliced(i, 1), i) });
+    this.#change({ ...rest, rows: renumbered(rows, rows.toSpliced(i, 1), i) });
     this.table.rows[Math.min(i, rows.length - 2)].cells[0].input.focus();
     return this.announce(`Row ${i + 1} is removed.`);
   }
@@ -165,7 +210,7 @@ export class DhPlay extends HTMLElement {
     const [, , freshD, freshTheta] = freshCells(kind, number);
     const isBare = (text) => ["0", "", `d${before}`, `theta${before}`, `q${before}`].includes(text.trim());
     changed[i].cells = [a, alpha, isBare(d) ? freshD : d, isBare(theta) ? freshTheta : theta];
-    this.#show({ ...rest, rows: renumbered(rows, changed) });
+    this.#change({ ...rest, rows: renumbered(rows, changed) });
     this.table.rows[i].element.querySelector("select").focus();
   }
 
@@ -175,8 +220,8 @@ export class DhPlay extends HTMLElement {
       const { table: read } = await this.service.frames({ table, angle_unit: this.unit.value });
       if (read.error || !read.formulas?.cells.length) return this.#say(`Not read as a table: ${read.error?.message ?? "it has no rows"}`);
       this.view.forget();
-      this.#show({ ...this.state, rows: rowsOf(read.formulas.cells.map((row) => row.map((cell) => cell.text))) });
-      return this.#say("The pasted table is filled in");
+      this.#change({ ...this.state, rows: rowsOf(read.formulas.cells.map((row) => row.map((cell) => cell.text))) });
+      return this.#say("The pasted table is filled in; Ctrl+Z takes it back");
     } catch (error) {
       return this.#say(error.message);
     }
@@ -221,7 +266,7 @@ export class DhPlay extends HTMLElement {
     // A fixed row more stands before or behind those of the joints.
     const kinds = this.rows.map(({ kind }) => kind);
     while (kinds.length < rows.length) this.convertedRows[0].label === "b" ? kinds.unshift("F") : kinds.push("F");
-    this.#show({ convention, unit: this.unit.value, rows: rows.map((cells, i) => ({ kind: kinds[i], cells })) });
+    this.#change({ convention, unit: this.unit.value, rows: rows.map((cells, i) => ({ kind: kinds[i], cells })) });
     this.announce("The table is now in the other convention.");
   }
 
@@ -285,8 +330,8 @@ function convertedTable(rows, convention) {
 function checked(value) {
   const { convention, unit, rows } = value ?? {};
   if (!Array.isArray(rows) || !rows.length || rows.length > MOST_ROWS) return null;
-  const isRow = (row) => /^[RPF]$/.test(row?.kind) && row.cells?.length === 4 && row.cells.every((cell) => typeof cell === "string");
-  if (!rows.every(isRow) || jointNumbers(rows).filter(Boolean).length > MOST_JOINTS) return null;
+  const isRow = ({ kind, cells }) => ["R", "P", "F"].includes(kind) && Array.isArray(cells) && cells.length === 4 && cells.every((cell) => typeof cell === "string");
+  if (!rows.every((row) => row && isRow(row)) || jointNumbers(rows).filter(Boolean).length > MOST_JOINTS) return null;
   return {
     convention: convention === "modified" ? "modified" : "standard",
     unit: unit === "degrees" ? "degrees" : "radians",

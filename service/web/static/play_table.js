@@ -2,7 +2,8 @@
 
 import { Cell } from "./cell.js";
 import { h } from "./dom.js";
-import { target } from "./keyboard.js";
+import { target, undoKey } from "./keyboard.js";
+import { blockOf, placedFrom } from "./pasted_block.js";
 
 const COLUMNS = ["a", "alpha", "d", "theta"];
 const SPOKEN = { a: "a, link length", alpha: "alpha, link twist", d: "d, link offset", theta: "theta, joint angle" };
@@ -27,7 +28,7 @@ export function jointNumbers(rows) {
 }
 
 export class PlayTable {
-  /** `host` hears: changed, kindChanged(i, kind), removed(i), pasted(text), announce. */
+  /** `host` hears: typed(cell), filled(pairs), kindChanged(i, kind), removed(i), pasted(text), undone(direction). */
   constructor(host) {
     this.host = host;
     this.rows = [];
@@ -58,7 +59,7 @@ export class PlayTable {
     if (kind === "F" && joints >= MOST_JOINTS) for (const option of options.slice(0, 2)) option.disabled = true;
     const choice = h("select", { "aria-label": `Joint of row ${number}: R turns, P slides, – none`, onchange: (event) => this.host.kindChanged(i, event.target.value) }, ...options);
     const made = COLUMNS.map((label, j) => {
-      const cell = new Cell({ id: `play-${i}-${j}`, label, spoken: `${SPOKEN[label]}, row ${number}` }, this);
+      const cell = new Cell({ id: `play-${i}-${j}`, place: [i, j], label, spoken: `${SPOKEN[label]}, row ${number}` }, this);
       cell.input.value = cells[j];
       return cell;
     });
@@ -90,35 +91,49 @@ export class PlayTable {
     cell.understood(null);
   }
 
-  typed() {
-    this.host.changed();
+  typed(cell) {
+    this.host.typed(cell);
   }
 
   entered() {}
 
   understood() {}
 
-  beforeInput() {}
+  beforeInput(event) {
+    const undone = { historyUndo: "undo", historyRedo: "redo" }[event.inputType];
+    if (undone) this.#undo(event, undone);
+  }
+
+  #undo(event, direction) {
+    event.preventDefault();
+    this.host.undone(direction);
+  }
 
   repaired(cell, suggestion) {
-    cell.put(suggestion);
-    this.host.changed();
+    this.host.filled([[cell, suggestion]]);
     cell.input.focus();
   }
 
   pressed(event, cell) {
+    const undone = undoKey(event);
+    if (undone) return this.#undo(event, undone);
     const next = target(event, cell, this.rows.map((row) => row.cells));
-    if (!next) return;
+    if (!next) return undefined;
     event.preventDefault();
     next.input.focus();
-    next.input.select();
+    return next.input.select();
   }
 
-  pasted(event) {
+  /** A block smaller than a table goes where the cursor is; what a whole table is, the service says. */
+  pasted(event, cell) {
     const text = event.clipboardData.getData("text/plain");
     if (!/[\n\t;&|]/.test(text.trim())) return;
     event.preventDefault();
-    this.host.pasted(text);
+    const block = blockOf(text);
+    const isSmall = block && (block.length === 1 || block[0].length < COLUMNS.length);
+    const pairs = isSmall ? placedFrom(cell, this.rows.map((row) => row.cells), block) : null;
+    if (pairs) this.host.filled(pairs);
+    else this.host.pasted(text);
   }
 }
 

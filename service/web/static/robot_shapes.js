@@ -35,10 +35,10 @@ class JointShape {
 }
 
 export class MechanismShape {
-  constructor(shapes, joints, size, first) {
+  constructor(shapes, kinds, size, first) {
     this.size = size;
     this.group = new Group();
-    this.joints = joints.map(({ kind }) => new JointShape(shapes, kind === "P", size));
+    this.joints = kinds.map((kind) => new JointShape(shapes, kind === "P", size));
     this.links = first.links.map((link) => shapes.rods(link.length, "rod"));
     this.gripper = gripper(shapes, size);
     this.group.add(...this.joints.map((joint) => joint.group), ...this.links, this.gripper);
@@ -79,16 +79,19 @@ function ground(shapes, size, base, normal) {
   return plate;
 }
 
-/** The chain of a table: `solid` as a robot of its own, otherwise as lines over another one. */
+/**
+ * The chain of a table: `solid` as a robot of its own, otherwise as lines over another one. `kinds` are those of the
+ * rows' joints, null for a row without one.
+ */
 export class ChainShape {
-  constructor(shapes, joints, convention, size, count, solid) {
+  constructor(shapes, kinds, convention, size, count, solid) {
     this.size = size;
     this.convention = convention;
     this.group = new Group();
     this.lines = Array.from({ length: count - 1 }, () => shapes.rods(3, solid ? "rod" : "chain", !solid));
-    this.joints = solid ? joints.slice(0, count - 1).map(({ kind }) => new JointShape(shapes, kind === "P", size)) : [];
+    this.joints = solid ? kinds.slice(0, count - 1).map((kind) => kind && new JointShape(shapes, kind === "P", size)) : [];
     this.radius = (solid ? ROD : 0.007) * size;
-    this.group.add(...this.lines, ...this.joints.map((joint) => joint.group));
+    this.group.add(...this.lines, ...this.joints.filter(Boolean).map((joint) => joint.group));
     if (solid) this.group.add(ground(shapes, size, new Vector3(0, 0, 0), new Vector3(0, 0, 1)));
   }
 
@@ -96,7 +99,7 @@ export class ChainShape {
     this.lines.forEach((line, i) => layRods(line, linkOf(frames[i], frames[i + 1], this.convention), this.radius));
     this.joints.forEach((joint, i) => {
       const on = this.convention === "modified" ? frames[i + 1] : frames[i];
-      joint.put(column(on, 3), column(on, 2));
+      joint?.put(column(on, 3), column(on, 2));
     });
   }
 }
@@ -132,7 +135,7 @@ export class FramesShape {
       const before = taken.filter((other) => other.distanceTo(origin) < 0.05 * this.length).length;
       taken.push(origin);
       this.labels[i].position.copy(origin);
-      this.labels[i].center.set(0.5 - 0.95 * before, 1.45);
+      this.labels[i].userData.centre.set(0.5 - 0.95 * before, 1.45);
     });
   }
 }

@@ -1,28 +1,14 @@
-// The 3D view with all that moves it: a slider for each joint, numbers for the other symbols, which
-// frames are shown, and buttons for whoever has no mouse. It draws what the service computes.
+// The view of a robot that moves, 3D where the browser can: what is asked of the service, and when. The
+// picture stands in `stage.js`, all around it in `view_panels.js`; it draws what the service computes.
 
-import { h, message, visible } from "./dom.js";
+import { h, message } from "./dom.js";
 import { column, pictureOf, Sweep } from "./motion.js";
-import { symbolName } from "./names.js";
+import { Stage } from "./stage.js";
+import { FrameSwitches, JointSliders, PoseNumbers, SymbolFields } from "./view_panels.js";
 
 const STYLE = new URL("./robot_view.css", import.meta.url).href;
 const AFTER_A_KEY = 250;
 const RETRY = 3000;
-const STEPS = 400;
-const TURN = Math.PI / 12;
-const NEARER = 1.25;
-const DEGREES = 180 / Math.PI;
-
-/** Whether the browser draws in 3D at all. */
-function hasWebGl() {
-  try {
-    const context = document.createElement("canvas").getContext("webgl2");
-    context?.getExtension("WEBGL_lose_context")?.loseContext();
-    return context !== null;
-  } catch {
-    return false;
-  }
-}
 
 export class RobotView {
   #answer = null;
@@ -34,104 +20,49 @@ export class RobotView {
   #dragging = false;
   #refit = false;
   #timer = 0;
-  #scene = null;
-  #hidden = new Set();
   #closed = false;
 
   /**
-   * `host`: `service`; `body()`, what every request says, or null; `descriptions`, of symbols by name; `instead`, an
-   * element for a browser without WebGL; `announce`; `answered`, which hears of each answer; `moved`, of each picture.
+   * `host`: `service`; `body()`, what every request says, or null; `descriptions`, of symbols by name; `announce`;
+   * `answered`, which hears of each answer; `moved`, of each picture.
    */
   constructor(host) {
     this.host = host;
-    this.stage = h("div", { class: "stage" });
+    this.stage = new Stage((theme) => this.#drawing(theme));
     this.told = h("p", { class: "told" });
-    this.numbers = h("div", { class: "pose-numbers" });
-    this.sliders = h("div", { class: "sliders", role: "group", "aria-label": "Joint variables" });
-    this.lengths = h("div", { class: "lengths" });
-    this.more = h("details", { class: "symbols-more", hidden: true }, h("summary", {}, "Lengths and other symbols"), this.lengths);
-    this.frames = h("div", { class: "frames", role: "group", "aria-label": "Frames shown" });
+    this.numbers = new PoseNumbers();
+    this.sliders = new JointSliders(this);
+    this.symbols = new SymbolFields((name, value) => this.#chosen(name, value), host.descriptions);
+    this.frames = new FrameSwitches(() => this.#draw());
     this.robot = this.#switch("Robot", true);
-    this.beside = this.#switch("Side by side", false, () => this.#scene?.reset());
+    this.beside = this.#switch("Side by side", false, () => this.stage.reset());
     this.home = h("button", { type: "button", class: "quiet-button", onclick: () => this.goHome() }, "Home configuration");
     this.over = h("div", { class: "switches" }, this.robot.label, this.beside.label);
     this.element = h(
       "section",
       { class: "robot-view", "aria-label": "3D view" },
       h("link", { rel: "stylesheet", href: STYLE }),
-      this.stage,
+      this.stage.element,
       this.told,
-      this.sliders,
+      this.sliders.element,
       h("div", { class: "switches" }, this.home, this.over),
-      this.frames,
-      this.numbers,
-      this.more,
+      this.frames.element,
+      this.numbers.element,
+      this.symbols.element,
     );
   }
 
   /** Load what draws, and draw. */
   async open() {
-    if (hasWebGl()) {
-      try {
-        const { RobotScene } = await import("./scene.js");
-        if (this.#closed) return;
-        this.#scene = new RobotScene(this.stage);
-      } catch {
-        this.#withoutPicture("The 3D view could not be loaded.");
-      }
-    } else {
-      this.#withoutPicture("This browser has no WebGL, which the 3D view needs.");
-    }
-    if (this.#scene) this.#stageControls();
+    await this.stage.open();
     await this.#refresh();
   }
 
   close() {
     this.#closed = true;
     clearTimeout(this.#timer);
-    this.#scene?.dispose();
+    this.stage.close();
     this.element.remove();
-  }
-
-  #withoutPicture(reason) {
-    const { instead } = this.host;
-    const rest = instead ? " Here is the drawing instead; the numbers below follow the joints." : " The numbers below follow the joints.";
-    this.stage.replaceChildren(h("p", { class: "no-webgl" }, reason, rest), instead ?? "");
-    this.stage.classList.add("flat");
-  }
-
-  #stageControls() {
-    const { canvas } = this.#scene;
-    canvas.tabIndex = 0;
-    canvas.setAttribute("role", "img");
-    canvas.setAttribute("aria-label", "The robot in 3D. Arrow keys go around it, plus and minus zoom, 0 shows all of it.");
-    canvas.addEventListener("keydown", (event) => this.#pressed(event));
-    const button = (text, name, act) => h("button", { type: "button", title: name, "aria-label": name, onclick: act }, text);
-    const turn = (right, up) => () => this.#scene.turn(right * TURN, up * TURN);
-    this.stage.append(
-      h(
-        "div",
-        { class: "stage-buttons", role: "group", "aria-label": "View" },
-        button("←", "View from further left", turn(-1, 0)),
-        button("→", "View from further right", turn(1, 0)),
-        button("↑", "View from higher", turn(0, 1)),
-        button("↓", "View from lower", turn(0, -1)),
-        button("+", "Zoom in", () => this.#scene.turn(0, 0, NEARER)),
-        button("−", "Zoom out", () => this.#scene.turn(0, 0, 1 / NEARER)),
-        button("⟲", "Reset view", () => this.#scene.reset()),
-      ),
-    );
-  }
-
-  #pressed(event) {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const turns = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-    const zooms = { "+": NEARER, "=": NEARER, "-": 1 / NEARER };
-    if (turns[event.key]) this.#scene.turn(...turns[event.key].map((each) => each * TURN));
-    else if (zooms[event.key]) this.#scene.turn(0, 0, zooms[event.key]);
-    else if (event.key === "0" || event.key === "Home") this.#scene.reset();
-    else return;
-    event.preventDefault();
   }
 
   #switch(text, on, changed) {
@@ -158,7 +89,7 @@ export class RobotView {
   forget() {
     this.#values = {};
     this.#symbols = {};
-    this.#hidden.clear();
+    this.frames.showAll();
   }
 
   async #request(sets, body = this.host.body()) {
@@ -219,83 +150,54 @@ export class RobotView {
     return this.#answer.joints.map(({ variable }) => this.#values[variable]);
   }
 
+  /** The picture as the service draws it, for a browser without WebGL. */
+  async #drawing(figure) {
+    const body = this.host.body();
+    if (!body || !this.#answer) return null;
+    return (await this.#request([this.#current], { ...withoutFormulas(body), figure })).figure;
+  }
+
   #show(answer) {
     this.#answer = answer;
     this.element.classList.toggle("empty", !answer);
     if (!answer) return;
     this.picture = pictureOf(answer);
-    this.#showSliders();
-    this.#showSymbols();
-    this.#showFrameSwitches();
+    this.sliders.show(answer.joints, this.#values);
+    this.symbols.show(answer.symbols);
     this.#showTold();
-    this.over.hidden = !(answer.mechanism && answer.table);
+    // A drawing shows all that there is, as one.
+    this.over.hidden = this.stage.isFlat || !(answer.mechanism && answer.table);
+    if (!this.stage.isFlat) this.frames.show(this.picture.frames?.length ?? 0);
     this.#showScene();
     this.#showNumbers();
   }
 
   #showScene() {
-    if (!this.#scene) return;
-    const { joints, mechanism } = this.#answer;
+    const { joints, mechanism, table } = this.#answer;
     const { frames } = this.picture;
-    const convention = this.host.body().table?.convention ?? "standard";
+    const kinds = new Map(joints.map(({ joint, kind }) => [joint, kind]));
     // The sizes of parts stay while joints move.
     const subject = {
-      joints,
-      convention,
+      kinds: joints.map(({ kind }) => kind),
+      rowKinds: table?.row_joints.map((joint) => kinds.get(joint) ?? null) ?? [],
+      convention: this.host.body().table?.convention ?? "standard",
       size: mechanism?.size ?? sizeOf(frames ?? []),
       azimuth: mechanism?.azimuth ?? -60,
       elevation: mechanism?.elevation ?? 25,
       solid: !mechanism,
       beside: () => this.beside.box.checked,
       robot: () => this.robot.box.checked || !frames,
-      shown: (i) => !this.#hidden.has(i),
+      shown: (i) => this.frames.isShown(i),
     };
-    this.#scene.show(subject, this.picture);
-    if (this.#refit) this.#scene.reset();
+    this.stage.show(subject, this.picture);
+    if (this.#refit) this.stage.reset();
     this.#refit = false;
   }
 
-  // Joints.
-
-  #showSliders() {
-    const names = JSON.stringify(this.#answer.joints.map(({ home, ...joint }) => joint));
-    if (this.sliderNames !== names) {
-      this.sliderNames = names;
-      this.sliders.replaceChildren(...this.#answer.joints.map((joint, i) => this.#slider(joint, i)));
-    }
-    this.#answer.joints.forEach((joint, i) => this.#showValue(i));
-  }
-
-  #slider({ joint, variable, kind, low, high }, i) {
-    const doing = kind === "P" ? "slides" : "turns";
-    const prepare = () => this.#prepare(i);
-    const field = h("input", {
-      type: "range",
-      min: low,
-      max: high,
-      step: (high - low) / STEPS,
-      "aria-label": `${variable}: joint ${joint} ${doing}`,
-      oninput: (event) => this.#dragged(i, Number(event.target.value)),
-      onchange: () => this.#refresh(),
-      onpointerdown: prepare,
-      onfocus: prepare,
-    });
-    return h("div", { class: "slider" }, h("span", { class: "name", "aria-hidden": "true" }, symbolName(variable)), field, h("output", {}));
-  }
-
-  #showValue(i) {
-    const { variable, kind } = this.#answer.joints[i];
-    const value = this.#values[variable];
-    const row = this.sliders.children[i];
-    const text = kind === "P" ? decimal(value) : `${Math.round(value * DEGREES)}°`;
-    row.querySelector("output").textContent = text;
-    const field = row.querySelector("input");
-    field.setAttribute("aria-valuetext", text);
-    if (!field.matches(":active") && Number(field.value) !== value) field.value = value;
-  }
+  // Joints and symbols.
 
   /** Fetch the sweep of a joint, unless it is there. */
-  #prepare(i) {
+  prepare(i) {
     if (!this.#answer) return;
     const values = this.#current;
     const others = JSON.stringify([this.host.body(), this.#symbols, values.with(i, 0)]);
@@ -307,14 +209,18 @@ export class RobotView {
     sweep.load(() => sweep === this.#sweep && this.#dragging && this.#follow()).catch(() => sweep === this.#sweep && (this.#sweep = null));
   }
 
-  #dragged(i, value) {
+  dragged(i, value) {
     if (!this.#answer) return;
     this.#values[this.#answer.joints[i].variable] = value;
     this.#turn += 1;
     this.#dragging = true;
-    this.#showValue(i);
-    this.#prepare(i);
+    this.sliders.put(i, value);
+    this.prepare(i);
     this.#follow();
+  }
+
+  released() {
+    this.#refresh();
   }
 
   /** Draw the joint that is moved where its slider is. */
@@ -335,46 +241,12 @@ export class RobotView {
   }
 
   #draw() {
-    if (this.picture) this.#scene?.move(this.picture);
+    if (this.picture) this.stage.move(this.picture);
   }
 
-  // Symbols, frames and numbers.
-
-  #showSymbols() {
-    const { symbols } = this.#answer;
-    const names = Object.keys(symbols);
-    this.more.hidden = names.length === 0;
-    if (this.lengths.dataset.names !== names.join(" ")) {
-      this.lengths.dataset.names = names.join(" ");
-      this.lengths.replaceChildren(...names.map((name) => this.#symbolField(name)));
-    }
-    for (const field of this.lengths.querySelectorAll("input")) {
-      if (!field.matches(":focus")) field.value = decimal(symbols[field.name]);
-    }
-  }
-
-  #symbolField(name) {
-    const described = this.host.descriptions?.[name];
-    const changed = (event) => {
-      const value = event.target.valueAsNumber;
-      if (!Number.isFinite(value) || Math.abs(value) > 1e6) return;
-      this.#symbols = { ...this.#symbols, [name]: value };
-      this.changed();
-    };
-    const field = h("input", { type: "number", step: 0.05, name, oninput: changed, "aria-label": described ? `${name}: ${visible(described)}` : name });
-    return h("label", { title: described ? visible(described) : null }, h("span", { class: "name", "aria-hidden": "true" }, symbolName(name)), field);
-  }
-
-  #showFrameSwitches() {
-    const count = this.picture.frames?.length ?? 0;
-    if (this.frames.children.length === (count ? count + 1 : 0)) return;
-    const toggle = (i, on) => (on ? this.#hidden.delete(i) : this.#hidden.add(i), this.#draw());
-    const boxes = Array.from({ length: count }, (_, i) => {
-      const box = h("input", { type: "checkbox", checked: !this.#hidden.has(i), "aria-label": `Show frame ${i}`, onchange: (event) => toggle(i, event.target.checked) });
-      return h("label", {}, box, ` {${i}}`);
-    });
-    const legend = h("span", { class: "legend" }, "Frames ", ...["x", "y", "z"].map((axis) => h("i", { class: axis }, axis)));
-    this.frames.replaceChildren(...(count ? [legend, ...boxes] : []));
+  #chosen(name, value) {
+    this.#symbols = { ...this.#symbols, [name]: value };
+    this.changed();
   }
 
   #showTold() {
@@ -389,28 +261,14 @@ export class RobotView {
   }
 
   #showNumbers() {
-    const { frames, mechanism } = this.picture;
-    const lines = [];
-    if (mechanism) lines.push(["Tool of the robot", mechanism.tool]);
-    if (frames?.length > 1) lines.push([`Origin of your frame {${frames.length - 1}}`, column(frames.at(-1), 3)]);
-    if (this.numbers.children.length !== lines.length) this.numbers.replaceChildren(...lines.map(() => h("p", {}, h("span"), h("code"))));
-    lines.forEach(([name, point], i) => {
-      const [label, value] = this.numbers.children[i].children;
-      label.textContent = name;
-      value.textContent = point.map(decimal).join("  ");
-    });
+    this.numbers.show(this.picture);
     this.host.moved?.(this.picture, this.#values);
   }
 }
 
-/** A sweep needs numbers only. */
+/** A sweep and a drawing need no formulas. */
 function withoutFormulas({ table, ...body }) {
   return table ? { ...body, table: { ...table, formulas: false } } : body;
-}
-
-/** Three decimals, without a negative zero. */
-function decimal(value) {
-  return (Math.round(value * 1000) / 1000 + 0).toFixed(3).replace(/^-(0\.000)$/, "$1");
 }
 
 /** A size for the parts of a chain without a mechanism. */

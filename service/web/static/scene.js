@@ -1,7 +1,7 @@
 // The stage of the 3D view: a camera that goes around, and what is drawn. Nothing is drawn again before
 // something has changed.
 
-import { Color, DirectionalLight, HemisphereLight, MOUSE, PerspectiveCamera, Scene, SRGBColorSpace, Vector3, WebGLRenderer } from "./three-0.185.1.module.min.js";
+import { Color, DirectionalLight, HemisphereLight, MOUSE, PerspectiveCamera, Scene, SRGBColorSpace, Vector2, Vector3, WebGLRenderer } from "./three-0.185.1.module.min.js";
 import { OrbitControls } from "./three-0.185.1.orbit-controls.js";
 import { column } from "./motion.js";
 import { paletteOf } from "./palette.js";
@@ -10,6 +10,10 @@ import { Shapes, vector } from "./shapes.js";
 
 const FIELD_OF_VIEW = 28;
 const STEEPEST = 1.55;
+// A processor that draws has to leave out what a graphics card does for nothing: it draws coarsely while
+// something moves, and finely after so many milliseconds without.
+const AT_REST = 200;
+const FINE = 2;
 
 export class RobotScene {
   #picture = null;
@@ -17,10 +21,12 @@ export class RobotScene {
   #asked = 0;
   #fitted = false;
 
-  /** `stage` is the element that the canvas fills. */
-  constructor(stage) {
+  /** `stage` is the element that the canvas fills; `inSoftware` says that no graphics card draws. */
+  constructor(stage, inSoftware = false) {
     this.stage = stage;
-    this.renderer = new WebGLRenderer({ antialias: true, alpha: true });
+    this.size = new Vector2(1, 1);
+    this.inSoftware = inSoftware;
+    this.renderer = new WebGLRenderer({ antialias: !inSoftware, alpha: true });
     this.renderer.outputColorSpace = SRGBColorSpace;
     this.renderer.autoClear = false;
     this.canvas = this.renderer.domElement;
@@ -51,7 +57,7 @@ export class RobotScene {
     this.canvas.addEventListener("webglcontextrestored", () => this.draw());
   }
 
-  /** Say what is drawn: `{joints, convention, size, azimuth, elevation, solid, beside, shown, robot}`. */
+  /** Say what is drawn: `{kinds, rowKinds, convention, size, azimuth, elevation, solid, beside, shown, robot}`. */
   show(subject, picture) {
     this.#subject = subject;
     this.#picture = picture;
@@ -62,22 +68,23 @@ export class RobotScene {
 
   #build() {
     this.#clear();
-    const { joints, size, convention, solid } = this.#subject;
+    const { kinds, rowKinds, size, convention, solid } = this.#subject;
     const { frames, mechanism } = this.#picture;
     this.palette = paletteOf(this.stage);
-    this.shapes = new Shapes(this.palette);
-    this.mechanism = mechanism && new MechanismShape(this.shapes, joints, size, mechanism);
+    const [below, above] = (this.shapes = [new Shapes(this.palette, this.solids, this.size), new Shapes(this.palette, this.over, this.size)]);
+    this.mechanism = mechanism && new MechanismShape(below, kinds, size, mechanism);
     const count = frames?.length ?? 0;
-    this.chain = count > 1 ? new ChainShape(this.shapes, joints, convention, size, count, solid) : null;
-    this.frames = count ? new FramesShape(this.shapes, count, 0.2 * size) : null;
+    this.chain = count > 1 ? new ChainShape(solid ? below : above, rowKinds, convention, size, count, solid) : null;
+    this.frames = count ? new FramesShape(above, count, 0.2 * size) : null;
     if (this.mechanism) this.solids.add(this.mechanism.group);
     if (this.chain) (solid ? this.solids : this.over).add(this.chain.group);
     if (this.frames) this.over.add(this.frames.group);
+    for (const each of this.shapes) each.finish();
   }
 
   #clear() {
     for (const part of [this.mechanism, this.chain, this.frames]) part?.group.removeFromParent();
-    this.shapes?.dispose();
+    for (const each of this.shapes ?? []) each.dispose();
   }
 
   recolour() {
@@ -157,8 +164,9 @@ export class RobotScene {
   #resize() {
     const { clientWidth: width, clientHeight: height } = this.stage;
     if (!width || !height) return;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setPixelRatio(this.#ratio(true));
     this.renderer.setSize(width, height);
+    this.size.set(width, height);
     const before = this.camera.aspect;
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
@@ -171,30 +179,28 @@ export class RobotScene {
     if (!this.#asked) this.#asked = requestAnimationFrame(() => this.#render());
   }
 
-  #render() {
+  /** Pixels of the canvas to those of the page. */
+  #ratio(fine) {
+    if (!this.inSoftware) return Math.min(devicePixelRatio, 2);
+    return fine ? FINE : 1;
+  }
+
+  #render(fine = !this.inSoftware) {
     cancelAnimationFrame(this.#asked);
+    clearTimeout(this.resting);
     this.#asked = 0;
-    this.#sizeLabels();
+    if (this.inSoftware && !fine) this.resting = setTimeout(() => this.#render(true), AT_REST);
+    if (this.renderer.getPixelRatio() !== this.#ratio(fine)) this.renderer.setPixelRatio(this.#ratio(fine));
+    for (const each of this.shapes ?? []) each.put();
     this.renderer.clear();
     this.renderer.render(this.solids, this.camera);
     this.renderer.clearDepth();
     this.renderer.render(this.over, this.camera);
   }
 
-  /** Labels keep their size in pixels, however far they are. */
-  #sizeLabels() {
-    const perPixel = (2 * Math.tan(((FIELD_OF_VIEW / 2) * Math.PI) / 180)) / Math.max(this.stage.clientHeight, 1);
-    const place = new Vector3();
-    this.over.updateMatrixWorld();
-    this.over.traverseVisible((each) => {
-      if (!each.isSprite) return;
-      const scale = each.userData.height * perPixel * this.camera.position.distanceTo(each.getWorldPosition(place));
-      each.scale.set(scale * each.userData.ratio, scale, 1);
-    });
-  }
-
   dispose() {
     cancelAnimationFrame(this.#asked);
+    clearTimeout(this.resting);
     this.stop.abort();
     this.themes.disconnect();
     this.resizing.disconnect();

@@ -1,40 +1,99 @@
-// What the 3D view is made of: rods, joints, frames and labels, from shared shapes of size 1.
+// What the 3D view is made of: rods, joints, frames and labels, from shared shapes of size 1. A part is
+// a place in the scene; all parts of one shape are drawn at once, which is what pictures cost most.
 
 import {
-  BoxGeometry, CanvasTexture, ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, MeshLambertMaterial,
-  SphereGeometry, Sprite, SpriteMaterial, SRGBColorSpace, Vector3,
+  BoxGeometry, Color, ConeGeometry, CylinderGeometry, Group, InstancedMesh, MeshBasicMaterial, MeshLambertMaterial,
+  Object3D, SphereGeometry, Vector3,
 } from "./three-0.185.1.module.min.js";
+import { Labels } from "./labels.js";
 
 const UP = new Vector3(0, 1, 0);
 const SHAPES = {
-  cylinder: new CylinderGeometry(1, 1, 1, 32),
-  thin: new CylinderGeometry(1, 1, 1, 10),
-  cone: new ConeGeometry(1, 1, 14),
+  cylinder: new CylinderGeometry(1, 1, 1, 28),
+  thin: new CylinderGeometry(1, 1, 1, 8),
+  cone: new ConeGeometry(1, 1, 10),
   box: new BoxGeometry(1, 1, 1),
-  sphere: new SphereGeometry(1, 16, 12),
+  sphere: new SphereGeometry(1, 12, 8),
 };
 
 export const vector = (numbers) => new Vector3(...numbers);
 
-export class Shapes {
-  #materials = new Map();
-  #labels = new Map();
+/** All parts of one shape, in any colours. */
+class Batch {
+  #parts = 0;
+  #mesh = null;
+  #count = 0;
 
-  constructor(palette) {
-    this.palette = palette;
+  constructor(shape, flat) {
+    this.geometry = SHAPES[shape];
+    this.material = flat ? new MeshBasicMaterial() : new MeshLambertMaterial();
   }
 
-  #material(name, flat) {
-    const key = `${name} ${flat}`;
-    if (!this.#materials.has(key)) {
-      const Kind = flat ? MeshBasicMaterial : MeshLambertMaterial;
-      this.#materials.set(key, new Kind({ color: this.palette[name] }));
-    }
-    return this.#materials.get(key);
+  part(colour) {
+    this.#parts += 1;
+    const part = new Object3D();
+    part.userData = { batch: this, colour: new Color(colour) };
+    return part;
+  }
+
+  begin() {
+    this.#count = 0;
+  }
+
+  add({ matrixWorld, userData: { colour } }) {
+    this.#mesh.setMatrixAt(this.#count, matrixWorld);
+    this.#mesh.setColorAt(this.#count, colour);
+    this.#count += 1;
+  }
+
+  end() {
+    this.#mesh.count = this.#count;
+    this.#mesh.instanceMatrix.needsUpdate = true;
+    if (this.#mesh.instanceColor) this.#mesh.instanceColor.needsUpdate = true;
+  }
+
+  /** What draws the parts that there are by now. */
+  get mesh() {
+    this.#mesh ??= new InstancedMesh(this.geometry, this.material, this.#parts);
+    this.#mesh.frustumCulled = false;
+    return this.#mesh;
+  }
+
+  dispose() {
+    this.#mesh?.removeFromParent();
+    this.#mesh?.dispose();
+    this.material.dispose();
+  }
+}
+
+/** The parts of one scene. */
+export class Shapes {
+  #batches = new Map();
+
+  /** `stage` holds the size of the stage in pixels. */
+  constructor(palette, scene, stage) {
+    this.palette = palette;
+    this.scene = scene;
+    this.stage = stage;
   }
 
   mesh(shape, colour, flat = false) {
-    return new Mesh(SHAPES[shape], this.#material(colour, flat));
+    const key = `${shape} ${flat}`;
+    if (!this.#batches.has(key)) this.#batches.set(key, new Batch(shape, flat));
+    return this.#batches.get(key).part(this.palette[colour]);
+  }
+
+  /** Nothing is added from here on. */
+  finish() {
+    for (const batch of this.#batches.values()) this.scene.add(batch.mesh);
+  }
+
+  /** Put all parts that are visible where they are in the scene by now. */
+  put() {
+    for (const batch of this.#batches.values()) batch.begin();
+    this.scene.updateMatrixWorld();
+    this.scene.traverseVisible((each) => each.userData.batch?.add(each));
+    for (const batch of this.#batches.values()) batch.end();
   }
 
   /** A rod along `count` corners, with round elbows. */
@@ -66,43 +125,14 @@ export class Shapes {
     return group;
   }
 
-  /** A text that faces the viewer, `height` pixels high. */
   label(text, colour, height) {
-    const key = `${text} ${colour}`;
-    if (!this.#labels.has(key)) this.#labels.set(key, written(text, this.palette[colour], this.palette.paper));
-    const { material, ratio } = this.#labels.get(key);
-    const sprite = new Sprite(material);
-    sprite.userData = { height, ratio };
-    sprite.renderOrder = 1;
-    return sprite;
+    if (!this.#batches.has("label")) this.#batches.set("label", new Labels(this.palette, this.stage));
+    return this.#batches.get("label").part(text, colour, height);
   }
 
   dispose() {
-    for (const material of this.#materials.values()) material.dispose();
-    for (const { material } of this.#labels.values()) {
-      material.map.dispose();
-      material.dispose();
-    }
+    for (const batch of this.#batches.values()) batch.dispose();
   }
-}
-
-function written(text, colour, halo) {
-  const canvas = document.createElement("canvas");
-  const size = 48;
-  const font = `600 ${0.72 * size}px system-ui, "DejaVu Sans", sans-serif`;
-  let context = canvas.getContext("2d");
-  context.font = font;
-  canvas.width = Math.ceil(context.measureText(text).width + 0.2 * size);
-  canvas.height = size;
-  context = canvas.getContext("2d");
-  Object.assign(context, { font, textAlign: "center", textBaseline: "middle", lineJoin: "round", lineWidth: 6 });
-  context.strokeStyle = halo;
-  context.fillStyle = typeof colour === "number" ? `#${colour.toString(16).padStart(6, "0")}` : colour;
-  context.strokeText(text, canvas.width / 2, size / 2);
-  context.fillText(text, canvas.width / 2, size / 2);
-  const map = new CanvasTexture(canvas);
-  map.colorSpace = SRGBColorSpace;
-  return { material: new SpriteMaterial({ map, depthTest: false, transparent: true }), ratio: canvas.width / size };
 }
 
 /** Lay a mesh whose shape is along y from one point to another. */

@@ -1,0 +1,124 @@
+// The names in the 3D view: texts that face the viewer, of a fixed size in pixels. All are drawn at once,
+// from one picture that holds each text once.
+
+import {
+  CanvasTexture, InstancedBufferAttribute, InstancedBufferGeometry, Mesh, Object3D, PlaneGeometry, ShaderMaterial, Vector2,
+} from "./three-0.185.1.module.min.js";
+
+// Pixels of a text in that picture, and the share of it that letters fill.
+const LINE = 48;
+const LETTERS = 0.72;
+const HALO = 6;
+const FONT = `600 ${LETTERS * LINE}px system-ui, "DejaVu Sans", sans-serif`;
+const VERTEX = `
+  attribute vec3 place; attribute vec4 piece; attribute vec4 box;
+  uniform vec2 stage; varying vec2 at;
+  void main() {
+    at = piece.xy + uv * piece.zw;
+    gl_Position = projectionMatrix * viewMatrix * vec4(place, 1.0);
+    gl_Position.xy += (uv - box.zw) * box.xy * 2.0 / stage * gl_Position.w;
+  }`;
+const FRAGMENT = `
+  uniform sampler2D texts; varying vec2 at;
+  void main() { gl_FragColor = texture2D(texts, at); }`;
+
+/** All labels of a scene; like a `Batch` of shapes. */
+export class Labels {
+  #texts = new Map();
+  #parts = 0;
+  #count = 0;
+  #mesh = null;
+
+  /** `stage` holds the size of the stage in pixels. */
+  constructor(palette, stage) {
+    this.palette = palette;
+    this.stage = stage;
+  }
+
+  /** A text `height` pixels high, whose `centre` (from its lower left corner, of size 1) is where the part is. */
+  part(text, colour, height) {
+    this.#parts += 1;
+    const key = `${text} ${colour}`;
+    if (!this.#texts.has(key)) this.#texts.set(key, { text, colour });
+    const part = new Object3D();
+    part.userData = { batch: this, text: this.#texts.get(key), height, centre: new Vector2(0.5, 0.5) };
+    return part;
+  }
+
+  begin() {
+    this.#count = 0;
+  }
+
+  add({ matrixWorld, userData: { text, height, centre } }) {
+    const { place, piece, box } = this.#mesh.geometry.attributes;
+    place.setXYZ(this.#count, ...matrixWorld.elements.slice(12, 15));
+    piece.setXYZW(this.#count, ...text.piece);
+    box.setXYZW(this.#count, height * text.ratio, height, centre.x, centre.y);
+    this.#count += 1;
+  }
+
+  end() {
+    const { geometry } = this.#mesh;
+    geometry.instanceCount = this.#count;
+    for (const name of ["place", "piece", "box"]) geometry.attributes[name].needsUpdate = true;
+  }
+
+  /** What draws the labels that there are by now. */
+  get mesh() {
+    this.#mesh ??= this.#made();
+    return this.#mesh;
+  }
+
+  #made() {
+    const geometry = new InstancedBufferGeometry();
+    const { index, attributes } = new PlaneGeometry(1, 1);
+    geometry.setIndex(index);
+    geometry.setAttribute("position", attributes.position);
+    geometry.setAttribute("uv", attributes.uv);
+    for (const [name, size] of [["place", 3], ["piece", 4], ["box", 4]]) {
+      geometry.setAttribute(name, new InstancedBufferAttribute(new Float32Array(size * this.#parts), size));
+    }
+    const texts = new CanvasTexture(this.#written());
+    // Otherwise the halo would be mixed with the black of what is transparent.
+    texts.premultiplyAlpha = true;
+    const uniforms = { texts: { value: texts }, stage: { value: this.stage } };
+    const drawn = { vertexShader: VERTEX, fragmentShader: FRAGMENT, depthTest: false, transparent: true, premultipliedAlpha: true };
+    const material = new ShaderMaterial({ uniforms, ...drawn });
+    const mesh = new Mesh(geometry, material);
+    mesh.frustumCulled = false;
+    mesh.renderOrder = 1;
+    return mesh;
+  }
+
+  /** The picture of all texts, one below the other. */
+  #written() {
+    const canvas = document.createElement("canvas");
+    const texts = [...this.#texts.values()];
+    let context = canvas.getContext("2d");
+    context.font = FONT;
+    const widths = texts.map(({ text }) => Math.ceil(context.measureText(text).width + 0.2 * LINE));
+    canvas.width = Math.max(...widths);
+    canvas.height = LINE * texts.length;
+    context = canvas.getContext("2d");
+    Object.assign(context, { font: FONT, textAlign: "center", textBaseline: "middle", lineJoin: "round", lineWidth: HALO });
+    context.strokeStyle = this.palette.paper;
+    texts.forEach((each, i) => {
+      const colour = this.palette[each.colour];
+      context.fillStyle = typeof colour === "number" ? `#${colour.toString(16).padStart(6, "0")}` : colour;
+      const [x, y] = [widths[i] / 2, (i + 0.5) * LINE];
+      context.strokeText(each.text, x, y);
+      context.fillText(each.text, x, y);
+      each.ratio = widths[i] / LINE;
+      each.piece = [0, 1 - (i + 1) / texts.length, widths[i] / canvas.width, 1 / texts.length];
+    });
+    return canvas;
+  }
+
+  dispose() {
+    if (!this.#mesh) return;
+    this.#mesh.removeFromParent();
+    this.#mesh.geometry.dispose();
+    this.#mesh.material.uniforms.texts.value.dispose();
+    this.#mesh.material.dispose();
+  }
+}

@@ -1,0 +1,108 @@
+// Where the robot is shown: a 3D view with buttons and keys for whoever has no mouse, or, in a browser
+// without WebGL, a drawing by the service.
+
+import { h } from "./dom.js";
+
+const TURN = Math.PI / 12;
+const NEARER = 1.25;
+const IN_SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+
+/** How the browser draws in 3D: "hardware", "software", or null where it does not at all. */
+function webGl() {
+  try {
+    const context = document.createElement("canvas").getContext("webgl2");
+    if (!context) return null;
+    const named = context.getExtension("WEBGL_debug_renderer_info");
+    const name = context.getParameter(named ? named.UNMASKED_RENDERER_WEBGL : context.RENDERER);
+    context.getExtension("WEBGL_lose_context")?.loseContext();
+    return IN_SOFTWARE.test(name) ? "software" : "hardware";
+  } catch {
+    return null;
+  }
+}
+
+export class Stage {
+  #scene = null;
+  #closed = false;
+
+  /** `draw(theme)` gives the SVG of the picture as it is, for a browser without WebGL. */
+  constructor(draw) {
+    this.draw = draw;
+    this.element = h("div", { class: "stage" });
+    this.isFlat = false;
+  }
+
+  /** Load what draws. */
+  async open() {
+    const drawnBy = webGl();
+    try {
+      if (!drawnBy) throw new Error("no WebGL");
+      const { RobotScene } = await import("./scene.js");
+      if (this.#closed) return;
+      this.#scene = new RobotScene(this.element, drawnBy === "software");
+      this.#controls();
+    } catch {
+      const reason = drawnBy ? "The 3D view could not be loaded." : "This browser has no WebGL, which the 3D view needs.";
+      await this.#openFlat(reason);
+    }
+  }
+
+  async #openFlat(reason) {
+    this.isFlat = true;
+    this.element.classList.add("flat");
+    this.element.replaceChildren(h("p", { class: "no-webgl" }, `${reason} The service draws the robot instead.`));
+    const { FlatScene } = await import("./flat_scene.js");
+    if (!this.#closed) this.#scene = new FlatScene(this.element, this.draw);
+  }
+
+  show(subject, picture) {
+    this.#scene?.show(subject, picture);
+  }
+
+  move(picture) {
+    this.#scene?.move(picture);
+  }
+
+  reset() {
+    this.#scene?.reset();
+  }
+
+  close() {
+    this.#closed = true;
+    this.#scene?.dispose();
+  }
+
+  #controls() {
+    const { canvas } = this.#scene;
+    canvas.tabIndex = 0;
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute("aria-label", "The robot in 3D. Arrow keys go around it, plus and minus zoom, 0 shows all of it.");
+    canvas.addEventListener("keydown", (event) => this.#pressed(event));
+    const button = (text, name, act) => h("button", { type: "button", title: name, "aria-label": name, onclick: act }, text);
+    const turn = (right, up) => () => this.#scene.turn(right * TURN, up * TURN);
+    this.element.append(
+      h(
+        "div",
+        { class: "stage-buttons", role: "group", "aria-label": "View" },
+        button("←", "View from further left", turn(-1, 0)),
+        button("→", "View from further right", turn(1, 0)),
+        button("↑", "View from higher", turn(0, 1)),
+        button("↓", "View from lower", turn(0, -1)),
+        button("+", "Zoom in", () => this.#scene.turn(0, 0, NEARER)),
+        button("−", "Zoom out", () => this.#scene.turn(0, 0, 1 / NEARER)),
+        button("⟲", "Reset view", () => this.#scene.reset()),
+      ),
+    );
+  }
+
+  #pressed(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const turns = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+    const zooms = { "+": NEARER, "=": NEARER, "-": 1 / NEARER };
+    if (turns[event.key]) this.#scene.turn(...turns[event.key].map((each) => each * TURN));
+    else if (zooms[event.key]) this.#scene.turn(0, 0, zooms[event.key]);
+    else if (event.key === "0" || event.key === "Home") this.#scene.reset();
+    else return;
+    event.preventDefault();
+  }
+}
