@@ -72,12 +72,28 @@ def free_play(page: Page, service: str) -> None:
     expect(page.locator(".robot-view")).to_have_attribute("aria-busy", "false")
 
 
+def solution(page: Page, service: str) -> None:
+    """A model solution, for tutors."""
+    page.goto(f"{service}/tutor/solutions/scara")
+    expect(page.locator("math mtable").first).to_be_visible()
+
+
+def editor(page: Page, service: str) -> None:
+    """The editor of exercise files, with a slip in the file."""
+    page.goto(f"{service}/tutor/editor?exercise=scara")
+    text = page.get_by_label("Exercise file, TOML")
+    text.fill(text.input_value().replace("points = ", "pionts = ", 1))
+    expect(page.locator("#findings")).to_contain_text("did you mean 'points'?")
+
+
 VIEWS: Final[Mapping[str, Callable[[Page, str], None]]] = {
     "catalogue": home,
     "exercise": exercise,
     "report": report,
     "robot-view": robot_view,
     "free-play": free_play,
+    "solution": solution,
+    "editor": editor,
 }
 
 
