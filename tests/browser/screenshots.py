@@ -82,8 +82,11 @@ def editor(page: Page, service: str) -> None:
     """The editor of exercise files, with a slip in the file."""
     page.goto(f"{service}/tutor/editor?exercise=scara")
     text = page.get_by_label("Exercise file, TOML")
+    expect(page.locator("#findings")).to_contain_text("Nothing to mend.")
     text.fill(text.input_value().replace("points = ", "pionts = ", 1))
     expect(page.locator("#findings")).to_contain_text("did you mean 'points'?")
+    page.locator("#findings").get_by_role("button", name="line").click()
+    page.evaluate("scrollTo(0, 0)")
 
 
 VIEWS: Final[Mapping[str, Callable[[Page, str], None]]] = {
@@ -112,6 +115,9 @@ def photograph(service: str) -> None:
                 page = browser.new_page(viewport=viewport, reduced_motion="reduce")
                 page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
                 for name, view in VIEWS.items():
+                    # Each view begins as a first visit does.
+                    page.goto(service)
+                    page.evaluate("localStorage.clear()")
                     view(page, service)
                     # The pictures, too.
                     page.wait_for_load_state("networkidle")

@@ -243,7 +243,9 @@ export class DhExercise extends HTMLElement {
     const theme = this.getAttribute("theme");
     const asked = theme === "light" || theme === "dark" ? `?theme=${theme}` : "";
     const address = this.service.address(`v1/exercises/${encodeURIComponent(this.exercise.id)}/figure.svg${asked}`);
-    return h("figure", {}, h("img", { src: address, alt: `Drawing of the robot: ${visible(this.exercise.title)}`, loading: "lazy" }));
+    // The text below must not jump when the drawing arrives.
+    const loaded = ({ target }) => target.classList.remove("loading");
+    return h("figure", {}, h("img", { src: address, alt: `Drawing of the robot: ${visible(this.exercise.title)}`, class: "loading", onload: loaded, onerror: loaded }));
   }
 
   #symbols(level) {

@@ -17,6 +17,7 @@ export class RobotView {
   #sweep = null;
   #turn = 0;
   #pending = 0;
+  #isWaiting = false;
   #dragging = false;
   #refit = false;
   #timer = 0;
@@ -75,8 +76,11 @@ export class RobotView {
   /** The table has changed: ask again after a pause. */
   changed() {
     this.#sweep = null;
+    // What is on its way is about the table as it was.
+    this.#turn += 1;
     clearTimeout(this.#timer);
-    this.element.setAttribute("aria-busy", true);
+    this.#isWaiting = true;
+    this.#busy(0);
     this.#timer = setTimeout(() => this.#refresh(), AFTER_A_KEY);
   }
 
@@ -104,7 +108,7 @@ export class RobotView {
   /** Say to whoever cannot see it that the picture is about to change. */
   #busy(step) {
     this.#pending += step;
-    this.element.setAttribute("aria-busy", this.#pending > 0);
+    this.element.setAttribute("aria-busy", this.#isWaiting || this.#pending > 0);
   }
 
   /** Ask for the picture at the joint values as they are. */
@@ -112,6 +116,7 @@ export class RobotView {
     const turn = ++this.#turn;
     const body = this.host.body();
     this.#dragging = false;
+    this.#isWaiting = false;
     this.#busy(0);
     if (!body) return this.#show(null);
     try {

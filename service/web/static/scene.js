@@ -127,7 +127,7 @@ export class RobotScene {
     const high = points.reduce((most, point) => most.max(point), low.clone());
     this.middle = low.clone().add(high).multiplyScalar(0.5);
     const up = new Vector3().crossVectors(this.towards, across);
-    const room = 0.24 * this.#subject.size;
+    const room = 0.29 * this.#subject.size;
     const half = Math.tan(((FIELD_OF_VIEW / 2) * Math.PI) / 180);
     const needed = points.map((point) => {
       const from = point.clone().sub(this.middle);

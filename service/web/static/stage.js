@@ -28,7 +28,8 @@ export class Stage {
   /** `draw(theme)` gives the SVG of the picture as it is, for a browser without WebGL. */
   constructor(draw) {
     this.draw = draw;
-    this.element = h("div", { class: "stage" });
+    this.room = h("div", { class: "stage" });
+    this.element = h("div", { class: "stage-frame" }, this.room);
     this.isFlat = false;
   }
 
@@ -39,7 +40,7 @@ export class Stage {
       if (!drawnBy) throw new Error("no WebGL");
       const { RobotScene } = await import("./scene.js");
       if (this.#closed) return;
-      this.#scene = new RobotScene(this.element, drawnBy === "software");
+      this.#scene = new RobotScene(this.room, drawnBy === "software");
       this.#controls();
     } catch {
       const reason = drawnBy ? "The 3D view could not be loaded." : "This browser has no WebGL, which the 3D view needs.";
@@ -49,10 +50,10 @@ export class Stage {
 
   async #openFlat(reason) {
     this.isFlat = true;
-    this.element.classList.add("flat");
-    this.element.replaceChildren(h("p", { class: "no-webgl" }, `${reason} The service draws the robot instead.`));
+    this.room.classList.add("flat");
+    this.room.replaceChildren(h("p", { class: "no-webgl" }, `${reason} The service draws the robot instead.`));
     const { FlatScene } = await import("./flat_scene.js");
-    if (!this.#closed) this.#scene = new FlatScene(this.element, this.draw);
+    if (!this.#closed) this.#scene = new FlatScene(this.room, this.draw);
   }
 
   show(subject, picture) {

@@ -1,0 +1,77 @@
+"""The tutor's editor where the service is told to write: Save, and what it refuses."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.api.serving import ROOT, announced_port
+from tests.browser.conftest import Visit
+from tests.guards import ANSWER
+
+Opening = Callable[..., Visit]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    made = tmp_path / "written"
+    made.mkdir()
+    return made
+
+
+@pytest.fixture
+def writing(folder: Path) -> Iterator[str]:
+    """The address of a service whose editor writes to the folder."""
+    log = folder.parent / "log"
+    command = [sys.executable, "-m", "service", "serve", "--port", "0"]
+    variables = {"NO_COLOR": "1", "DH_GRADER_EDITOR_DIR": str(folder)}
+    with (
+        log.open("wb") as output,
+        subprocess.Popen(
+            command, cwd=ROOT, stdout=output, stderr=output, env=os.environ | variables
+        ) as process,
+    ):
+        try:
+            yield f"http://127.0.0.1:{announced_port(process, log)}"
+        finally:
+            process.terminate()
+            process.wait(timeout=ANSWER)
+
+
+@pytest.mark.campaign
+def test_a_tutor_saves_an_exercise(visit: Opening, writing: str, folder: Path) -> None:
+    opened = visit()
+    page = opened.page
+    page.goto(f"{writing}/tutor/editor?exercise=scara")
+    text = page.get_by_label("Exercise file, TOML")
+    written = text.input_value()
+    # The shipped file stays; the folder has one of its own, which the editor opens from now on.
+    text.fill(written.replace("SCARA manipulator", "A robot", 1))
+    save = page.get_by_role("button", name="Save")
+    save.click()
+    told = page.get_by_role("status")
+    expect(told.filter(has_text="scara.toml is written")).to_be_visible()
+    file = folder / "scara.toml"
+    assert file.read_text(encoding="utf-8") == text.input_value() != written
+    page.reload()
+    expect(text).to_have_value(file.read_text(encoding="utf-8"))
+
+    # Somebody else has written it meanwhile: nothing is lost.
+    file.write_text(written, encoding="utf-8")
+    text.fill(f"{written}\n# mine\n")
+    save.click()
+    expect(told.filter(has_text="has changed")).to_be_visible()
+    assert file.read_text(encoding="utf-8") == written
+    # A text that is no exercise is not written, under whatever name.
+    text.fill("title = 1")
+    page.get_by_label("Id, the name").fill("../escaped")
+    save.click()
+    expect(told.filter(has_text="is written")).to_have_count(0)
+    expect(page.locator("#findings li").first).to_be_visible()
+    assert [each.name for each in folder.iterdir()] == ["scara.toml"]
+    assert all("409" in each for each in opened.complaints)
+    opened.complaints.clear()
