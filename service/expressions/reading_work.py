@@ -34,7 +34,7 @@ _WORTH_IT: Final = 40
 # What is counted together: none of the patterns above looks beyond it.
 _WORD: Final = re.compile(r"\\?[A-Za-z0-9_.]+|[^ ]")
 # A formula has few words, which come again and again. Other texts are counted in one piece.
-_MOST_WORDS: Final = 40
+_MOST_WORDS: Final = 100
 
 # Most texts are read again and again; longer ones are not worth the memory.
 _LONGEST_REMEMBERED: Final = 500
@@ -62,7 +62,7 @@ def reading_cost(text: str) -> int:
 
 
 def _of_text(text: str) -> _Count:
-    count = _of_formula(text) if len(text) <= _LONGEST_REMEMBERED else _scanned(text)
+    count = _remembered(text) if len(text) <= _LONGEST_REMEMBERED else _by_words(text)
     return _Count(count.symbols + len(text) // _CHARACTERS_PER_SYMBOL, count.extra)
 
 
@@ -92,5 +92,5 @@ def _scanned(text: str) -> _Count:
     return _Count(symbols, extra)
 
 
-_of_formula: Final = lru_cache(maxsize=8192)(_by_words)
+_remembered: Final = lru_cache(maxsize=8192)(_by_words)
 _of_word: Final = lru_cache(maxsize=2048)(_scanned)
