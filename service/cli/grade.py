@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
-from service.cli.interrupts import terminable
+from service.cli.interrupts import interruptible
 from service.cli.output import console_of, write
 from service.cli.output_folder import UnusableFolderError, is_for_folder, write_folder
 from service.cli.processes import WorkerLostError, jobs_for, mapped
@@ -188,11 +188,11 @@ def command(
     setting = Setting(terms.answered, console_of(output), datetime.now(UTC), os.environ, visibility)
     try:
         with (
-            terminable(),
+            interruptible() as check,
             progress(len(found)) as shown,
             _grading(grader, terms, found, jobs, output) as all_graded,
         ):
-            run = _Run(all_graded, shown)
+            run = _Run(all_graded, shown, check)
             if (
                 output
                 and taken.folder
@@ -249,15 +249,25 @@ def _grading(
 
 
 class _Run:
-    """The submissions as they are graded; ``exit_code`` is that of the worst so far."""
+    """The submissions as they are graded; ``exit_code`` is that of the worst so far.
 
-    def __init__(self, submissions: Iterable[GradedSubmission], shown: Progress) -> None:
+    ``check`` is called between them, and may end the run.
+    """
+
+    def __init__(
+        self,
+        submissions: Iterable[GradedSubmission],
+        shown: Progress,
+        check: Callable[[], None],
+    ) -> None:
         self._submissions = submissions
         self._shown = shown
+        self._check = check
         self.exit_code = 0
 
     def submissions(self) -> Iterator[GradedSubmission]:
         for submission in self._submissions:
+            self._check()
             for told in _complaints(submission):
                 self._shown.complain(told)
             self.exit_code = max(self.exit_code, _exit_code(submission))
