@@ -55,7 +55,7 @@ class Mutator:
                 self._answers(only, {})
                 body |= only
             else:
-                other = self._choose.choice(others).body["answers"] if others else {}
+                other = self._choose.choice(others).body.get("answers", {}) if others else {}
                 self._answers(body["answers"], other)
         if self._choose.random() < 0.03:
             body["angle_unit"] = self._choose.choice(("radians", "degrees"))

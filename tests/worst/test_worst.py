@@ -40,7 +40,7 @@ def test_a_body_that_was_costly_once(
 def test_each_kind_of_body_is_changed() -> None:
     mutator = Mutator(random.Random(1), cells())
     for attack in KNOWN.values():
-        found = {mutator.mutated(attack, [KNOWN["runs of letters"]]).content for _ in range(5)}
+        found = {mutator.mutated(attack, [*KNOWN.values()]).content for _ in range(5)}
         assert len(found) > 1, attack.entry
 
 
