@@ -4,36 +4,19 @@ import logging
 from http import HTTPStatus
 
 from fastapi import APIRouter, Request, Response
-from pydantic import BaseModel, Field
 
 from service.api.bodies import body_as, checked
 from service.api.lookup import Catalogue, ExerciseId, Location, exercise_or_404, require_parts
 from service.api.openapi import posting
-from service.api.problems import ProblemDocument, ProblemError, failed
+from service.api.problems import ProblemError, failed
 from service.api.turns import give_way
 from service.catalogue import Exercise, FeedbackLevel, least
+from service.contract.grading import GradeManyResponse
 from service.formats.json import rendered
 from service.grading import Report, grade
 from service.submissions.body import ExerciseSubmission, GradeManyRequest, GradeRequest
 
 _log = logging.getLogger(__name__)
-
-
-class GradeResult(BaseModel):
-    """The report on one submission, or the problem because of which there is none."""
-
-    report: Report | None = None
-    problem: ProblemDocument | None = Field(
-        None,
-        description="What the submission alone would have been refused with; `instance` is its "
-        "place in the request.",
-    )
-
-
-class GradeManyResponse(BaseModel):
-    """One result for each submission, in their order."""
-
-    results: list[GradeResult]
 
 
 def routes(catalogue: Catalogue, feedback: FeedbackLevel) -> APIRouter:

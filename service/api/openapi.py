@@ -12,7 +12,7 @@ from typing import Any, Final
 from pydantic import BaseModel
 
 from service.api.openapi_schemas import tidy_schemas
-from service.api.problems import MEDIA_TYPE, ProblemDocument
+from service.contract.problems import MEDIA_TYPE, ProblemDocument
 
 EXAMPLES = Path(__file__).parent / "examples"
 

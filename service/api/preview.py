@@ -1,16 +1,16 @@
 """The route that shows how a text is read, while the student still types."""
 
-from typing import Final, Literal
+from typing import Final
 
 from fastapi import APIRouter, Request, Response
-from pydantic import BaseModel, ConfigDict, Field
 
 from service.api.bodies import body_as
 from service.api.lookup import Catalogue, require_exercise, require_parts
 from service.api.openapi import posting
 from service.api.problems import invalid
 from service.catalogue import Exercise
-from service.expressions import ExpressionError, Kind, Symbol, Vocabulary, joint_variable, read
+from service.contract.preview import PreviewAnswer, PreviewRequest
+from service.expressions import ExpressionError, Symbol, Vocabulary, joint_variable, read
 from service.grading.reading.preview import preview_pasted
 
 JOINTS: Final = range(1, 10)
@@ -23,81 +23,6 @@ GENERIC: Final = Vocabulary(
         *(Symbol(f"{letter}{i}", "length") for letter in "adl" for i in JOINTS),
     ]
 )
-
-
-class PreviewRequest(BaseModel):
-    """A text, and the place that it is for."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    text: str = Field(
-        description="One entry as the student writes it, or a pasted table or matrix."
-    )
-    exercise: str | None = Field(
-        None,
-        description="The exercise whose symbols the text may use. Without it: joint angles theta1 "
-        "(or q1) to theta9, link twists alpha1 to alpha9, lengths a1, d1, l1 to a9, d9, l9.",
-    )
-    part: str | None = Field(None, description="The part that the text is for; needs `exercise`.")
-    angle_unit: Literal["radians", "degrees"] = Field(
-        "radians", description="What a bare number means where an angle is asked for."
-    )
-    quantity: Kind = Field(
-        "number", description="What is asked for there; matters for a bare number in degrees."
-    )
-
-
-class PreviewNote(BaseModel):
-    """Something worth knowing about how the text was read; ``span`` is [from, to) in it."""
-
-    # Its fields are picked from the reader's notes and errors.
-    model_config = ConfigDict(from_attributes=True)
-
-    code: str
-    message: str
-    span: tuple[int, int]
-
-
-class PreviewError(PreviewNote):
-    """The reason why the text cannot be read."""
-
-    suggestion: str | None = Field(None, description="The whole text, repaired.")
-
-
-class PreviewCell(BaseModel):
-    """The reading of one cell of a pasted table or matrix; labels are those of a report."""
-
-    model_config = ConfigDict(from_attributes=True)
-
-    row: str
-    column: str
-    span: tuple[int, int] = Field(description="[from, to) in the pasted text.")
-    typed: str
-    text: str
-    latex: str
-    mathml: str
-    symbols: list[str]
-    notes: list[PreviewNote]
-    error: PreviewError | None = Field(None, validation_alias="problem")
-
-
-class PreviewAnswer(BaseModel):
-    """The reading of the text, or the reason why it cannot be read.
-
-    Of one entry there is `text`, `latex`, `mathml` and `symbols`, or only `error`. Of a pasted
-    table or matrix there are `rows` of cells; `ok` then says that every cell was read.
-    """
-
-    ok: bool
-    rows: list[list[PreviewCell]] | None = Field(
-        None, description="The cells of a pasted table or matrix; needs `exercise` and `part`."
-    )
-    text: str | None = None
-    latex: str | None = None
-    mathml: str | None = None
-    symbols: list[str] | None = Field(None, description="The symbols used, by canonical name.")
-    notes: list[PreviewNote] | None = None
-    error: PreviewError | None = None
 
 
 def preview(body: PreviewRequest, vocabulary: Vocabulary) -> PreviewAnswer:

@@ -8,38 +8,15 @@ from typing import Any
 
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
-from pydantic import BaseModel, Field
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
+from service.contract.problems import MEDIA_TYPE, TYPE_PREFIX
 from service.submissions.strict_json import MAX_BODY_SIZE
 
-MEDIA_TYPE = "application/problem+json"
 MAX_ERRORS = 20
 
 Detail = Mapping[str, str | int]
-
-
-class Reason(BaseModel):
-    """One of several reasons."""
-
-    detail: str
-    pointer: str | None = Field(
-        None, description="Where in the body, as a JSON pointer (RFC 6901), or which parameter."
-    )
-    line: int | None = None
-    column: int | None = None
-
-
-class ProblemDocument(BaseModel):
-    """RFC 9457 problem details."""
-
-    type: str = Field(description="`about:blank`, or a stable URN that a program can tell by.")
-    title: str
-    status: int
-    detail: str
-    instance: str = Field(description="The path that was asked for.")
-    errors: list[Reason] | None = None
 
 
 @dataclass(eq=False)
@@ -60,7 +37,7 @@ class ProblemError(Exception):
     def content(self, instance: str) -> bytes:
         """The problem as JSON; ``instance`` is what was asked for."""
         document: dict[str, Any] = {
-            "type": f"urn:dh-grader:problem:{self.name}" if self.name else "about:blank",
+            "type": f"{TYPE_PREFIX}{self.name}" if self.name else "about:blank",
             "title": self.title or self.status.phrase,
             "status": int(self.status),
             "detail": self.detail,
