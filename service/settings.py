@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 from urllib.parse import urlsplit
 
-from pydantic import Field, ValidationError, field_validator
+from pydantic import Field, SecretStr, ValidationError, field_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from service.catalogue import FeedbackLevel, shipped_folder
@@ -38,6 +38,11 @@ class Settings(BaseSettings):
         False,
         description="Whether a change to an exercise file counts without a restart. A file that is "
         "broken by it keeps its last good version, and the log says what is wrong.",
+    )
+    database: SecretStr | None = Field(
+        None,
+        description="Where attempts are recorded: the path of an SQLite file, or the URL of a "
+        "PostgreSQL database (postgresql://user:password@host/name). Without it nothing is.",
     )
     solutions: bool = Field(
         False,

@@ -9,11 +9,12 @@ from fastapi import FastAPI
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp
 
-from service.api import exercises, grading, health, preview, problems, reference
+from service.api import attempts, exercises, grading, health, preview, problems, reference
 from service.api import solutions as model_solutions
 from service.api.boundary import BoundaryMiddleware
 from service.api.lookup import Catalogue
 from service.api.openapi import HEADING, completed, other_failures
+from service.attempts.store import AttemptStore
 from service.catalogue import FeedbackLevel
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.version import VERSION
@@ -22,8 +23,7 @@ from service.version import VERSION
 Layer = Callable[[ASGIApp], ASGIApp]
 
 
-@asynccontextmanager
-async def _freeze_gc(_: FastAPI) -> AsyncIterator[None]:
+def _freeze_gc() -> None:
     """Exempt the program's own objects from the garbage collector's rounds.
 
     A body of many small lists sets off full rounds; over the program itself, too, they took twice
@@ -31,15 +31,17 @@ async def _freeze_gc(_: FastAPI) -> AsyncIterator[None]:
     """
     gc.collect()
     gc.freeze()
-    yield
 
 
 class _Api(FastAPI):
     """FastAPI with its outermost layers outside the framework's own error pages and limit."""
 
-    def __init__(self, cors_origins: tuple[str, ...], turns: Layer | None) -> None:
+    def __init__(
+        self, cors_origins: tuple[str, ...], turns: Layer | None, store: AttemptStore | None
+    ) -> None:
         self._cors_origins = cors_origins
         self._turns = turns
+        self._store = store
         super().__init__(
             **HEADING,
             version=VERSION,
@@ -47,8 +49,17 @@ class _Api(FastAPI):
             redoc_url=None,
             redirect_slashes=False,
             max_body_size=MAX_BODY_SIZE,
-            lifespan=_freeze_gc,
+            lifespan=self._lifespan,
         )
+
+    @asynccontextmanager
+    async def _lifespan(self, _: FastAPI) -> AsyncIterator[None]:
+        if self._store is not None:
+            self._store.start()
+        _freeze_gc()
+        yield
+        if self._store is not None:
+            self._store.close()
 
     def build_middleware_stack(self) -> ASGIApp:
         """The framework's layers, the turns between clients, the boundary.
@@ -64,7 +75,7 @@ class _Api(FastAPI):
                 app,
                 allow_origins=self._cors_origins,
                 allow_methods=["GET", "POST"],
-                allow_headers=["Content-Type"],
+                allow_headers=["Content-Type", "Idempotency-Key"],
                 expose_headers=["Retry-After"],
             )
         return app
@@ -83,19 +94,22 @@ def application(
     solutions: bool = False,
     feedback: FeedbackLevel = FeedbackLevel.FULL,
     turns: Layer | None = None,
+    store: AttemptStore | None = None,
 ) -> FastAPI:
     """The HTTP service for these exercises; pages of ``cors_origins`` may call it.
 
     With ``solutions`` it shows the model solutions to whoever asks. Reports tell no more than
-    ``feedback``, nor than their exercise allows. ``turns`` decides who comes next.
+    ``feedback``, nor than their exercise allows. ``turns`` decides who comes next. Attempts are
+    recorded in ``store``; without one there are none.
     """
-    app = _Api(cors_origins, turns)
+    app = _Api(cors_origins, turns, store)
     problems.install(app)
     for router in (
         exercises.routes(catalogue, feedback),
         grading.routes(catalogue, feedback),
+        attempts.routes(catalogue, feedback, store),
         preview.routes(catalogue),
-        health.routes(catalogue),
+        health.routes(catalogue, store),
         model_solutions.routes(catalogue, shown=solutions),
     ):
         app.include_router(router, responses=other_failures())

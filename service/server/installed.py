@@ -3,21 +3,30 @@
 from fastapi import FastAPI
 
 from service.api.application import application
+from service.attempts.database import UnusableDatabaseError
+from service.attempts.store import AttemptStore
 from service.catalogue import open_catalogue
 from service.server.access_log import set_up_access_log
 from service.server.admission import FairAdmission
-from service.settings import Settings
+from service.settings import Settings, SettingsError
 
 
 def installed_app(settings: Settings) -> FastAPI:
-    """The application, with fair admission. Raises CatalogueError."""
+    """The application, with fair admission. Raises CatalogueError, SettingsError."""
     catalogue = open_catalogue(settings.exercises_dir, reload=settings.reload_exercises)
+    store = None
+    if settings.database is not None:
+        try:
+            store = AttemptStore.open(settings.database.get_secret_value())
+        except UnusableDatabaseError as error:
+            raise SettingsError(f"DH_GRADER_DATABASE: {error}") from error
     app = application(
         catalogue,
         settings.cors_origins,
         solutions=settings.solutions,
         feedback=settings.feedback,
         turns=FairAdmission,
+        store=store,
     )
     set_up_access_log(addresses=settings.log_addresses)
     return app

@@ -1,0 +1,63 @@
+"""The store of attempts: what a route of the service asks of it."""
+
+from typing import Final
+
+from sqlalchemy import Engine, text
+
+from service.attempts.database import open_database
+from service.attempts.outcome import Outcome
+from service.attempts.recording import NewAttempt, RecordedAttempt, Standing, record, standing
+from service.attempts.writer import Writer
+
+_ALIVE: Final = text("SELECT 1")
+
+
+class AttemptStore:
+    """The recorded attempts of one database.
+
+    Every method raises StoreDownError where the database fails; what it was to write is then not
+    written.
+    """
+
+    def __init__(self, engine: Engine) -> None:
+        self.engine = engine
+        self._writer: Writer | None = None
+
+    @classmethod
+    def open(cls, url: str) -> "AttemptStore":
+        """The store at a URL or in an SQLite file. Raises UnusableDatabaseError."""
+        engine = open_database(url)
+        # No connection may be carried into processes that are started later.
+        engine.dispose()
+        return cls(engine)
+
+    def start(self) -> None:
+        """Begin to take attempts, in the process that serves."""
+        self._writer = Writer(self.engine)
+
+    def close(self) -> None:
+        """Write what waits, and end."""
+        if self._writer is not None:
+            self._writer.close()
+            self._writer = None
+
+    async def standing(
+        self, exercise: str, learner: str, owner: str, idempotency_key: str | None
+    ) -> Standing:
+        """How a learner stands at an exercise, and what a request with this key has recorded."""
+        return await self._running.run(
+            lambda connection: standing(connection, exercise, learner, owner, idempotency_key)
+        )
+
+    async def record(self, new: NewAttempt, outcome: Outcome) -> RecordedAttempt | None:
+        """Write the attempt, durably; None where another took its ordinal or its key."""
+        return await self._running.run(lambda connection: record(connection, new, outcome))
+
+    async def check(self) -> None:
+        """Make sure that the database answers."""
+        await self._running.run(lambda connection: connection.execute(_ALIVE))
+
+    @property
+    def _running(self) -> Writer:
+        assert self._writer is not None, "the store has not been started"
+        return self._writer
