@@ -173,8 +173,9 @@ class _Attempting:
 
 def _answer(recorded: RecordedAttempt) -> bytes:
     """The attempt and its report as JSON; the report as it was written, byte by byte."""
-    attempt = Attempt.model_validate(recorded, from_attributes=True).model_dump_json()
-    return f'{{"attempt":{attempt},"report":{recorded.report}}}'.encode()
+    attempt = Attempt.model_validate(recorded, from_attributes=True)
+    told = attempt.model_dump_json(exclude_none=True)
+    return f'{{"attempt":{told},"report":{recorded.report}}}'.encode()
 
 
 def _digest(content: object) -> str:

@@ -7,7 +7,7 @@ from sqlalchemy import Engine, text
 from service.attempts.database import open_database
 from service.attempts.outcome import Outcome
 from service.attempts.recording import NewAttempt, RecordedAttempt, Standing, record, standing
-from service.attempts.writer import Writer
+from service.attempts.writer import AttemptWriter
 
 _ALIVE: Final = text("SELECT 1")
 
@@ -21,7 +21,7 @@ class AttemptStore:
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
-        self._writer: Writer | None = None
+        self._writer: AttemptWriter | None = None
 
     @classmethod
     def open(cls, url: str) -> "AttemptStore":
@@ -33,7 +33,7 @@ class AttemptStore:
 
     def start(self) -> None:
         """Begin to take attempts, in the process that serves."""
-        self._writer = Writer(self.engine)
+        self._writer = AttemptWriter(self.engine)
 
     def close(self) -> None:
         """Write what waits, and end."""
@@ -58,6 +58,6 @@ class AttemptStore:
         await self._running.run(lambda connection: connection.execute(_ALIVE))
 
     @property
-    def _running(self) -> Writer:
+    def _running(self) -> AttemptWriter:
         assert self._writer is not None, "the store has not been started"
         return self._writer

@@ -41,7 +41,7 @@ class UtcTime(TypeDecorator[datetime]):
 
 
 # In SQLite only a plain INTEGER counts on by itself.
-Number = BigInteger().with_variant(Integer, "sqlite")
+RowNumber = BigInteger().with_variant(Integer, "sqlite")
 
 metadata = MetaData(
     naming_convention={
@@ -57,7 +57,7 @@ metadata = MetaData(
 outcomes = Table(
     "outcomes",
     metadata,
-    Column("id", Number, primary_key=True),
+    Column("id", RowNumber, primary_key=True),
     Column("exercise", String(100), nullable=False),
     Column("digest", String(64), nullable=False),
     Column("content", Text, nullable=False),
@@ -69,7 +69,7 @@ outcomes = Table(
 attempts = Table(
     "attempts",
     metadata,
-    Column("number", Number, primary_key=True),
+    Column("number", RowNumber, primary_key=True),
     Column("id", String(32), nullable=False, unique=True),
     Column("exercise", String(100), nullable=False),
     Column("learner", String(200), nullable=False),
@@ -84,7 +84,7 @@ attempts = Table(
     Column("grader", String(32), nullable=False),
     Column("points", Float, nullable=False),
     Column("max_points", Float, nullable=False),
-    Column("outcome", Number, ForeignKey(outcomes.c.id), nullable=False),
+    Column("outcome", RowNumber, ForeignKey(outcomes.c.id), nullable=False),
     Column("owner", String(32), nullable=False),
     Column("idempotency_key", String(255)),
     Column("request_digest", String(64), nullable=False),

@@ -26,7 +26,7 @@ class _Job:
     done: "Future[Any]"
 
 
-class Writer:
+class AttemptWriter:
     """Runs functions on a connection, in the order in which they come; many in one transaction.
 
     A result is given only after the commit: what it says is durable. Where the transaction of

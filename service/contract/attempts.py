@@ -31,8 +31,9 @@ class Attempt(BaseModel):
     exercise: str
     learner: str
     ordinal: int | None = Field(
-        description="Which of the learner's attempts it is, from 1; null where nothing could be "
-        "read, so that it does not count."
+        None,
+        description="Which of the learner's attempts it is, from 1. Left out where nothing could "
+        "be read: such an attempt does not count.",
     )
     at: datetime
     is_late: bool

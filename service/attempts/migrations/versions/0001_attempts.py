@@ -3,7 +3,7 @@
 import sqlalchemy as sa
 from alembic import op
 
-from service.attempts.tables import Number, UtcTime
+from service.attempts.tables import RowNumber, UtcTime
 
 revision = "0001"
 down_revision = None
@@ -13,7 +13,7 @@ def upgrade() -> None:
     """Make the first tables."""
     op.create_table(
         "outcomes",
-        sa.Column("id", Number, primary_key=True),
+        sa.Column("id", RowNumber, primary_key=True),
         sa.Column("exercise", sa.String(100), nullable=False),
         sa.Column("digest", sa.String(64), nullable=False),
         sa.Column("content", sa.Text, nullable=False),
@@ -21,7 +21,7 @@ def upgrade() -> None:
     )
     op.create_table(
         "attempts",
-        sa.Column("number", Number, primary_key=True),
+        sa.Column("number", RowNumber, primary_key=True),
         sa.Column("id", sa.String(32), nullable=False),
         sa.Column("exercise", sa.String(100), nullable=False),
         sa.Column("learner", sa.String(200), nullable=False),
@@ -36,7 +36,7 @@ def upgrade() -> None:
         sa.Column("grader", sa.String(32), nullable=False),
         sa.Column("points", sa.Float, nullable=False),
         sa.Column("max_points", sa.Float, nullable=False),
-        sa.Column("outcome", Number, sa.ForeignKey("outcomes.id"), nullable=False),
+        sa.Column("outcome", RowNumber, sa.ForeignKey("outcomes.id"), nullable=False),
         sa.Column("owner", sa.String(32), nullable=False),
         sa.Column("idempotency_key", sa.String(255)),
         sa.Column("request_digest", sa.String(64), nullable=False),
