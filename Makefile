@@ -24,7 +24,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test coverage lint format bench fuzz attack worst campaign policies prints slips clients lock clean
+.PHONY: help install run test browser screenshots coverage lint format bench fuzz attack worst campaign policies prints slips clients wheel image lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' Makefile
@@ -38,7 +38,14 @@ run: $(runtime) ## start the service on http://127.0.0.1:8000 (HOST=, PORT=)
 pytest := $(python) -m pytest -n auto --dist worksteal
 
 test: lint ## lint, type-check and test on every core
+	-@$(python) -m tests.browser.chromium
 	$(pytest)
+
+browser: $(dev) ## say which Chromium the browser tests use; fetch one from npm where there is none
+	$(python) -m tests.browser.chromium
+
+screenshots: $(dev) ## photograph every view into docs/screenshots
+	$(python) -m tests.browser.screenshots
 
 coverage: $(dev) ## the same tests, and the lines that none of them runs (twice the time)
 	$(pytest) --cov
@@ -76,11 +83,17 @@ policies: $(dev) ## grade tables of ROBOTS= unseen robots under each policy, 20 
 clients: $(dev) ## lint the OpenAPI document and use clients that are generated from it (npx, network)
 	$(python) -m tests.clients
 
+wheel: $(dev) ## install the built wheel with pip and pipx on every Python that is there (network)
+	$(python) -m tests.installed
+
 slips: $(dev) ## spoil the poses of all robots by each single slip of the table: is it named?
 	$(python) -m tests.pose_slips --show
 
 prints: $(dev) ## hand in the model solution of every exercise as each program prints it
 	$(python) -m tests.solutions.prints
+
+image: $(dev) ## build the image and try it: no root, nothing to write to, health (docker, podman or buildah)
+	$(python) -m tests.installed.image
 
 # Only pins that pyproject.toml no longer allows are changed; `make lock UPGRADE=--upgrade` takes the newest.
 # One resolution serves every Python and platform; later files repeat the pins of earlier ones.

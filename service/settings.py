@@ -59,6 +59,10 @@ class Settings(BaseSettings):
         description="Web pages that may call from a browser, as origins with commas between them "
         "(https://course.example.edu); * for all, and by default none.",
     )
+    server: str | None = Field(
+        None, description="The service that `grade` has submissions graded by; none grades here."
+    )
+    key: SecretStr | None = Field(None, description="The key that `grade` shows this service.")
     log_level: Literal["critical", "error", "warning", "info", "debug"] = Field(
         "info", description="What is logged."
     )

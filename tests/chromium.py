@@ -2,7 +2,6 @@
 
 import json
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -10,10 +9,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from tests.browser.chromium import find_chromium
+
 Message = dict[str, Any]
 
-_NAMES = ("chromium", "chromium-browser", "google-chrome")
-PROGRAM = next(filter(None, map(shutil.which, _NAMES)), None)
+FOUND = find_chromium()
 # The browser reads file 3 and writes file 4.
 _ON_THE_PIPES = """
 import os, sys
@@ -55,6 +55,11 @@ class Page:
         """Show pages as on this medium, "screen" or "print", in this colour scheme."""
         features = [{"name": "prefers-color-scheme", "value": scheme}]
         self._call("Emulation.setEmulatedMedia", media=media, features=features)
+
+    def resize(self, width: int, height: int = 800) -> None:
+        """Show pages in a window of this size, in CSS pixels."""
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        self._call("Emulation.setDeviceMetricsOverride", **size)
 
     def wait_for(self, expression: str) -> Any:
         """The value of an expression of JavaScript as soon as it is true; the test's own timeout
@@ -105,7 +110,7 @@ class Page:
 @contextmanager
 def blank_page() -> Iterator[Page]:
     """A page of a fresh browser, which ends with it."""
-    assert PROGRAM is not None
+    assert FOUND is not None
     to_browser, commands = os.pipe()
     answers, from_browser = os.pipe()
     rights = ["--no-sandbox"] if os.geteuid() == 0 else []
@@ -114,9 +119,10 @@ def blank_page() -> Iterator[Page]:
         subprocess.Popen(
             [
                 *(sys.executable, "-c", _ON_THE_PIPES, str(to_browser), str(from_browser)),
-                *(PROGRAM, *_OPTIONS, *rights, f"--user-data-dir={folder}"),
+                *(FOUND.program, *_OPTIONS, *rights, f"--user-data-dir={folder}"),
             ],
             pass_fds=(to_browser, from_browser),
+            env={**os.environ, **FOUND.environment},
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         ) as process,

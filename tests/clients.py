@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Final
 
 from service.app import app
-from tests.api.serving import announced_port
+from tests.api.serving import served
 
 _TYPESCRIPT: Final = """\
 import type { components, operations } from "./schema";
@@ -114,18 +114,8 @@ def python(folder: Path) -> None:
         "--fail-on-warning",
     )  # fmt: skip
     (folder / "use.py").write_text(_PYTHON, encoding="utf-8")
-    log = folder / "log"
-    serve = [sys.executable, "-m", "service", "serve", "--port", "0"]
-    with (
-        log.open("wb") as output,
-        subprocess.Popen(
-            serve, stdout=output, stderr=output, env=os.environ | {"NO_COLOR": "1"}
-        ) as process,
-    ):
-        try:
-            run(folder, own, "use.py", f"http://127.0.0.1:{announced_port(process, log)}")
-        finally:
-            process.terminate()
+    with served(folder) as server:
+        run(folder, own, "use.py", server.address)
 
 
 def main() -> None:

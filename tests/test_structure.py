@@ -20,7 +20,8 @@ TESTS = ROOT / "tests"
 # Each package, or file of service/ itself, may import those that stand before it.
 PACKAGES = (
     "version", "expressions", "grids", "kinematics", "catalogue", "grading", "solutions", "figures",
-    "authoring", "submissions", "contract", "formats", "attempts", "access", "client", "settings",
+    "authoring", "submissions", "contract", "statistics", "formats", "bundles", "attempts",
+    "access", "client", "settings",
     "kinds_check", "api", "web", "server", "cli", "app", "__main__",
 )  # fmt: skip
 
@@ -41,7 +42,17 @@ GRADING_ROOMS = 16
 LINES = 400
 
 # Folders of tests that are about something else than a package of service/.
-SUITES = {"docs", "exercises", "frame_choice", "pose_slips", "benchmarks", "attack", "worst"}
+SUITES = {
+    "docs",
+    "installed",
+    "exercises",
+    "frame_choice",
+    "pose_slips",
+    "benchmarks",
+    "attack",
+    "worst",
+    "browser",
+}
 
 
 def module_name(file: Path) -> str:

@@ -5,11 +5,21 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from typing import Any
 
-from fastapi import FastAPI
+from fastapi import APIRouter, FastAPI
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp
 
-from service.api import attempts, exercises, grading, health, preview, problems, reference
+from service.api import (
+    attempts,
+    exercises,
+    figures,
+    frames,
+    grading,
+    health,
+    preview,
+    problems,
+    reference,
+)
 from service.api import solutions as model_solutions
 from service.api.boundary import BoundaryMiddleware
 from service.api.lookup import Catalogue
@@ -95,12 +105,13 @@ def application(
     feedback: FeedbackLevel = FeedbackLevel.FULL,
     turns: Layer | None = None,
     store: AttemptStore | None = None,
+    pages: APIRouter | None = None,
 ) -> FastAPI:
     """The HTTP service for these exercises; pages of ``cors_origins`` may call it.
 
     With ``solutions`` it shows the model solutions to whoever asks. Reports tell no more than
-    ``feedback``, nor than their exercise allows. ``turns`` decides who comes next. Attempts are
-    recorded in ``store``; without one there are none.
+    ``feedback``, nor than their exercise allows. ``turns`` decides who comes next, ``pages`` are
+    the web pages of the service itself. Attempts are recorded in ``store``; without one none are.
     """
     app = _Api(cors_origins, turns, store)
     problems.install(app)
@@ -109,9 +120,13 @@ def application(
         grading.routes(catalogue, feedback),
         attempts.routes(catalogue, feedback, store),
         preview.routes(catalogue),
+        figures.routes(catalogue),
+        frames.routes(catalogue),
         health.routes(catalogue, store),
         model_solutions.routes(catalogue, shown=solutions),
     ):
         app.include_router(router, responses=other_failures())
     app.include_router(reference.routes())
+    if pages is not None:
+        app.include_router(pages)
     return app

@@ -83,7 +83,7 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel, store: AttemptStore | 
             raise store_down(detail) from error
         except AttemptRefusedError as error:
             raise ProblemError(
-                HTTPStatus.FORBIDDEN, str(error), error.code, "The attempt is not taken"
+                HTTPStatus.FORBIDDEN, str(error), error.name, "The attempt is not taken"
             ) from error
         return Response(_answer(recorded), HTTPStatus.CREATED, media_type="application/json")
 

@@ -7,6 +7,7 @@ from fastapi import APIRouter
 
 from service.api.lookup import Catalogue, ExerciseId, exercise_or_404
 from service.api.openapi import refusals
+from service.api.statement import statement_html
 from service.catalogue import FeedbackLevel, least
 from service.contract.exercises import ExerciseList, ExerciseView
 
@@ -41,7 +42,13 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel) -> APIRouter:
         exercise = exercise_or_404(catalogue, exercise_id)
         fields = {name: getattr(exercise, name, None) for name in ExerciseView.model_fields}
         parts = [{**dict(part), "shape": part.shape(exercise.reference)} for part in exercise.parts]
-        ceiling = least(exercise.feedback, feedback)
-        return {**fields, "feedback": ceiling, "symbols": exercise.variables, "parts": parts}
+        return {
+            **fields,
+            "statement_html": statement_html(exercise.statement),
+            "figure": exercise.reference is not None,
+            "feedback": least(exercise.feedback, feedback),
+            "symbols": exercise.variables,
+            "parts": parts,
+        }
 
     return router

@@ -57,6 +57,10 @@ message of a code that your program does not know. A field that says nothing is 
             "answering. Never an answer.",
         },
         {"name": "attempts", "description": "Attempts that are recorded, where a database is set."},
+        {
+            "name": "drawing",
+            "description": "Numbers to draw with, so that no page needs a kinematics of its own.",
+        },
         {"name": "preview", "description": "How a text is read, while the student still types."},
         {
             "name": "solutions",
@@ -73,6 +77,9 @@ def example(name: str) -> Any:
     return json.loads((EXAMPLES / f"{name}.json").read_text(encoding="utf-8"))
 
 
+_REF_TEMPLATE: Final = "#/components/schemas/{model}"
+
+
 def posting(
     body: type[BaseModel],
     model: type,
@@ -84,7 +91,8 @@ def posting(
 
     ``name`` begins the names of its two examples; ``further`` are refusals beside those of a body.
     """
-    content = {"schema": body.model_json_schema(), "example": example(f"{name}-request")}
+    schema = body.model_json_schema(ref_template=_REF_TEMPLATE)
+    content = {"schema": schema, "example": example(f"{name}-request")}
     request = {"required": True, "content": {"application/json": content}}
     refused = sorted([*_REFUSED_BODIES, *further])
     responses = answers(model, f"{name}-response", *refused, success=success)
@@ -113,7 +121,7 @@ def other_failures() -> dict[int | str, dict[str, Any]]:
 
 
 def _problem(description: str) -> dict[str, Any]:
-    schema = ProblemDocument.model_json_schema(ref_template="#/components/schemas/{model}")
+    schema = ProblemDocument.model_json_schema(ref_template=_REF_TEMPLATE)
     return {"description": description, "content": {MEDIA_TYPE: {"schema": schema}}}
 
 

@@ -17,6 +17,7 @@ _PUBLIC_NAMES: Final = {
     "Alive": "Liveness",
     "ComponentView": "ListComponent",
     "ExerciseView": "Exercise",
+    "FramesAnswer": "Frames",
     "LinkSolution": "LinkTransform",
     "PartAnswer": "PartSolution",
     "PartView": "Part",
@@ -30,6 +31,8 @@ _PUBLIC_NAMES: Final = {
 # The names of choices, which the models write out.
 _CHOICES: Final = {
     ("angle", "length", "number"): "Quantity",
+    ("R", "P"): "JointKind",
+    ("auto", "light", "dark"): "Theme",
     ("content", "cells", "rows", "whole"): "Marking",
     ("full", "hints", "verdicts", "score"): "FeedbackLevel",
     ("given", "free"): "FrameFreedom",

@@ -9,9 +9,14 @@ from service.api.lookup import Catalogue, require_exercise, require_parts
 from service.api.openapi import posting
 from service.api.problems import invalid
 from service.catalogue import Exercise
-from service.contract.preview import PreviewAnswer, PreviewRequest
+from service.contract.preview import (
+    PreviewAnswer,
+    PreviewManyRequest,
+    PreviewManyResponse,
+    PreviewRequest,
+)
 from service.expressions import ExpressionError, Symbol, Vocabulary, joint_variable, read
-from service.grading.reading.preview import preview_pasted
+from service.grading.reading.preview import CellPreview, preview_entries, preview_pasted
 
 JOINTS: Final = range(1, 10)
 
@@ -41,6 +46,20 @@ def preview(body: PreviewRequest, vocabulary: Vocabulary) -> PreviewAnswer:
             "notes": expression.notes,
         }
     )
+
+
+def preview_many(body: PreviewManyRequest, exercise: Exercise) -> PreviewManyResponse:
+    """The readings of the entries, as a grading reads them; they share its work budget."""
+    entries = [(entry.text, entry.quantity) for entry in body.entries]
+    cells = preview_entries(entries, exercise, body.part, body.angle_unit)
+    return PreviewManyResponse(results=[_answer(cell) for cell in cells])
+
+
+def _answer(cell: CellPreview) -> PreviewAnswer:
+    if cell.problem:
+        return PreviewAnswer.model_validate({"ok": False, "error": cell.problem})
+    read = {name: getattr(cell, name) for name in ("text", "latex", "mathml", "symbols", "notes")}
+    return PreviewAnswer.model_validate({"ok": True, **read})
 
 
 # Characters between the cells of a table or matrix, which no single entry holds.
@@ -86,6 +105,25 @@ def routes(catalogue: Catalogue) -> APIRouter:
             # A text that is no grid either is better explained as the one entry that it may be.
             shown = grid if grid.rows or "\n" in body.text else shown
         content = shown.model_dump_json(exclude_none=True)
+        return Response(content, media_type="application/json")
+
+    @router.post(
+        "/previews",
+        operation_id="previewMany",
+        summary="Show how the entries of a part are read",
+        response_description="The reading of each entry, in their order.",
+        **posting(PreviewManyRequest, PreviewManyResponse, "preview-many"),
+    )
+    async def preview_entries_of_part(request: Request) -> Response:
+        """Show how several entries of one part are read, each on its own.
+
+        They are read as a grading reads them: a star marks a joint's variable in a table. Entries
+        beyond the work that one submission may cost are shown as text only.
+        """
+        body = await body_as(PreviewManyRequest, request)
+        exercise = require_exercise(catalogue, body.exercise)
+        require_parts(exercise, [(body.part, ("part",))])
+        content = preview_many(body, exercise).model_dump_json(exclude_none=True)
         return Response(content, media_type="application/json")
 
     return router

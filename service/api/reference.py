@@ -10,8 +10,8 @@ from typing import Final
 
 from fastapi import APIRouter
 from starlette.responses import HTMLResponse, Response
-from starlette.types import Receive, Scope, Send
 
+from service.api.piecewise import PiecewiseResponse
 from service.api.problems import ProblemError
 
 FOLDER: Final = Path(__file__).parent / "swagger_ui"
@@ -53,22 +53,6 @@ _FILES: Final = {
 }
 
 
-# Bytes that are handed to the server at once.
-_PIECE: Final = 16 * 1024
-
-
-class _FileResponse(Response):
-    """A file that is in memory, sent piece by piece: whoever does not read it holds one piece."""
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:  # noqa: ARG002
-        """Serve one ASGI connection."""
-        start = {"status": self.status_code, "headers": self.raw_headers}
-        await send({"type": "http.response.start", **start})
-        for i in range(0, len(self.body), _PIECE):
-            piece, more = self.body[i : i + _PIECE], i + _PIECE < len(self.body)
-            await send({"type": "http.response.body", "body": piece, "more_body": more})
-
-
 def routes() -> APIRouter:
     """The page and its files."""
     router = APIRouter(include_in_schema=False)
@@ -86,6 +70,6 @@ def routes() -> APIRouter:
             raise ProblemError(HTTPStatus.NOT_FOUND, "The page /docs has no such file.")
         media_type, caching = _FILES[name]
         headers = {"Cache-Control": caching}
-        return _FileResponse(contents[name], headers=headers, media_type=media_type)
+        return PiecewiseResponse(contents[name], headers=headers, media_type=media_type)
 
     return router

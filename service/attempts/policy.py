@@ -7,10 +7,10 @@ from service.catalogue.attempts import AttemptsSpec
 
 
 class AttemptRefusedError(Exception):
-    """No attempt is taken; ``code`` and the text say why, in words for the learner."""
+    """No attempt is taken; the text says why, in words for the learner, ``name`` for programs."""
 
-    def __init__(self, code: str, message: str) -> None:
-        self.code = code
+    def __init__(self, name: str, message: str) -> None:
+        self.name = name
         super().__init__(message)
 
 

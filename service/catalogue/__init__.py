@@ -6,8 +6,6 @@ from service.catalogue.formulas import FormulaGrid, grid_values
 from service.catalogue.live import open_catalogue
 from service.catalogue.load import (
     ID_ADVICE,
-    CatalogueError,
-    Fault,
     exercise_files,
     is_exercise_id,
     load_catalogue,
@@ -15,9 +13,11 @@ from service.catalogue.load import (
     shipped_folder,
 )
 from service.catalogue.part import PartSpec, PosePartSpec
+from service.catalogue.regular_file import read_regular
 from service.catalogue.robot import Joint, ReferenceTable, Robot
 from service.catalogue.schema import CheckSpec
 from service.catalogue.screw_robot import ScrewRobot
+from service.catalogue.toml_file import CatalogueError, Fault
 from service.catalogue.variables import Variable
 
 __all__ = [
@@ -42,5 +42,6 @@ __all__ = [
     "load_catalogue",
     "load_exercise",
     "open_catalogue",
+    "read_regular",
     "shipped_folder",
 ]

@@ -42,7 +42,7 @@ DEFAULT_RANGES: dict[Kind, tuple[float, float]] = {
     "number": (0.5, 2.0),
 }
 # The fields of a file that change no grading.
-_NOT_GRADING = {"checks", "feedback", "attempts"}
+_NOT_GRADING = {"checks", "feedback", "attempts", "view"}
 
 
 def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
@@ -73,6 +73,7 @@ def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
         checks=tuple(spec.checks),
         feedback_by_attempt=_levels(spec.feedback),
         attempts=spec.attempts,
+        view=spec.view,
     )
 
 
@@ -127,8 +128,8 @@ def _levels(feedback: FeedbackLevel | list[FeedbackLevel]) -> tuple[FeedbackLeve
 def _version(spec: ExerciseSpec) -> str:
     """A digest of the file's content; comments, layout and checks do not change it.
 
-    Nor do ``feedback`` and ``attempts``: they change what is told of a grading and when there is
-    one, not the grading.
+    Nor do ``feedback``, ``attempts`` and ``view``: they change when there is a grading and what is
+    told and shown of it, not the grading.
     What the file leaves to the default is left out, so that a new field of the schema does not
     give every exercise a new version.
     """

@@ -9,7 +9,7 @@ from service.catalogue.feedback_level import FeedbackLevel
 from service.catalogue.formulas import FormulaField, FormulaGrid, fields_of
 from service.catalogue.part import PartSpec
 from service.catalogue.robot import Joint, Robot
-from service.catalogue.schema import CheckSpec
+from service.catalogue.schema import CheckSpec, ViewSpec
 from service.catalogue.screw_robot import Reference
 from service.catalogue.variables import Variable
 from service.expressions import Vocabulary
@@ -21,12 +21,12 @@ _ANY_TIME: Final = AttemptsSpec()
 class Exercise:
     """One exercise of the catalogue.
 
-    ``version`` changes with anything in its file that changes a grading: not with its checks, nor
-    with ``feedback_by_attempt``, the most that a student is told at each attempt (at later ones as
-    at the last of them), nor with the rules for ``attempts``.
+    ``version`` changes with anything in its file that changes a grading: not with its checks and
+    its ``view``, nor with ``feedback_by_attempt``, the most that a student is told at each attempt
+    (at later ones as at the last of them), nor with the rules for ``attempts``.
     ``reference`` is the robot, None where there is none; ``formulas`` holds the answers that the
     file gives, by the part's id. ``length_scale`` is the longest length, the scale of small
-    differences.
+    differences. ``view`` is where the author has its figure seen from.
     """
 
     id: str
@@ -43,6 +43,7 @@ class Exercise:
     checks: tuple[CheckSpec, ...] = ()
     feedback_by_attempt: tuple[FeedbackLevel, ...] = (FeedbackLevel.HINTS,)
     attempts: AttemptsSpec = _ANY_TIME
+    view: ViewSpec | None = None
 
     @property
     def feedback(self) -> FeedbackLevel:

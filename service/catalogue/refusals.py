@@ -1,10 +1,10 @@
-"""Faults of an exercise file -> the field and the reason with a repair, as authors name them."""
+"""Faults of a tutor's file -> the field and the reason with a repair, as authors name them."""
 
 import difflib
 import inspect
 import re
 import reprlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final, get_args
 
 from pydantic import BaseModel, ValidationError
@@ -22,6 +22,7 @@ from service.catalogue.schema import (
 
 _Detail = Mapping[str, Any]
 _Location = Sequence[int | str]
+TableAt = Callable[[_Location], type[BaseModel]]
 
 # Pydantic puts the form behind a field that may have several, with a finding for each form.
 _FORM: Final = re.compile(r"(?:literal|str-enum)\[.*\]|str|float|constrained-int")
@@ -30,8 +31,11 @@ _CHOICES: Final = {"literal_error": "expected", "enum": "expected",
 _QUOTED: Final = re.compile(r"'([^']*)'")
 
 
-def refusals(error: ValidationError | FieldError) -> list[tuple[str, str]]:
-    """The field and the reason of each fault; a value that fits none of several forms is one."""
+def refusals(error: ValidationError | FieldError, table_at: TableAt) -> list[tuple[str, str]]:
+    """The field and the reason of each fault; a value that fits none of several forms is one.
+
+    ``table_at`` is the table of the file that a location of pydantic lies in.
+    """
     if isinstance(error, FieldError):
         return [(error.field, error.reason)]
     found: list[tuple[str, list[_Detail]]] = []
@@ -45,10 +49,10 @@ def refusals(error: ValidationError | FieldError) -> list[tuple[str, str]]:
             found[-1][1].append(detail)
         else:
             found.append((field, [detail]))
-    return [(field, _reason(details)) for field, details in found]
+    return [(field, _reason(details, table_at)) for field, details in found]
 
 
-def _reason(details: Sequence[_Detail]) -> str:
+def _reason(details: Sequence[_Detail], table_at: TableAt) -> str:
     """The reason why a value is refused; ``details`` has one finding for each form it may have."""
     known = [
         choice
@@ -56,7 +60,8 @@ def _reason(details: Sequence[_Detail]) -> str:
         if detail["type"] in _CHOICES
         for choice in _QUOTED.findall(detail["ctx"][_CHOICES[detail["type"]]])
     ]
-    reasons = [_advised(detail) for detail in details if detail["type"] not in _CHOICES]
+    others = (detail for detail in details if detail["type"] not in _CHOICES)
+    reasons = [_advised(detail, table_at) for detail in others]
     if known:
         value = details[0]["input"]
         tagged = details[0]["type"] == "union_tag_invalid"
@@ -92,20 +97,20 @@ def _path(location: _Location) -> str:
     return path.lstrip(".") or "file"
 
 
-def _advised(detail: Mapping[str, Any]) -> str:
+def _advised(detail: _Detail, table_at: TableAt) -> str:
     """One of pydantic's findings, in a sentence with the repair."""
     reason: str = detail["msg"].removeprefix("Value error, ")
     location: _Location = detail["loc"]
     last = location[-1] if location else ""
     match detail["type"]:
         case "extra_forbidden":
-            return _no_such_key(str(last), _model(location[:-1]))
+            return _no_such_key(str(last), table_at(location[:-1]))
         case "missing" if isinstance(last, int):
             return f"{reason}: write entry {last + 1} as well"
         case "missing":
             return f"{reason}: write {last} = …"
         case "string_pattern_mismatch":
-            return f"{reason}: {_advice(str(last), _model(location[:-1]))}"
+            return f"{reason}: {_advice(str(last), table_at(location[:-1]))}"
         case "float_type" | "bool_type" if isinstance(detail["input"], str):
             return f"{reason}: write it without quotation marks"
         case "bool_type":
@@ -131,8 +136,8 @@ def _advice(key: str, model: type[BaseModel]) -> str:
     return str(extra["advice"]) if isinstance(extra, dict) else "write it so"
 
 
-def _model(location: _Location) -> type[BaseModel]:
-    """The table of the file that a location lies in."""
+def exercise_table(location: _Location) -> type[BaseModel]:
+    """The table of an exercise file that a location of pydantic lies in."""
     match list(location):
         case ["robot", tag, *_]:
             return ScrewRobotSpec if tag == "screws" else RobotSpec

@@ -13,14 +13,15 @@ from service.kinematics.chain import (
     COLUMNS,
     Row,
     Table,
-    links,
+    frames,
+    joint_frames,
     modified_rows,
     pose,
     standard_rows,
 )
 from service.kinematics.dh import Convention
 from service.kinematics.screws import moved
-from service.kinematics.transforms import Matrices, Numbers, identity
+from service.kinematics.transforms import Matrices, Numbers
 
 FormulaRow = Row[Expression]
 
@@ -128,7 +129,12 @@ class Robot:
         The last joint's frame answers to its number, too, where no row leads on from it, and the
         base frame to the number before the first joint's.
         """
-        return list(self._poses(values, samples))[self.frame_number(name)]
+        return np.asarray(self.all_frames(values, samples)[self.frame_number(name)])
+
+    def all_frames(self, values: SymbolValues, samples: int) -> Matrices:
+        """The poses of all frames in the base frame, ``(frames, samples, 4, 4)``."""
+        table = self.tables[self.convention]
+        return frames(table.values(values, samples), table.convention)
 
     def frame_number(self, name: int | str) -> int:
         """How many rows of its table lead to a frame that ``frame`` takes."""
@@ -140,18 +146,10 @@ class Robot:
         first = self.joints[0].index
         return isinstance(name, str) or first - 1 <= name < first + len(self.joints)
 
-    def _poses(self, values: SymbolValues, samples: int) -> Iterator[Matrices]:
-        table = self.tables[self.convention]
-        reached = identity((samples,))
-        yield reached
-        for link in links(table.values(values, samples), table.convention):
-            reached = reached @ link
-            yield reached
-
     def screws(self, values: SymbolValues, samples: int) -> Numbers:
         """The screw axis of each joint in the base frame at home, ``(joints, samples, 6)``."""
-        poses = list(self._poses(at_home(self.joints, values, samples), samples))
-        on_axis = poses if self.convention is Convention.STANDARD else poses[1:]
+        poses = self.all_frames(at_home(self.joints, values, samples), samples)
+        on_axis = joint_frames(poses, self.convention)
         return np.stack(
             [
                 moved(frame, ALONG_Z if joint.prismatic else ABOUT_Z)

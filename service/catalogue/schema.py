@@ -158,6 +158,15 @@ class CheckSpec(StrictModel):
         return self
 
 
+class ViewSpec(StrictModel):
+    """Where the figure is seen from; without it from where the mechanism is plainest."""
+
+    azimuth: Annotated[float, Field(ge=-360, le=360, allow_inf_nan=False)]
+    """Degrees about z0 from x0 to the viewer: -60 has x0 point to the right, 30 has y0."""
+    elevation: Annotated[float, Field(ge=-85, le=85, allow_inf_nan=False)]
+    """Degrees by which the viewer is above the plane of x0 and y0."""
+
+
 class ExerciseSpec(StrictModel):
     """One exercise file."""
 
@@ -166,7 +175,7 @@ class ExerciseSpec(StrictModel):
     source: Text
     """Where the exercise comes from, with a page; students see it."""
     statement: Text
-    """All that a student has to know, without a figure."""
+    """All that a student has to know, without a figure. Markdown; ``$…$`` is LaTeX maths."""
     robot: AnyRobotSpec | None = None
     """The reference robot; without one every part holds its answer."""
     symbols: dict[Text, SymbolSpec] = Field({})
@@ -181,6 +190,8 @@ class ExerciseSpec(StrictModel):
     first."""
     attempts: AttemptsSpec = AttemptsSpec()
     """How often and until when recorded attempts are taken: a table ``[attempts]``."""
+    view: ViewSpec | None = None
+    """Where the figure of the robot is seen from."""
     parts: Annotated[list[AnyPartSpec], Field(min_length=1)]
     """The questions, one ``[[parts]]`` for each."""
     checks: list[CheckSpec] = Field([])
@@ -192,6 +203,8 @@ class ExerciseSpec(StrictModel):
         repeated = sorted({part_id for part_id in ids if ids.count(part_id) > 1})
         if repeated:
             raise ValueError(f"two parts share the id {repeated[0]!r}; give each its own")
+        if self.view is not None and self.robot is None:
+            raise ValueError("view says where the robot is seen from; leave it out without a robot")
         earlier: set[str] = set()
         for part in self.parts:
             if part.follows is not None and part.follows not in earlier:

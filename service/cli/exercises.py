@@ -11,16 +11,20 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from service.authoring import template
+from service.authoring import UnusableIdError, template
 from service.catalogue import Exercise
+from service.catalogue.robot import Robot
 from service.cli import check
-from service.cli.terminal import give_up, installed, stdout
+from service.cli.terminal import give_up, installed, installed_exercise, stdout
+from service.figures.figure import exercise_figure, reference_figure
+from service.figures.style import Theme
 from service.solutions import ModelSolution, Shown, solve
-from service.submissions.lookup import find_exercise
 
 _NARROWEST = 24
 
-commands = typer.Typer(help="The catalogue of exercises.", no_args_is_help=True)
+commands = typer.Typer(
+    help="The catalogue of exercises.", no_args_is_help=True, add_completion=False
+)
 
 
 @commands.command("list")
@@ -40,10 +44,23 @@ def show_exercise(
     latex: Annotated[
         bool, typer.Option("--latex", help="Show the model solution in LaTeX.")
     ] = False,
+    figure: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Write the drawing of the robot, an SVG, instead."),
+    ] = None,
+    theme: Annotated[
+        Theme, typer.Option(help="Colours of the drawing; auto: as the reader's system asks.")
+    ] = Theme.AUTO,
+    frames: Annotated[
+        bool, typer.Option("--frames", help="Draw the frames of the reference's table, too.")
+    ] = False,
 ) -> None:
     """Show one exercise: its statement, symbols and parts. No answer, unless it is asked for."""
-    exercise = find_exercise(installed(), exercise_id)
+    exercise = installed_exercise(exercise_id)
     console = stdout()
+    if figure is not None:
+        _write_figure(exercise, figure, theme, frames=frames)
+        return
     if solution or latex:
         _write_solution(exercise, console, latex=latex)
         return
@@ -68,6 +85,18 @@ def show_exercise(
             console.print(Padding(Text(text, "dim"), (0, 0, 0, 4), expand=False))
 
 
+def _write_figure(exercise: Exercise, file: Path, theme: Theme, *, frames: bool) -> None:
+    if exercise.reference is None:
+        give_up(f"the exercise {exercise.id} has no robot to draw")
+    if frames and not isinstance(exercise.reference, Robot):
+        give_up(f"the robot of {exercise.id} is given by screw axes, without frames to draw")
+    draw = reference_figure if frames else exercise_figure
+    try:
+        file.write_text(draw(exercise, theme), encoding="utf-8")
+    except OSError as error:
+        give_up(f"{file}: cannot be written: {error.strerror}")
+
+
 commands.command("check")(check.command)
 
 
@@ -81,7 +110,10 @@ def new_exercise(
     ] = Path(),
 ) -> None:
     """Write a commented exercise file to start from. It passes `exercises check` as it is."""
-    text = template(exercise_id)
+    try:
+        text = template(exercise_id)
+    except UnusableIdError as error:
+        give_up(str(error))
     file = output / f"{exercise_id}.toml"
     try:
         output.mkdir(parents=True, exist_ok=True)

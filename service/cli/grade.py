@@ -1,27 +1,44 @@
 """`dh-grader grade`: submissions in files, graded here and now."""
 
-import io
 import os
-from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
-from typing import Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
-from rich.console import Console
 
-from service.catalogue import Exercise
-from service.cli.submission_files import UnusableFileError, read_submission
-from service.cli.terminal import UNUSABLE, complain, give_up, installed, stdout
+from service.cli.interrupts import terminable
+from service.cli.local_grading import GradingTerms, graded
+from service.cli.output import console_of, write
+from service.cli.output_folder import UnusableFolderError, is_for_folder, write_folder
+from service.cli.processes import WorkerLostError, jobs_for, mapped
+from service.cli.progress import Progress, progress
+from service.cli.server import REQUESTS, graded_by, require_no_own_files, server_of, set_exercise
+from service.cli.terminal import UNUSABLE, give_up
 from service.formats import FORMAT_NAMES, report_format
-from service.formats.shared.graded import GradedFile, GradedSubmission, Visibility, answered
+from service.formats.shared.graded import GradedSubmission, Visibility
 from service.formats.shared.plain_text import visible
 from service.formats.shared.report_format import Setting, UnusableSettingError
-from service.grading import FeedbackLevel, Report, UnknownPartError, grade
-from service.submissions.lookup import find_exercise, nearest
+from service.grading import FeedbackLevel
+from service.settings import load_settings
+from service.submissions.assignment import (
+    Assignment,
+    UnknownPartNameError,
+    load_assignment,
+    of_one,
+)
+from service.submissions.handed_in import HandedIn, all_handed_in
+from service.submissions.outline import SetExercise
+
+if TYPE_CHECKING:
+    from service.client import GraderClient
 
 BELOW_PASS_MARK = 1
+
+commands = typer.Typer(add_completion=False)
 
 
 def _known(name: str) -> str:
@@ -34,15 +51,42 @@ def _known(name: str) -> str:
 _NAMES: Final = sorted(FORMAT_NAMES, key=lambda name: name != "text")
 
 
+@commands.command("grade")
 def command(
-    files: Annotated[list[Path], typer.Argument(metavar="FILE", show_default=False)],
-    exercise: Annotated[
-        str, typer.Option(metavar="ID", help="The exercise that is answered.", show_default=False)
+    context: typer.Context,
+    paths: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="PATH",
+            show_default=False,
+            help="Files, folders of a class, or - for standard input. In a folder each file is the "
+            "submission of one student, and so is each folder with its files.",
+        ),
     ],
+    exercise: Annotated[
+        str | None,
+        typer.Option(metavar="ID", help="The exercise that is answered.", show_default=False),
+    ] = None,
+    assignment: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="F", help="Several exercises instead, in an assignment file.", exists=False
+        ),
+    ] = None,
     part: Annotated[
         str | None,
-        typer.Option(metavar="P", help="Grade this part only; a file may hold its answer alone."),
+        typer.Option(
+            metavar="P",
+            help="Grade this part of the exercise only; a file may hold its answer alone.",
+        ),
     ] = None,
+    one_student: Annotated[
+        bool,
+        typer.Option(
+            "--one-student",
+            help="A folder holds the files of one student. So it is in formats for one submission.",
+        ),
+    ] = False,
     output_format: Annotated[
         str,
         typer.Option(
@@ -50,9 +94,22 @@ def command(
         ),
     ] = "text",
     output: Annotated[
-        Path | None, typer.Option(metavar="F", help="Write to this file instead.")
+        Path | None,
+        typer.Option(
+            metavar="F",
+            help="Write to this file instead; html writes several submissions to a folder, with "
+            "an overview of the class.",
+        ),
     ] = None,
-    pass_mark: Annotated[float, typer.Option(min=0, max=1, help="The score to reach, of 1.")] = 0.8,
+    pass_mark: Annotated[
+        float | None,
+        typer.Option(
+            min=0,
+            max=1,
+            help="The score to reach, of 1. By default that of the assignment, or 0.8.",
+            show_default=False,
+        ),
+    ] = None,
     feedback: Annotated[
         FeedbackLevel | None,
         typer.Option(
@@ -62,114 +119,150 @@ def command(
         ),
     ] = None,
     echo: Annotated[bool, typer.Option("--echo", help="Tell how each cell was read.")] = False,
+    jobs: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=256,
+            help="How many processes grade, by default as many as there are cores, where there are "
+            f"many submissions; or how many requests a server has at once, by default {REQUESTS}.",
+            show_default=False,
+        ),
+    ] = None,
+    server: Annotated[
+        str | None,
+        typer.Option(
+            metavar="URL",
+            help="Have this service grade, by its exercises; DH_GRADER_SERVER says the same.",
+            show_default=False,
+        ),
+    ] = None,
+    key: Annotated[
+        str | None,
+        typer.Option(
+            metavar="KEY",
+            help="The key for it. Rather set DH_GRADER_KEY: others may see a command line.",
+            show_default=False,
+        ),
+    ] = None,
     visibility: Annotated[
         Visibility, typer.Option(help="When Gradescope shows the result to students.")
     ] = Visibility.VISIBLE,
 ) -> None:
-    """Grade submissions: JSON or TOML files of the same shape as the HTTP body.
+    """Grade submissions: JSON, TOML, or the pasted answer to one part (csv, md, tex, m, py, …).
 
-    Exit code 0: every file reaches the pass mark.
+    Exit code 0: every submission reaches the pass mark.
 
     Exit code 1: one is below it.
 
     Exit code 2: a file, exercise or part is unusable; other files are graded all the same.
     """
-    chosen = _restricted(find_exercise(installed(), exercise), part)
+    settings = load_settings(server=server, key=key)
+    if key is not None and settings.server is None:
+        give_up("--key goes with --server URL.")
+    grader = context.with_resource(server_of(settings))
+    chosen = chosen_assignment(exercise, assignment, part, partial(set_exercise, server=grader))
+    if grader is not None:
+        require_no_own_files(chosen)
     taken = report_format(output_format)
-    if taken.is_single and len(files) > 1:
+    if taken.is_single and len(paths) > 1:
         give_up(
-            f"{output_format} holds one submission, and {len(files)} files are given: grade them "
+            f"{output_format} holds one submission, and {len(paths)} files are given: grade them "
             "one by one, or take a format for several."
         )
-    most = chosen.feedback if taken.for_students else FeedbackLevel.FULL
-    told = answered(chosen)
-    codes = [0]
-
-    def submissions() -> Iterator[GradedSubmission]:
-        for file in files:
-            report, problem = _report(
-                file, chosen, part, feedback, most, echo=echo or taken.shows_entries
-            )
-            if problem:
-                complain(visible(f"{file}: {problem}"))
-            graded = GradedFile(str(file), told, report, problem)
-            submission = GradedSubmission(str(file), file.stem, (graded,), pass_mark)
-            codes.append(_exit_code(submission))
-            yield submission
-
-    console = stdout()
-    if output is not None:
-        page = io.TextIOWrapper(io.BytesIO(), encoding="utf-8")
-        console = Console(file=page, width=80, highlight=False, markup=False)
-    setting = Setting((told,), console, datetime.now(UTC), os.environ, visibility)
+    terms = GradingTerms(
+        chosen,
+        chosen.pass_mark if pass_mark is None else pass_mark,
+        feedback,
+        for_students=taken.for_students,
+        echo=echo or taken.shows_entries,
+    )
+    found = list(
+        all_handed_in(paths, folder_is_one=one_student or taken.is_single, left_out=output)
+    )
+    if not found:
+        give_up(f"{', '.join(map(str, paths))}: holds no submission")
+    is_class = any(path.is_dir() for path in paths) and not one_student
+    setting = Setting(terms.answered, console_of(output), datetime.now(UTC), os.environ, visibility)
     try:
-        _write(taken.pieces(submissions(), setting), output)
+        with (
+            terminable(),
+            progress(len(found)) as shown,
+            _grading(grader, terms, found, jobs, output) as all_graded,
+        ):
+            run = _Run(all_graded, shown)
+            if (
+                output
+                and taken.folder
+                and is_for_folder(output, several=is_class or len(found) > 1)
+            ):
+                write_folder(taken.folder(run.submissions(), setting), output)
+            else:
+                pieces = taken.pieces(run.submissions(), setting)
+                write(pieces, output, at_once=shown.is_shown or not taken.is_stream)
+    except UnusableFolderError as error:
+        give_up(f"{output}: {error}")
     except UnusableSettingError as error:
         give_up(f"{output_format}: {error}")
-    raise SystemExit(max(codes))
+    except WorkerLostError:
+        give_up("A process that grades has been ended from outside; try again with fewer --jobs.")
+    raise SystemExit(run.exit_code)
 
 
-def _restricted(exercise: Exercise, part_id: str | None) -> Exercise:
-    """The exercise with this part only, so that the score is the part's."""
-    if part_id is None:
-        return exercise
-    part = exercise.part(part_id)
-    if part is None:
-        known = [part.id for part in exercise.parts]
-        suggestion = nearest(part_id, known)
-        hint = f" Did you mean {suggestion!r}?" if suggestion else ""
-        give_up(f"{exercise.id} has no part {part_id!r}.{hint} Its parts are: {', '.join(known)}.")
-    return replace(exercise, parts=(part,))
-
-
-def _report(
-    file: Path,
-    exercise: Exercise,
-    part: str | None,
-    feedback: FeedbackLevel | None,
-    most: FeedbackLevel,
-    *,
-    echo: bool,
-) -> tuple[Report | None, str]:
-    """The report on the file, or the problem because of which there is none.
-
-    The report tells what ``feedback`` asks for, else what the file asks for and ``most`` at the
-    most: these are a tutor's own files, so nothing need be kept back.
-    """
+def chosen_assignment(
+    exercise: str | None, file: Path | None, part: str | None, find: Callable[[str], SetExercise]
+) -> Assignment:
+    """The exercise, a part of it or an assignment, as the options name it; or give up."""
+    if (exercise is None) == (file is None):
+        give_up("Name what is answered: --exercise ID, or --assignment F instead.")
+    if file is not None:
+        if part is not None:
+            give_up("--part goes with --exercise; an assignment says itself which parts are set.")
+        return load_assignment(file, find)
     try:
-        submission = read_submission(file, part).submission(most)
-        feedback = submission.feedback if feedback is None else feedback
-        submission = replace(submission, feedback=feedback, echo=echo or submission.echo)
-        return grade(exercise, submission), ""
-    except UnusableFileError as error:
-        return None, str(error)
-    except UnknownPartError as error:
-        known = ", ".join(error.known)
-        return None, f"answers {error.unknown[:60]!r}, but {exercise.id} has only {known}"
+        return of_one(find(exercise or ""), part)
+    except UnknownPartNameError as error:
+        give_up(str(error))
+
+
+def _grading(
+    server: "GraderClient | None",
+    terms: GradingTerms,
+    found: Sequence[HandedIn],
+    jobs: int | None,
+    output: Path | None,
+) -> AbstractContextManager[Iterator[GradedSubmission]]:
+    """The submissions in order as they are graded, by the server or else here."""
+    if server is not None:
+        return graded_by(server, terms, found, jobs or REQUESTS, output)
+    jobs = min(jobs or jobs_for(len(found)), len(found))
+    return mapped(partial(graded, terms=terms), found, jobs)
+
+
+class _Run:
+    """The submissions as they are graded; ``exit_code`` is that of the worst so far."""
+
+    def __init__(self, submissions: Iterable[GradedSubmission], shown: Progress) -> None:
+        self._submissions = submissions
+        self._shown = shown
+        self.exit_code = 0
+
+    def submissions(self) -> Iterator[GradedSubmission]:
+        for submission in self._submissions:
+            for told in _complaints(submission):
+                self._shown.complain(told)
+            self.exit_code = max(self.exit_code, _exit_code(submission))
+            yield submission
+            self._shown.advance()
+
+
+def _complaints(submission: GradedSubmission) -> list[str]:
+    """The problems of its files, each once: one file may leave several exercises unanswered."""
+    told = (f"{file.file}: {file.problem}" for file in submission.files if file.problem)
+    return [visible(line) for line in dict.fromkeys(told)]
 
 
 def _exit_code(submission: GradedSubmission) -> int:
-    if not submission.is_graded:
+    if any(file.problem for file in submission.files):
         return UNUSABLE
     return 0 if submission.passed else BELOW_PASS_MARK
-
-
-def _write(pieces: Iterable[bytes], output: Path | None) -> None:
-    """Write the pieces as they come; a file is there only when it is whole."""
-    if output is None:
-        for piece in pieces:
-            typer.echo(piece, nl=False)
-        return
-    # A pipe or a device is no file to be replaced.
-    is_replaced = output.is_file() or not output.exists()
-    written = output.with_name(f".{output.name}.part") if is_replaced else output
-    try:
-        with written.open("wb") as file:
-            file.writelines(pieces)
-        if is_replaced:
-            written.replace(output)
-    except OSError as error:
-        give_up(f"{output}: cannot be written: {error.strerror}")
-    finally:
-        if is_replaced:
-            written.unlink(missing_ok=True)

@@ -1,31 +1,51 @@
 """The commands put together."""
 
 import sys
-from typing import Annotated, Any
+from importlib import import_module
+from typing import Annotated, Any, Final
 
 import typer
 from typer.core import TyperGroup
 
-from service.authoring import UnusableIdError
-from service.catalogue import CatalogueError
-from service.cli import exercises, grade, serve
-from service.cli.terminal import give_up
-from service.kinds_check import check_kinds
-from service.settings import SettingsError
-from service.submissions.lookup import UnknownExerciseError
-from service.version import VERSION
+# Each is a file of this package whose ``commands`` are loaded when the command is called: the help
+# of the program needs neither the grader nor the web framework.
+COMMANDS: Final = {
+    "serve": "Start the service; the environment variables DH_GRADER_… set it up.",
+    "exercises": "The catalogue of exercises.",
+    "assignments": "Several exercises that are set together.",
+    "grade": "Grade submissions: JSON, TOML, or the pasted answer to one part (csv, md, tex, m, "
+    "py, …).",
+    "bundle": "Write the zip file that a grading platform takes.",
+}
 
 
 class _Commands(TyperGroup):
     """The commands; each ends with the reason where something that it was given is unusable."""
 
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        name, _, rest = super().resolve_command(ctx, args)
+        commands: typer.Typer = import_module(f"service.cli.{name}").commands
+        return name, typer.main.get_command(commands), rest
+
     def invoke(self, ctx: Any) -> Any:
+        # Only here, for the same reason.
+        from service.catalogue import CatalogueError
+        from service.cli.interrupts import INTERRUPTED
+        from service.cli.terminal import complain, give_up
+        from service.kinds_check import check_kinds
+        from service.settings import SettingsError
+        from service.submissions.lookup import UnknownExerciseError
+
+        check_kinds()
         try:
             return super().invoke(ctx)
         except UnknownExerciseError as error:
             give_up(f"{error} Known are: {', '.join(error.known)}.")
-        except (SettingsError, CatalogueError, UnusableIdError) as error:
+        except (SettingsError, CatalogueError) as error:
             give_up(str(error))
+        except KeyboardInterrupt:
+            complain("Interrupted.")
+            raise SystemExit(INTERRUPTED) from None
 
 
 program = typer.Typer(
@@ -36,13 +56,20 @@ program = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-program.add_typer(exercises.commands, name="exercises")
-program.command("grade")(grade.command)
-program.command("serve")(serve.command)
+
+
+def _stand_in() -> None:
+    """Stand in the program's help for a command that is not loaded."""
+
+
+for _name, _line in COMMANDS.items():
+    program.command(_name, help=_line)(_stand_in)
 
 
 def _show_version(wanted: bool) -> None:
     if wanted:
+        from service.version import VERSION
+
         typer.echo(f"dh-grader {VERSION}")
         raise typer.Exit
 
@@ -59,7 +86,6 @@ def _options(
 
 def main() -> None:
     """Run the command line of this process."""
-    check_kinds()
     # What a stream cannot show is replaced, not a reason to stop half-way through a report.
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):

@@ -7,7 +7,10 @@ import typer
 from service.cli.terminal import give_up
 from service.settings import load_settings
 
+commands = typer.Typer(add_completion=False)
 
+
+@commands.command("serve")
 def command(
     host: Annotated[
         str | None, typer.Option(help="The address to listen on; 0.0.0.0 for all. [127.0.0.1]")

@@ -7,8 +7,9 @@ from typing import NoReturn
 
 from rich.console import Console
 
-from service.catalogue import Exercise, load_catalogue
+from service.catalogue import Exercise, exercise_files, load_catalogue, load_exercise
 from service.settings import load_settings
+from service.submissions.lookup import find_exercise
 
 UNUSABLE = 2
 
@@ -33,3 +34,12 @@ def give_up(message: str) -> NoReturn:
 def installed() -> Mapping[str, Exercise]:
     """The exercises of this installation. Raises SettingsError or CatalogueError."""
     return load_catalogue(*load_settings().exercises_dir)
+
+
+def installed_exercise(exercise_id: str) -> Exercise:
+    """The exercise of this installation with this id; the files of the others are not read.
+
+    Raises SettingsError, CatalogueError or UnknownExerciseError.
+    """
+    files = {file.stem: file for file in exercise_files(*load_settings().exercises_dir)}
+    return load_exercise(find_exercise(files, exercise_id))

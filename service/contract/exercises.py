@@ -68,7 +68,11 @@ class ExerciseView(BaseModel):
     title: str
     source: str
     structure: str | None = Field(None, description="Left out where there is no robot.")
-    statement: str
+    statement: str = Field(description="Markdown, with LaTeX between dollars.")
+    statement_html: str = Field(
+        description="The same as HTML and MathML, without scripts, styles and pictures."
+    )
+    figure: bool = Field(description="Whether it has a robot that `figure.svg` draws.")
     feedback: FeedbackLevel = Field(
         description="The most that a report on it tells: `full`, `hints`, `verdicts` or `score`."
     )

@@ -1,6 +1,6 @@
 """The reading of a text while the student still types."""
 
-from typing import Literal
+from typing import Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -55,6 +55,10 @@ class PreviewCell(BaseModel):
     column: str
     span: tuple[int, int] = Field(description="[from, to) in the pasted text.")
     typed: str
+    entry: str = Field(
+        description="What to write in the cell alone for the same reading. It is another text than "
+        "`typed` where a header names a unit."
+    )
     text: str
     latex: str
     mathml: str
@@ -80,3 +84,35 @@ class PreviewAnswer(BaseModel):
     symbols: list[str] | None = Field(None, description="The symbols used, by canonical name.")
     notes: list[PreviewNote] | None = None
     error: PreviewError | None = None
+
+
+class EntryToPreview(BaseModel):
+    """One of several entries, and what is asked for in its place."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    text: str = Field(description="The entry as the student writes it.")
+    quantity: Kind = Field("number", description="What is asked for there.")
+
+
+# All entries of the link transforms of the longest robot that an exercise may have.
+MAX_ENTRIES: Final = 192
+
+
+class PreviewManyRequest(BaseModel):
+    """The entries of one part that have changed."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    exercise: str = Field(description="The exercise whose symbols the entries may use.")
+    part: str = Field(description="The part that the entries are for.")
+    angle_unit: Literal["radians", "degrees"] = Field(
+        "radians", description="What a bare number means where an angle is asked for."
+    )
+    entries: list[EntryToPreview] = Field(max_length=MAX_ENTRIES)
+
+
+class PreviewManyResponse(BaseModel):
+    """The reading of each entry, in their order."""
+
+    results: list[PreviewAnswer]

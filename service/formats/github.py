@@ -58,4 +58,4 @@ def _escaped(text: str, replacements: tuple[tuple[str, str], ...]) -> str:
     return text
 
 
-FORMAT: Final = ReportFormat(_pieces, for_students=True)
+FORMAT: Final = ReportFormat(_pieces, is_stream=True, for_students=True)

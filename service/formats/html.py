@@ -1,56 +1,32 @@
-"""A page to hand back: one file that needs no other, to read on light and dark screens or on paper.
+"""A page to hand back: a card for each part, with the entries in their cells as they were read."""
 
-It has no script, and a policy that forbids any: whatever a student wrote stays text.
-"""
-
-import base64
-import hashlib
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
 from typing import Final
-from xml.etree.ElementTree import Element, tostring
+from xml.etree.ElementTree import Element
 
+from service.formats.class_page import class_folder
 from service.formats.shared.graded import GradedFile, GradedSubmission
+from service.formats.shared.html_page import CLOSING, opening, style_sheet, written
 from service.formats.shared.markup import Child, element
 from service.formats.shared.messages import SIGNS, Message
 from service.formats.shared.part_results import PartResult, part_results
-from service.formats.shared.plain_text import code_pieces, percent, points
+from service.formats.shared.plain_text import code_pieces, percent, points, whole_percent
 from service.formats.shared.report_format import ReportFormat, Setting
 from service.grading import CellReport, RowReport, Severity, Verdict
 
-_STYLE: Final = Path(__file__).with_suffix(".css").read_text(encoding="utf-8")
-_STYLE_HASH: Final = base64.b64encode(hashlib.sha256(_STYLE.encode()).digest()).decode()
-_POLICY: Final = f"default-src 'none'; style-src 'sha256-{_STYLE_HASH}'"
+_STYLE: Final = style_sheet(Path(__file__).with_suffix(".css"))
 
 
 def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:
     rest = iter(submissions)
     first = tuple(islice(rest, 2))
     names = [first[0].learner] if len(first) == 1 else []
-    yield _opening(" · ".join([*names, *(each.title for each in setting.exercises)]))
+    yield opening(" · ".join([*names, *(each.title for each in setting.exercises)]), _STYLE)
     for submission in chain(first, rest):
-        yield _written(_article(submission)) + b"\n"
-    yield b"</body>\n</html>\n"
-
-
-def _opening(title: str) -> bytes:
-    """The page up to its first submission; its elements are closed at the end."""
-    head = [
-        element("meta", charset="utf-8"),
-        element("meta", http_equiv="Content-Security-Policy", content=_POLICY),
-        element("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        element("meta", name="color-scheme", content="light dark"),
-        element("title", title),
-    ]
-    style = b"<style>%b</style>" % _STYLE.encode()
-    lines = [b"<!doctype html>", b'<html lang="en">', b"<head>", *map(_written, head), style]
-    return b"\n".join([*lines, b"</head>", b"<body>", b""])
-
-
-def _written(content: Element) -> bytes:
-    written: bytes = tostring(content, encoding="utf-8", method="html")
-    return written
+        yield written(_article(submission)) + b"\n"
+    yield CLOSING
 
 
 def _article(submission: GradedSubmission) -> Element:
@@ -103,7 +79,7 @@ def _ring(score: float, *, passed: bool) -> Element:
     if score > 0:
         earned = {"class_": "earned", "stroke_dasharray": arc, "transform": turned}
         drawn.append(element("circle", **whole, **earned))
-    drawn.append(element("text", percent(int(score * 100 + 1e-6) / 100), **middle))
+    drawn.append(element("text", whole_percent(score), **middle))
     name = {"role": "img", "aria_label": percent(score), "viewBox": "0 0 36 36"}
     return element("svg", *drawn, class_="ring" if passed else "ring below", **name)
 
@@ -193,4 +169,6 @@ def _origin(file: GradedFile) -> Element:
     return element("p", told)
 
 
-FORMAT: Final = ReportFormat(_pieces, for_students=True, shows_entries=True)
+FORMAT: Final = ReportFormat(
+    _pieces, for_students=True, shows_entries=True, folder=class_folder(_pieces)
+)

@@ -19,22 +19,32 @@ def rendered(report: Report, *, indent: int | None = None) -> bytes:
     return _REPORT.dump_json(report, exclude_none=True, indent=indent)
 
 
+def read_report(content: bytes) -> Report:
+    """The report of ``rendered``. Raises pydantic.ValidationError, a ValueError, for others."""
+    return _REPORT.validate_json(content)
+
+
 def entries(submissions: Iterable[GradedSubmission]) -> Iterator[bytes]:
-    """A line of JSON for each file: its report, or the error because of which it has none."""
+    """A line of JSON for each file: its report, or the error because of which it has none.
+
+    With both, a part of what was handed in could not be used.
+    """
     for submission in submissions:
         for file in submission.files:
             yield printable(_entry(submission, file))
 
 
 def _entry(submission: GradedSubmission, file: GradedFile) -> bytes:
-    head = {
+    head: dict[str, str | bool] = {
         "submission": _encodable(submission.name),
         "file": _encodable(file.file),
         "exercise": file.exercise.id,
         "passed": submission.passed,
     }
+    if file.problem:
+        head["error"] = _encodable(file.problem)
     if file.report is None:
-        return json.dumps(head | {"error": _encodable(file.problem)}).encode()
+        return json.dumps(head).encode()
     return json.dumps(head).encode()[:-1] + b', "report": %b}' % rendered(file.report)
 
 

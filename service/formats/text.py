@@ -7,11 +7,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain, islice
 from typing import Final
 
-from rich.console import Console
-from rich.padding import Padding
-from rich.table import Table
+from rich.console import Console, RenderableType
+from rich.segment import Segments
 from rich.text import Text
 
+from service.formats.shared.aligned import AlignedColumn, AlignedTable, StyledText
+from service.formats.shared.class_summary import ClassSummary, pass_line, result_line
 from service.formats.shared.graded import GradedSubmission
 from service.formats.shared.messages import SIGNS, Message, messages
 from service.formats.shared.plain_text import percent, points, visible
@@ -25,20 +26,36 @@ _COLOURS: Final[Mapping[Verdict, str]] = {
     Verdict.UNREADABLE: "magenta",
     Verdict.MISSING: "bright_black",
 }
+# More submissions have a line each: other formats tell all of a class.
+_IN_FULL: Final = 8
 _ASCII: Final = str.maketrans("✓✗–", "+x-")
 # Longer lines are hard to read however wide the terminal is.
 _WIDEST: Final = 100
+_INDENT: Final = 2
+_BLANK: Final[StyledText] = ("", "")
 
 
 def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:
-    """The report on each file, below its name where there are several."""
+    """The reports below each other, or a line for each submission of a class; then a summary."""
     rest = iter(submissions)
-    first = tuple(islice(rest, 2))
+    first = tuple(islice(rest, _IN_FULL + 1))
     are_several = len(first) > 1 or any(len(each.files) > 1 for each in first)
+    summary = ClassSummary()
     console = setting.console
     for submission in chain(first, rest):
+        summary.add(submission)
         with console.capture() as captured:
-            _write_submission(submission, console, are_several=are_several)
+            if len(first) > _IN_FULL:
+                console.print(result_line(submission), soft_wrap=True)
+            else:
+                _write_submission(submission, console, are_several=are_several)
+        yield captured.get().encode(console.encoding, "replace")
+    if len(first) > 1:
+        with console.capture() as captured:
+            if len(first) > _IN_FULL:
+                console.print()
+            for line in summary.lines():
+                _print_indented(line, console)
         yield captured.get().encode(console.encoding, "replace")
 
 
@@ -47,13 +64,30 @@ def _write_submission(submission: GradedSubmission, console: Console, *, are_sev
         if file.report is None:
             continue
         if are_several:
-            console.print(Text(f"== {visible(file.file)}", "bold"))
+            console.print(Text(f"== {visible(file.file or file.exercise.id)}", "bold"))
         write(file.report, console)
-        if are_several:
+        if len(submission.files) > 1:
             console.print()
     if len(submission.files) > 1:
         total = f"{points(submission.points, submission.max_points)} points"
-        console.print(Text(f"{visible(submission.name)}: {total}, {percent(submission.score)}\n"))
+        console.print(Text(f"{visible(submission.name)}: {total}, {percent(submission.score)}"))
+    if submission.is_graded:
+        console.print(pass_line(submission))
+        if are_several:
+            console.print()
+
+
+def _print_indented(line: Text, console: Console) -> None:
+    """Print a line of the summary, what does not fit below its text."""
+    width = min(console.width, _WIDEST)
+    if line.cell_len <= width:
+        console.print(line)
+        return
+    indent = " " * 6
+    first, *more = line.wrap(console, width - len(indent))
+    console.print(first, width=width)
+    for each in more:
+        console.print(Text.assemble(indent, each), width=width)
 
 
 def write(report: Report, console: Console) -> None:
@@ -85,7 +119,7 @@ class _Page:
                 for each in messages(part)
             ):
                 signs.insert(1, Verdict.PARTIAL)
-            legend = "   ".join(f"{self._mark(verdict)} {verdict}" for verdict in signs)
+            legend = "   ".join(f"{self._mark(verdict)[0]} {verdict}" for verdict in signs)
             self._print(Text(legend, "dim"))
 
     def _part(self, part: PartReport) -> None:
@@ -99,41 +133,47 @@ class _Page:
             )
         )
         if part.rows:
-            self._print(Padding(self._table(part), (0, 0, 0, 2), expand=False))
+            self._print(self._table(part).on(self._console, self._width, _INDENT))
         if any(cell.read for row in part.rows for cell in row.cells):
-            self._print(Padding(self._read(part), (0, 0, 0, 2), expand=False))
-        for message in messages(part):
-            self._message(message)
-        self._print(Text())
+            self._print(self._read(part).on(self._console, self._width, _INDENT))
+        lines = [line for message in messages(part) for line in self._message(message)]
+        self._console.print(_as_they_are(lines, self._console))
 
-    def _table(self, part: PartReport) -> Table:
-        table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="dim")
-        table.add_column("row")
+    def _table(self, part: PartReport) -> AlignedTable:
+        """The marks of the cells and the points of each row."""
         widest = max((row.cells for row in part.rows), key=len)
-        for cell in widest:
-            table.add_column(cell.label, justify="center")
-        table.add_column("points", justify="right", no_wrap=True)
-        for row in part.rows:
-            marks = [self._mark(cell.verdict) for cell in row.cells]
-            blanks = [Text()] * (len(widest) - len(marks))
-            table.add_row(row.label, *marks, *blanks, points(row.points, row.max_points))
-        return table
+        columns = [AlignedColumn(cell.label, "center") for cell in widest]
+        rows = [
+            [
+                (row.label, ""),
+                *(self._mark(cell.verdict) for cell in row.cells),
+                *[_BLANK] * (len(widest) - len(row.cells)),
+                (points(row.points, row.max_points), ""),
+            ]
+            for row in part.rows
+        ]
+        return AlignedTable(
+            [AlignedColumn("row"), *columns, AlignedColumn("points", "right")], rows
+        )
 
-    def _read(self, part: PartReport) -> Table:
+    def _read(self, part: PartReport) -> AlignedTable:
         """The entries as they were understood."""
-        table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), style="dim")
-        table.add_column("read")
-        for cell in max((row.cells for row in part.rows), key=len):
-            table.add_column(cell.label)
-        for row in part.rows:
-            read = (visible(cell.read.text) if cell.read else "" for cell in row.cells)
-            table.add_row(row.label, *map(Text, read))
-        return table
+        widest = max((row.cells for row in part.rows), key=len)
+        columns = [AlignedColumn("read"), *(AlignedColumn(cell.label) for cell in widest)]
+        rows = [
+            [
+                (row.label, ""),
+                *((visible(cell.read.text) if cell.read else "", "") for cell in row.cells),
+                *[_BLANK] * (len(widest) - len(row.cells)),
+            ]
+            for row in part.rows
+        ]
+        return AlignedTable(columns, rows, "bold")
 
-    def _message(self, message: Message) -> None:
-        """A message, its lines beneath each other to the right of its mark."""
+    def _message(self, message: Message) -> Iterator[Text]:
+        """The lines of a message, beneath each other to the right of its mark."""
         costs = message.severity is Severity.ERROR
-        mark = self._mark(message.verdict) if costs else Text(message.label, "cyan")
+        mark = self._mark(message.verdict) if costs else (message.label, "cyan")
         places = f"{message.places}: " if message.places else ""
         text = Text.assemble((places, "bold"), message.text)
         if message.offers:
@@ -143,15 +183,21 @@ class _Page:
         # A table of two columns looks the same, and takes rich four times as long.
         first = Text.assemble("  ", mark, " ")
         lines = text.wrap(self._console, self._width - first.cell_len)
-        indented = [Text.assemble(" " * first.cell_len, line) for line in lines[1:]]
-        self._print(Text("\n").join([Text.assemble(first, *lines[:1]), *indented]))
+        yield Text.assemble(first, *lines[:1])
+        for line in lines[1:]:
+            yield Text.assemble(" " * first.cell_len, line)
 
-    def _mark(self, verdict: Verdict) -> Text:
+    def _mark(self, verdict: Verdict) -> StyledText:
         sign = SIGNS[verdict]
-        return Text(sign.translate(_ASCII) if self._ascii else sign, _COLOURS[verdict])
+        return (sign.translate(_ASCII) if self._ascii else sign), _COLOURS[verdict]
 
-    def _print(self, what: Text | Padding) -> None:
+    def _print(self, what: RenderableType) -> None:
         self._console.print(what, width=self._width)
+
+
+def _as_they_are(lines: Iterable[Text], console: Console) -> Segments:
+    """Lines that fit, and an empty one; to print each by itself takes rich five times as long."""
+    return Segments(segment for line in [*lines, Text()] for segment in line.render(console, "\n"))
 
 
 def _can_write(text: str, encoding: str) -> bool:
@@ -162,4 +208,4 @@ def _can_write(text: str, encoding: str) -> bool:
     return True
 
 
-FORMAT: Final = ReportFormat(_pieces)
+FORMAT: Final = ReportFormat(_pieces, is_stream=True)

@@ -217,6 +217,11 @@ def rounding_slack(expression: Expression, samples: Samples) -> float:
     """By how much rounding may have moved an entry, to first order."""
     if not expression.has_decimal:
         return 0.0
+    # A table is judged in several ways, and each of them asks for the same cells.
+    return samples.cached(("slack", expression), lambda: _rounding_slack(expression, samples))
+
+
+def _rounding_slack(expression: Expression, samples: Samples) -> float:
     decimals = decimals_of(expression)
     count = len(decimals.units)
     if not 0 < count <= MAX_DECIMALS:

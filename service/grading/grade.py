@@ -14,6 +14,7 @@ from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.entry import Reader
 from service.grading.report import PartReport, Place, Report, Severity, Verdict, rounded_points
 from service.grading.samples import draw
+from service.grading.work_budget import WorkBudget
 from service.version import VERSION
 
 
@@ -52,13 +53,14 @@ def grade(exercise: Exercise, submission: Submission) -> Report:
             raise UnknownPartError(part_id, exercise)
     degrees = submission.angle_unit == "degrees"
     samples = draw(exercise, submission.answers, degrees=degrees)
-    reader = Reader.of(exercise, samples, submission.angle_unit)
+    budget = WorkBudget(answers=submission.answers)
+    reader = Reader.of(exercise, samples, submission.angle_unit, budget)
     grading = Grading(exercise, samples, reader, submission.feedback, submission.echo)
     graded: dict[str, _Graded] = {}
     for part in exercise.parts:
         graded[part.id] = _graded(part, submission.answers, graded, grading)
     parts = [told_once(each.report) for each in graded.values()]
-    if reader.budget.has_left_out:
+    if budget.has_left_out:
         parts = _with_work_limit(parts, grading)
     if grading.level is FeedbackLevel.SCORE:
         parts = [_without_rows(part) for part in parts]

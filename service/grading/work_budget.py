@@ -3,7 +3,10 @@
 Counted work is the same on every machine, so that the same submission gives the same report.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+
+from service.expressions.reading_work import symbols_in
 
 # The pose of a seven-joint arm, multiplied out, not simplified and printed as LaTeX, has 12,400.
 MAX_SYMBOLS = 14_000
@@ -20,8 +23,14 @@ MAX_PASTED = 36_000
 
 # In units of the least work that a grading can be: six links multiplied out at all samples.
 MAX_EXPLANATIONS = 180.0
-# Enough to judge a table of ten rows in free frames as it is written and in another order.
+# Enough to judge a table of seven rows as it is written and in another order.
 MAX_SEARCHES = 240.0
+# What the search for values of unread cells leaves for judging the table.
+JUDGING_WORK = 90.0
+# All of it together. What was read and searched leaves so much less for explanations.
+MAX_WORK = 330.0
+# The work of reading a symbol, of cutting a character out of a pasted text, of a repair.
+SYMBOL_WORK, PASTED_WORK, REPAIR_WORK = 1 / 100, 1 / 800, 1.5
 
 # The pose of a seven-joint arm, multiplied out, has 92,000 as MathML.
 MAX_PRINTED = 100_000
@@ -37,6 +46,7 @@ class WorkBudget:
     still be spent on what is wrong and why: no verdict depends on it. ``searches`` is that for what
     a table may have been meant to be: with what was not read, in another order of its columns.
     ``printed`` counts the characters of formulas that may still be drawn for a preview.
+    ``answers`` is the whole submission: what later parts have to read is kept back for them.
     ``has_left_out`` says that an explanation was not afforded. ``unreadable`` are the texts that
     could not be read.
     """
@@ -49,17 +59,41 @@ class WorkBudget:
     printed: int = MAX_PRINTED
     has_left_out: bool = False
     unreadable: set[object] = field(default_factory=set)
+    answers: object = None
+    _expected: int = -1
+
+    @property
+    def left(self) -> float:
+        """How much of all work the reading, also that to come, and the searches have left."""
+        if self._expected < 0:
+            self._expected = min(_symbols_of(self.answers), MAX_SYMBOLS)
+        read = (
+            SYMBOL_WORK * max(MAX_SYMBOLS - max(self.symbols, 0), self._expected)
+            + PASTED_WORK * (MAX_PASTED - max(self.pasted, 0))
+            + REPAIR_WORK * (MAX_REPAIRS - max(self.repairs, 0))
+        )
+        return MAX_WORK - read - (MAX_SEARCHES - self.searches)
 
     def affords(self, work: float) -> bool:
         """Whether there is so much left for explanations. It is taken, and what is gone is gone."""
         self.explanations -= work
-        self.has_left_out |= self.explanations < 0
-        return self.explanations >= 0
+        left = min(self.explanations, self.left - (MAX_EXPLANATIONS - self.explanations))
+        self.has_left_out |= left < 0
+        return left >= 0
 
-    def affords_search(self, work: float) -> bool:
-        """Whether there is so much left for searches. It is taken, and what is gone is gone."""
+    def affords_search(self, work: float, spare: float = 0.0) -> bool:
+        """Whether there is so much left for searches, and ``spare`` for others; if so, it is taken.
+
+        It does not depend on what was explained.
+        """
+        is_afforded = work <= min(self.searches - spare, self.left)
+        if is_afforded:
+            self.charge_search(work)
+        return is_afforded
+
+    def charge_search(self, work: float) -> None:
+        """Count a search that was made, whatever it cost."""
         self.searches -= work
-        return self.searches >= 0
 
     def charge_reading(self, symbols: int) -> bool:
         """Count a text that is to be read; whether it may be."""
@@ -71,3 +105,18 @@ class WorkBudget:
         if text not in self.unreadable:
             self.unreadable.add(text)
             self.repairs -= 1 + tried // SYMBOLS_PER_REPAIR
+
+
+def _symbols_of(answer: object) -> int:
+    """The names, numbers and signs in all texts of a JSON value."""
+    found, waiting = 0, [answer]
+    # Without recursion: lists may stand in each other deeper than Python calls.
+    while waiting:
+        match waiting.pop():
+            case str() as text:
+                found += symbols_in(text)
+            case Mapping() as fields:
+                waiting.extend(fields.values())
+            case list() as items:
+                waiting.extend(items)
+    return found

@@ -1,5 +1,7 @@
 """Lines, separators and quoted cells of CSV, TSV and semicolon files."""
 
+import re
+
 from service.grids.grid import GridError
 from service.grids.pairs import pairs
 from service.grids.source_text import SourceText, joined
@@ -15,10 +17,13 @@ def split_cells(source: SourceText, separator: str, *, brackets: bool) -> list[l
     """
     text = source.text
     ends = pairs(text) if brackets else {}
+    plain = re.compile(
+        f"[^{re.escape(separator + _LINE_ENDS + ''.join({text[i] for i in ends}))}]*"
+    )
     rows: list[list[SourceText]] = [[]]
     i = 0
     while True:
-        cell, i = _cell(source, i, separator, ends)
+        cell, i = _cell(source, i, separator + _LINE_ENDS, ends, plain)
         rows[-1].append(cell)
         if i >= len(text):
             return rows
@@ -28,19 +33,27 @@ def split_cells(source: SourceText, separator: str, *, brackets: bool) -> list[l
 
 
 def _cell(
-    source: SourceText, start: int, separator: str, ends: dict[int, int]
+    source: SourceText, start: int, stops: str, ends: dict[int, int], plain: re.Pattern[str]
 ) -> tuple[SourceText, int]:
-    """The cell that begins at ``start``, and the place of the separator or line end behind it."""
+    """The cell that begins at ``start``, and the place of the separator or line end behind it.
+
+    ``plain`` are the letters that neither stop a cell nor open a pair.
+    """
     text = source.text
-    stops = separator + _LINE_ENDS
     i = start
     while i < len(text) and text[i].isspace() and text[i] not in stops:
         i += 1
     if text[i : i + 1] == '"':
         return _quoted(source, i, stops)
-    while i < len(text) and text[i] not in stops:
+    while (i := _end(plain, text, i)) < len(text) and text[i] not in stops:
         i = ends.get(i, i + 1)
     return source.cut(start, i), i
+
+
+def _end(plain: re.Pattern[str], text: str, start: int) -> int:
+    """Where the plain letters from here on end."""
+    found = plain.match(text, start)
+    return found.end() if found else start
 
 
 def _quoted(source: SourceText, start: int, stops: str) -> tuple[SourceText, int]:

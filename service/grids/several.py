@@ -107,17 +107,14 @@ def _headings_out_of_comments(source: SourceText) -> SourceText:
 
 def _masked(source: SourceText) -> str:
     """The text in which all that stands in brackets and quotes is hidden."""
-    pieces, start = [], 0
+    pieces, start, after = [], 0, 0
     text = source.text
     ends = strict_pairs(source)
-    at = 0
-    while at < len(text):
-        if at in ends:
-            pieces += [text[start : at + 1], _HIDDEN * (ends[at] - at - 2)]
-            start = ends[at] - 1
-            at = ends[at]
-        else:
-            at += 1
+    for at in sorted(ends):
+        if at >= after:
+            after = ends[at]
+            pieces += [text[start : at + 1], _HIDDEN * (after - at - 2)]
+            start = after - 1
     return "".join([*pieces, text[start:]])
 
 

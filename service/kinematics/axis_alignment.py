@@ -12,27 +12,37 @@ from numpy.typing import NDArray
 from service.kinematics.tolerances import CLEARLY_NOT_PARALLEL, NOT_PARALLEL_BY_ROUNDING
 from service.kinematics.transforms import Matrices, Numbers, identity
 
+_EACH, _LAST = slice(None), slice(-1, None)
+
 
 def align_axes(source: Matrices, target: Matrices, sliding: NDArray[np.bool_]) -> Matrices:
     """The transform ``(L, 4, 4)`` that takes the axes ``source`` as near as can be to ``target``.
 
     Both are ``(joints, L, 4, 4)``; of a ``sliding`` axis the direction alone counts.
     """
-    aligned: Matrices = align_first_axes(source, target, sliding)[-1]
+    aligned: Matrices = _aligned(source, target, sliding, _LAST)[0]
     return aligned
 
 
 def align_first_axes(source: Matrices, target: Matrices, sliding: NDArray[np.bool_]) -> Matrices:
     """``align_axes`` for the first axis, the first two, the first three …: ``(n, L, 4, 4)``."""
-    rotation = _bases(target, sliding) @ np.swapaxes(_bases(source, sliding), -1, -2)
-    transform = identity(source.shape[:2])
+    return _aligned(source, target, sliding, _EACH)
+
+
+def _aligned(
+    source: Matrices, target: Matrices, sliding: NDArray[np.bool_], numbers: slice
+) -> Matrices:
+    """``align_axes`` for several of the numbers of first axes, 1 to n: ``(m, L, 4, 4)``."""
+    known = _known_to_first(len(source))[numbers]
+    rotation = _bases(target, sliding, known) @ np.swapaxes(_bases(source, sliding, known), -1, -2)
+    transform = identity(rotation.shape[:2])
     transform[..., :3, :3] = rotation
-    transform[..., :3, 3] = _translations(source, target, rotation, sliding)
+    transform[..., :3, 3] = _translations(source, target, rotation, sliding, numbers)
     return transform
 
 
-def _bases(axes: Matrices, sliding: NDArray[np.bool_]) -> Matrices:
-    """Right-handed bases ``(joints, L, 3, 3)`` that are fixed to the first axes: z along the first.
+def _bases(axes: Matrices, sliding: NDArray[np.bool_], known: NDArray[np.bool_]) -> Matrices:
+    """Right-handed bases ``(m, L, 3, 3)`` that are fixed to the ``known`` axes: z along the first.
 
     x comes from the first axis that is not parallel to it, or else from the first parallel one that
     lies elsewhere.
@@ -50,7 +60,7 @@ def _bases(axes: Matrices, sliding: NDArray[np.bool_]) -> Matrices:
     # Axes that should be parallel are nearly so where numbers were rounded: they come last.
     trust = 2 * (least > NOT_PARALLEL_BY_ROUNDING) + 2 * (least > CLEARLY_NOT_PARALLEL)
     trust[-1] = 1
-    chosen = np.where(_known_to_first(len(axes)), trust, -1).argmax(axis=1)
+    chosen = np.where(known, trust, -1).argmax(axis=1)
     x = across[chosen] / length[chosen][..., None]
     z = np.broadcast_to(z, x.shape)
     return np.stack([x, np.cross(z, x), z], axis=-1)
@@ -63,9 +73,13 @@ def _known_to_first(joints: int) -> NDArray[np.bool_]:
 
 
 def _translations(
-    source: Matrices, target: Matrices, rotation: Matrices, sliding: NDArray[np.bool_]
+    source: Matrices,
+    target: Matrices,
+    rotation: Matrices,
+    sliding: NDArray[np.bool_],
+    numbers: slice,
 ) -> Numbers:
-    """The shifts ``(joints, L, 3)`` after which the first turning axes meet, by least squares.
+    """The shifts ``(m, L, 3)`` after which the first turning axes meet, by least squares.
 
     With u along an axis and p from a point of the turned source to one of the target, it minimises
     Σ |(1 − u uᵀ)(p − shift)|².
@@ -75,7 +89,7 @@ def _translations(
     projection[sliding] = 0.0
     turned = (rotation[:, None] @ source[..., :3, 3, None])[..., 0]
     p = target[..., :3, 3] - turned
-    first = np.tri(len(source))[..., None, None]
-    left = projection.cumsum(axis=0)
+    first = np.tri(len(source))[numbers, ..., None, None]
+    left = projection.cumsum(axis=0)[numbers]
     right = ((projection @ p[..., None])[..., 0] * first).sum(axis=1)
     return np.asarray((np.linalg.pinv(left, hermitian=True) @ right[..., None])[..., 0])

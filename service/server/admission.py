@@ -5,9 +5,10 @@ next is begun: else a client that sends on many connections at once is served on
 A request of many gradings gives way after each. Looking at the sockets after each small request
 would cost as much as the request, so these go on for a slice of time.
 
-Requests that are likely to be costly have a queue of their own. While there are ordinary ones, the
-process rests from costly ones after each, by far longer than it took: so few of the others find it
-busy, whether they come in a row or now and then, from the same address or not.
+Requests that are likely to be costly have queues of their own, one for each class of cost. As long
+as there are ordinary ones now and then, the process rests from costly ones after each, by far
+longer than it took: so few of the others find it busy, whether they come in a row or not, from the
+same address or not. An ordinary one that is taken for costly waits for few and short rests.
 """
 
 import asyncio
@@ -15,18 +16,19 @@ import math
 from collections import deque
 from collections.abc import Awaitable, Callable, Generator
 from functools import partial
-from time import thread_time
-from typing import Any, Final
+from time import monotonic, thread_time
+from typing import Any, Final, NamedTuple
 
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.api.problems import ProblemError
 from service.api.turns import TURN
-from service.server.costs import Costs
+from service.server.costs import CLASSES, Costs, rest
 from service.server.crowd import client_key
 from service.server.fair_queue import FairQueue, Ticket
 from service.server.limits import HEALTH
+from service.server.pace import unit
 from service.server.refusals import too_busy, too_many
 from service.submissions.strict_json import MAX_BODY_SIZE
 
@@ -41,44 +43,76 @@ _CALLED: Final = 8
 # How many answers on health, and how many refusals, are given each time the sockets are looked at.
 # On a thousand connections, they alone would keep the process busy.
 SMALL: Final = 4
-# Seconds without an ordinary request after which costly ones need not rest.
-_CALM: Final = 1.0
+# Seconds without an ordinary request after which costly ones need not rest. Few students may come
+# only now and then.
+_CALM: Final = 10.0
 # The share of the last request in the mean time that a request takes.
 _RECENT: Final = 0.02
 _LONGEST_RETRY: Final = 30
 
 
+class Spent(NamedTuple):
+    """Seconds that a request takes: of the processor, and of everybody who waits for it."""
+
+    work: float
+    elapsed: float
+
+    @staticmethod
+    def now() -> "Spent":
+        """The clocks of both."""
+        return Spent(thread_time(), monotonic())
+
+    def since(self, other: "Spent") -> "Spent":
+        """What has been spent since then."""
+        return Spent(self.work - other.work, self.elapsed - other.elapsed)
+
+    def plus(self, other: "Spent") -> "Spent":
+        """Both together."""
+        return Spent(self.work + other.work, self.elapsed + other.elapsed)
+
+
 class Metered:
-    """An awaitable that notes the processor time of its own steps, whatever runs between them."""
+    """An awaitable that notes the time of its own steps, whatever runs between them."""
 
     def __init__(self, awaitable: Awaitable[None]) -> None:
         self._awaitable = awaitable
-        self._seconds = 0.0
-        self._began: float | None = None
+        self._spent = Spent(0.0, 0.0)
+        self._began: Spent | None = None
 
     @property
-    def seconds(self) -> float:
+    def spent(self) -> Spent:
         """The time so far, that of an unfinished step included."""
-        return self._seconds + (0.0 if self._began is None else thread_time() - self._began)
+        return (
+            self._spent if self._began is None else self._spent.plus(Spent.now().since(self._began))
+        )
 
     def __await__(self) -> Generator[Any, Any, None]:
         """Run the steps."""
         steps = self._awaitable.__await__()
         resume: Callable[[], Any] = partial(next, steps)
         while True:
-            self._began = thread_time()
+            self._began = Spent.now()
             try:
                 awaited = resume()
             except StopIteration:
                 return
             finally:
-                self._seconds, self._began = self.seconds, None
+                self._spent, self._began = self.spent, None
             try:
                 value = yield awaited
             except BaseException as error:  # noqa: BLE001 - handed on to where it belongs
                 resume = partial(steps.throw, error)
             else:
                 resume = partial(steps.send, value)
+
+
+class _Class:
+    """The requests of one class of cost, and the time of the loop from which one may be begun."""
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+        self.queue = FairQueue()
+        self.ready = float("-inf")
 
 
 class _Lane:
@@ -92,12 +126,13 @@ class _Lane:
 class FairAdmission:
     """Lets whole requests through to the application one by one, in turn by client."""
 
-    def __init__(self, app: ASGIApp) -> None:
+    def __init__(self, app: ASGIApp, measure: Callable[[], float] = unit) -> None:
         self.app = app
-        self._costs = Costs()
-        self._ordinary, self._costly = FairQueue(), FairQueue()
-        # The times of the loop at which a costly one ended, and an ordinary one came.
-        self._costly_ended = self._ordinary_came = float("-inf")
+        self._costs = Costs(measure)
+        self._classes = [_Class(number) for number in range(CLASSES)]
+        self._ordinary = self._classes[0]
+        # The time of the loop at which an ordinary request came.
+        self._ordinary_came = float("-inf")
         self._alarm: asyncio.TimerHandle | None = None
         # Processor time since the sockets were looked at; whether they will be.
         self._spent = 0.0
@@ -118,67 +153,71 @@ class FairAdmission:
         body, ended = await _body(receive)
         if body is None:
             return
+
+        def gone() -> bool:
+            return ended and _gone(receive)
+
         host, port = scope.get("client") or ("", 0)
         ticket = Ticket(client_key(host), port, len(body))
-        queue = self._queue(ticket)
-        if self._others_first(queue):
+        place = self._class(ticket)
+        if self._others_first(place):
             refusal = self._refusal(ticket)
             if refusal is not None:
                 body = b""
                 await self._small_turn(self._refusals)
                 await refusal.response(scope["path"])(scope, receive, send)
                 return
-            queue = await self._turn(ticket)
-            if ended and _gone(receive):
+            try:
+                place = await self._turn(ticket, gone)
+            except ClientDisconnect:
                 return
-        queue.begin(ticket)
-        charged = 0.0
+        place.queue.begin(ticket)
+        charged = Spent(0.0, 0.0)
 
         async def turn() -> None:
-            nonlocal charged, queue
-            charged += self._charge(queue, ticket, metered.seconds - charged)
-            queue = self._queue(ticket)
-            if self._others_first(queue):
-                queue = await self._turn(ticket)
-                if ended and _gone(receive):
-                    raise ClientDisconnect
-            queue.begin(ticket)
+            nonlocal charged, place
+            self._charge(place, ticket, metered.spent.since(charged))
+            charged = metered.spent
+            place = self._class(ticket)
+            if self._others_first(place):
+                place = await self._turn(ticket, gone)
+            place.queue.begin(ticket)
 
         inner = {**scope, TURN: turn}
         metered = Metered(self.app(inner, _again(body, ended, receive), send))
         try:
             await metered
         finally:
-            self._charge(queue, ticket, metered.seconds - charged)
+            self._charge(place, ticket, metered.spent.since(charged))
 
-    def _queue(self, ticket: Ticket) -> FairQueue:
-        """The queue of a request that has come."""
-        expected = self._costs.expected(ticket)
-        if self._costs.is_costly(expected):
-            ticket.expected = expected
-            return self._costly
-        ticket.expected = 0.0
-        self._ordinary_came = asyncio.get_running_loop().time()
-        return self._ordinary
+    def _class(self, ticket: Ticket) -> _Class:
+        """The class of a request that has come."""
+        number = self._costs.class_of(self._costs.expected(ticket))
+        if number == 0:
+            self._ordinary_came = asyncio.get_running_loop().time()
+        return self._classes[number]
 
-    def _others_first(self, queue: FairQueue) -> bool:
+    def _others_first(self, place: _Class) -> bool:
         """Whether others wait, or have to be heard first."""
-        return len(self._ordinary) > 0 or self._spent >= SLICE or queue is self._costly
+        return len(self._ordinary.queue) > 0 or self._spent >= SLICE or place is not self._ordinary
 
-    def _charge(self, queue: FairQueue, ticket: Ticket, seconds: float) -> float:
-        """Charge what a request, or one of its gradings, has taken; return it."""
+    def _charge(self, place: _Class, ticket: Ticket, spent: Spent) -> None:
+        """Charge what a request, or one of its gradings, has taken."""
+        seconds = spent.work
         self._spent += seconds
         self._look_soon()
-        queue.charge(ticket, seconds)
-        self._costs.note(ticket, seconds, ordinary=queue is self._ordinary)
-        if queue is self._costly or self._costs.is_costly(seconds):
-            self._costly_ended = asyncio.get_running_loop().time()
+        place.queue.charge(ticket, seconds)
+        self._costs.note(ticket, seconds)
+        if number := max(place.number, self._costs.class_of(seconds)):
+            now = asyncio.get_running_loop().time()
+            for each in self._classes[1:]:
+                steps = abs(each.number - number)
+                each.ready = max(each.ready, now + rest(spent.elapsed, steps))
         self._mean += _RECENT * (seconds - self._mean)
-        return seconds
 
     def _refusal(self, ticket: Ticket) -> ProblemError | None:
         """The problem of a request for which there is no place in the queues, or None."""
-        queues = (self._ordinary, self._costly)
+        queues = [each.queue for each in self._classes]
         requests, size = map(sum, zip(*(queue.of(ticket.client) for queue in queues), strict=True))
         if requests >= OF_ONE[0] or size + ticket.size > OF_ONE[1]:
             return too_many(self._seconds(requests))
@@ -190,19 +229,30 @@ class FairAdmission:
     def _seconds(self, requests: int) -> int:
         return min(max(1, math.ceil(requests * self._mean)), _LONGEST_RETRY)
 
-    async def _turn(self, ticket: Ticket) -> FairQueue:
-        """Wait until it is this request's turn and there is time; the queue that it came from."""
+    async def _turn(self, ticket: Ticket, gone: Callable[[], bool]) -> _Class:
+        """Wait until it is this request's turn and there is time; its class then.
+
+        Raises ClientDisconnect where the client has gone meanwhile.
+        """
         before = None
         while True:
             # Others like it may have been costly meanwhile.
-            queue = self._queue(ticket)
+            place = self._class(ticket)
             ticket.turn = asyncio.get_running_loop().create_future()
-            queue.push(ticket, again=queue is before)
+            place.queue.push(ticket, again=place is before)
             self._look_soon()
-            await ticket.turn
-            if self._spent < SLICE and (queue is self._costly or queue is self._queue(ticket)):
-                return queue
-            before = queue
+            try:
+                await ticket.turn
+            except asyncio.CancelledError:
+                # At the end of the process, when all have been hung up on.
+                if gone():
+                    raise ClientDisconnect from None
+                raise
+            if gone():
+                raise ClientDisconnect
+            if self._spent < SLICE and (place.number or place is self._class(ticket)):
+                return place
+            before = place
 
     async def _small_turn(self, lane: _Lane) -> None:
         """Wait, where too many small answers are asked for at once."""
@@ -227,8 +277,8 @@ class FairAdmission:
         self._looking, self._spent = False, 0.0
         called = self._call_costly()
         if not called:
-            while len(self._ordinary) and called < _CALLED:
-                called += _wake(self._ordinary.pop().turn)
+            while len(self._ordinary.queue) and called < _CALLED:
+                called += _wake(self._ordinary.queue.pop().turn)
         for lane in (self._health, self._refusals):
             lane.given = 0
             while lane.waiting and lane.given < SMALL:
@@ -239,18 +289,27 @@ class FairAdmission:
 
     def _call_costly(self) -> int:
         """Call up a costly request if its time has come; how many are called up."""
-        called = 0
-        loop = asyncio.get_running_loop()
-        while len(self._costly) and not called:
-            time = self._costly_ended + self._costs.rest(self._costly.next().expected)
-            if not len(self._ordinary):
-                time = min(time, self._ordinary_came + _CALM)
-            if time > loop.time():
-                if self._alarm is None:
-                    self._alarm = loop.call_at(time, self._ring)
-                break
-            called += _wake(self._costly.pop().turn)
-        return called
+        now = asyncio.get_running_loop().time()
+        calm = float("inf") if len(self._ordinary.queue) else self._ordinary_came + _CALM
+        times = []
+        for each in self._classes[1:]:
+            while len(each.queue):
+                if min(each.ready, calm) > now:
+                    times.append(min(each.ready, calm))
+                    break
+                if _wake(each.queue.pop().turn):
+                    return 1
+        if times:
+            self._ring_at(min(times))
+        return 0
+
+    def _ring_at(self, time: float) -> None:
+        """Look at the costly requests again at that time, if not before."""
+        if self._alarm is not None:
+            if self._alarm.when() <= time:
+                return
+            self._alarm.cancel()
+        self._alarm = asyncio.get_running_loop().call_at(time, self._ring)
 
     def _ring(self) -> None:
         self._alarm = None

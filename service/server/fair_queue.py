@@ -24,8 +24,6 @@ class Ticket:
     client: str
     connection: Hashable
     size: int
-    # Seconds of processor time by which it comes later than others of its client.
-    expected: float = 0.0
     # What the waiting request waits for.
     turn: Any = None
 
@@ -36,28 +34,27 @@ class _Accounts:
     def __init__(self) -> None:
         self.spent: dict[Hashable, float] = {}
         self._now = 0.0
-        # The tags of those who wait, when last looked at, in the order of their coming; the time
-        # by which each comes later.
-        self._tags: list[tuple[float, int, Any, float]] = []
+        # What those had who wait, when last looked at, in the order of their coming.
+        self._tags: list[tuple[float, int, Any]] = []
         self._came = 0
 
     def _start(self, key: Hashable) -> float:
         return max(self._now, self.spent.get(key, 0.0))
 
-    def wait(self, key: Hashable, later: float = 0.0) -> None:
-        """Let somebody wait who does not yet, as if he had had so much more."""
+    def wait(self, key: Hashable) -> None:
+        """Let somebody wait who does not yet."""
         self._came += 1
-        heapq.heappush(self._tags, (self._start(key) + later, self._came, key, later))
+        heapq.heappush(self._tags, (self._start(key), self._came, key))
 
     def least(self) -> Any:
         """Of those who wait, the one that has had the least. Raises IndexError where none waits."""
         while True:
-            tag, came, key, later = self._tags[0]
-            now = self.spent.get(key, 0.0) + later
-            if now <= tag:
+            tag, came, key = self._tags[0]
+            spent = self.spent.get(key, 0.0)
+            if spent <= tag:
                 return key
             # Something was charged meanwhile.
-            heapq.heapreplace(self._tags, (now, came, key, later))
+            heapq.heapreplace(self._tags, (spent, came, key))
 
     def leave(self) -> None:
         """Let the one that has had the least wait no more."""
@@ -105,7 +102,7 @@ class FairQueue:
         queues = self._waiting[ticket.client]
         if ticket.connection not in queues:
             queues[ticket.connection] = deque()
-            self._accounts(ticket.client).wait(ticket.connection, ticket.expected)
+            self._accounts(ticket.client).wait(ticket.connection)
         if again:
             queues[ticket.connection].appendleft(ticket)
         else:
@@ -130,7 +127,7 @@ class FairQueue:
         accounts.leave()
         self.charge(ticket, LEAST)
         if queues[connection]:
-            accounts.wait(connection, queues[connection][0].expected)
+            accounts.wait(connection)
         else:
             del queues[connection]
         if queues:

@@ -9,6 +9,7 @@ from service.catalogue import open_catalogue
 from service.server.access_log import set_up_access_log
 from service.server.admission import FairAdmission
 from service.settings import Settings, SettingsError
+from service.web import web_routes
 
 
 def installed_app(settings: Settings) -> FastAPI:
@@ -27,6 +28,7 @@ def installed_app(settings: Settings) -> FastAPI:
         feedback=settings.feedback,
         turns=FairAdmission,
         store=store,
+        pages=web_routes(catalogue),
     )
     set_up_access_log(addresses=settings.log_addresses)
     return app

@@ -34,6 +34,7 @@ class Supervisor:
         self._seats = Seats.of(number)
         self._workers: list[BaseProcess] = []
         self._signals = 0
+        self._last = signal.SIGTERM.value
 
     def run(self) -> bool:
         """Run until a signal comes; false where no worker could start."""
@@ -49,10 +50,15 @@ class Supervisor:
             self._listener.close()
             self._end(awake)
             signal.set_wakeup_fd(-1)
+        if self._signals > 1:
+            # As without workers: this process ends by the signal.
+            signal.signal(self._last, signal.SIG_DFL)
+            signal.raise_signal(self._last)
         return started
 
-    def _note(self, *_: object) -> None:
+    def _note(self, number: int, _: object) -> None:
         self._signals += 1
+        self._last = number
 
     def _start(self, place: int) -> BaseProcess:
         # A fresh interpreter: a fork would take over locks that another thread holds.

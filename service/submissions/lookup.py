@@ -2,8 +2,9 @@
 
 import difflib
 from collections.abc import Iterable, Mapping
+from typing import TypeVar
 
-from service.catalogue import Exercise
+_T = TypeVar("_T")
 
 # Comparing takes time that grows with the length, and nobody mistypes a name of this length.
 _LONGEST = 64
@@ -19,8 +20,8 @@ class UnknownExerciseError(LookupError):
         super().__init__(f"There is no exercise {exercise_id[:_LONGEST]!r}.{hint}")
 
 
-def find_exercise(catalogue: Mapping[str, Exercise], exercise_id: str) -> Exercise:
-    """The exercise with this id. Raises UnknownExerciseError."""
+def find_exercise(catalogue: Mapping[str, _T], exercise_id: str) -> _T:
+    """The exercise with this id, or what else stands for it. Raises UnknownExerciseError."""
     try:
         return catalogue[exercise_id]
     except KeyError:

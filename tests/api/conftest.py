@@ -1,7 +1,4 @@
 import asyncio
-import os
-import subprocess
-import sys
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -11,8 +8,7 @@ from fastapi import FastAPI
 
 from service.api.application import application
 from service.catalogue import Exercise, load_catalogue, shipped_folder
-from tests.api.serving import ROOT, announced_port
-from tests.guards import ANSWER
+from tests.api.serving import served
 
 
 class InProcess(httpx.BaseTransport):
@@ -55,18 +51,6 @@ def client_of() -> Any:
 
 @pytest.fixture(scope="module")
 def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
-    """The port of a real process: `python -m service serve`."""
-    log = tmp_path_factory.mktemp("server") / "log"
-    command = [sys.executable, "-m", "service", "serve", "--port", "0"]
-    with (
-        log.open("wb") as output,
-        subprocess.Popen(
-            command, cwd=ROOT, stdout=output, stderr=output, env=os.environ | {"NO_COLOR": "1"}
-        ) as process,
-    ):
-        try:
-            yield announced_port(process, log)
-        finally:
-            process.terminate()
-            process.wait(timeout=ANSWER)
-    assert "Traceback" not in log.read_text(encoding="utf-8")
+    """The port of a real process."""
+    with served(tmp_path_factory.mktemp("server")) as server:
+        yield server.port

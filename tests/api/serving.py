@@ -1,8 +1,15 @@
 """Helpers of the tests that start the real process."""
 
+import os
 import re
 import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
+
+from tests.guards import ANSWER
 
 ROOT = Path(__file__).parents[2]
 
@@ -18,3 +25,37 @@ def announced_port(process: subprocess.Popen[bytes], log: Path) -> int:
         except subprocess.TimeoutExpired:
             continue
         raise AssertionError(f"the server has ended:\n{text}")
+
+
+@dataclass(frozen=True)
+class Served:
+    """A process that serves."""
+
+    process: subprocess.Popen[bytes]
+    log: Path
+    port: int
+
+    @property
+    def address(self) -> str:
+        return f"http://127.0.0.1:{self.port}"
+
+
+@contextmanager
+def served(folder: Path, **environment: str) -> Iterator[Served]:
+    """A real process, `python -m service serve`, that logs into a folder; at last it is ended."""
+    log = folder / "log"
+    command = [sys.executable, "-m", "service", "serve"]
+    usual = {"NO_COLOR": "1", "DH_GRADER_PORT": "0"}
+    with (
+        log.open("wb") as output,
+        subprocess.Popen(
+            command, cwd=ROOT, stdout=output, stderr=output,
+            env=os.environ | usual | environment,
+        ) as process,
+    ):  # fmt: skip
+        try:
+            yield Served(process, log, announced_port(process, log))
+        finally:
+            process.terminate()
+            process.wait(timeout=ANSWER)
+    assert "Traceback" not in log.read_text(encoding="utf-8")

@@ -87,6 +87,8 @@ def test_an_exercise_shows_exactly_what_a_student_may_see(secretive: httpx.Clien
         "source": "none",
         "structure": "RP",
         "statement": "An arm.",
+        "statement_html": "<p>An arm.</p>\n",
+        "figure": True,
         "feedback": "hints",
         "symbols": [
             {

@@ -21,14 +21,16 @@ Schema = dict[str, Any]
 EXAMPLE_URLS = {
     "grade": "/v1/exercises/stanford-arm/grade",
     "grade-many": "/v1/grade",
+    "frames": "/v1/frames",
     "preview": "/v1/preview",
+    "preview-many": "/v1/previews",
 }
 ROUTES = {**EXAMPLE_URLS, "grade": "/v1/exercises/{exercise_id}/grade"}
 PROBLEM = {"$ref": "#/components/schemas/Problem"}
 # Written out, for they are the names of functions in other people's programs.
 OPERATIONS = {
-    "listExercises", "getExercise", "getSolution", "grade", "gradeMany", "recordAttempt", "preview", "getLiveness",
-    "getReadiness",
+    "listExercises", "getExercise", "getFigure", "getFrames", "getSolution", "grade",
+    "gradeMany", "recordAttempt", "preview", "previewMany", "getLiveness", "getReadiness",
 }  # fmt: skip
 NAMES = {
     "Exercise", "ExerciseList", "Part", "GradeRequest", "GradeManyRequest", "GradeManyResponse",
@@ -100,7 +102,7 @@ def test_the_examples_fit_their_schemas(document: Schema) -> None:
             if "example" in content:
                 strictly(document, content["schema"]).validate(content["example"])
                 count += 1
-    assert count == 9
+    assert count == 13
 
 
 def strictly(document: Schema, schema: Schema) -> Draft202012Validator:
@@ -130,6 +132,12 @@ ANSWERED = [
     ("POST", "/v1/grade", [], None),
     ("POST", "/v1/preview", {"text": "sin q1/2"}, None),
     ("POST", "/v1/preview", {"text": "theta 1 +"}, None),
+    (
+        "POST",
+        "/v1/previews",
+        {"exercise": "scara", "part": "table", "entries": [{"text": "q1*"}, {"text": "2 +"}]},
+        None,
+    ),
     (
         "POST",
         "/v1/preview",

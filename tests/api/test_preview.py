@@ -107,3 +107,38 @@ def test_one_entry_of_a_part_is_shown_as_one(client: httpx.Client) -> None:
     assert "rows" not in answer
     wrong = {**body, "text": "atan2(d2, d6"}
     assert client.post("/v1/preview", json=wrong).json()["error"]["code"] == "unbalanced_bracket"
+
+
+def preview_many(client: httpx.Client, entries: list[dict[str, str]]) -> list[dict[str, Any]]:
+    body = {"exercise": "rrrp", "part": "table", "entries": entries}
+    response = client.post("/v1/previews", json=body)
+    assert response.status_code == 200, response.text
+    results: list[dict[str, Any]] = response.json()["results"]
+    return results
+
+
+def test_entries_of_a_part_are_read_each_on_its_own_and_in_their_order(
+    client: httpx.Client,
+) -> None:
+    texts = ["q1*", "2 +", "-90°", "l2"]
+    results = preview_many(client, [{"text": text} for text in texts])
+    assert [each["ok"] for each in results] == [True, False, True, True]
+    assert [each.get("text") for each in results] == ["q1", None, "-90deg", "l2"]
+    assert results[1]["error"]["suggestion"] == "2"
+    # In a table a star marks the joint's variable, and need not be told.
+    assert results[0]["notes"] == []
+
+
+def test_many_entries_share_the_work_of_one_submission(client: httpx.Client) -> None:
+    hard = [{"text": "+".join(["sin(q1 q2 l3)"] * 60)}] * 190
+    results = preview_many(client, hard)
+    assert len(results) == 190
+    assert results[0]["ok"] is True
+    assert results[-1]["error"]["code"] == "too_long"
+
+
+def test_a_cell_below_a_unit_tells_what_to_write_without_the_header(client: httpx.Client) -> None:
+    text = "a [mm], alpha [deg], d, theta\n500, 180, 0, q1\n0, 0, 0, q2\n0, 0, 0, q3\n0, 0, q4, 0"
+    row = preview(client, text=text, exercise="rrrp", part="table")["rows"][0]
+    assert [cell["entry"] for cell in row] == ["500/1000", "180deg", "0", "q1"]
+    assert [cell["typed"] for cell in row] == ["500", "180", "0", "q1"]

@@ -6,13 +6,16 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import httpx
 import pytest
+from fastapi import FastAPI
 
 from service.api.application import application
-from service.api.solutions import KEPT, Solutions
+from service.api.kept import Kept
+from service.api.solutions import _solved
 from service.catalogue import Exercise
 from tests.api.conftest import InProcess
 
@@ -76,31 +79,16 @@ def test_the_documented_example_is_what_is_answered(tutor: httpx.Client) -> None
     assert documented == tutor.get(PATH.format("planar-rr")).json()
 
 
-def test_a_solution_is_kept_by_its_version(
-    catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    solved: list[str] = []
-
-    def solve(exercise: Exercise) -> bytes:
-        solved.append(exercise.version)
-        return exercise.version.encode()
-
-    monkeypatch.setattr("service.api.solutions._solved", solve)
-    exercise = catalogue["scara"]
-
-    async def ask() -> None:
-        solutions = Solutions()
-        asked = [solutions.of(exercise), solutions.of(exercise), solutions.of(exercise)]
-        assert await asyncio.gather(*asked) == [exercise.version.encode()] * 3
-        assert len(solved) == 1
-        for i in range(KEPT):
-            assert await solutions.of(replace(exercise, version=str(i))) == str(i).encode()
-        await solutions.of(replace(exercise, version=str(KEPT - 1)))
-        assert len(solved) == 1 + KEPT
-        await solutions.of(exercise)
-        assert len(solved) == 2 + KEPT
-
-    asyncio.run(ask())
+def test_a_changed_exercise_has_a_solution_of_its_own(
+    catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch,
+    client_of: Callable[[FastAPI], httpx.Client],
+) -> None:  # fmt: skip
+    monkeypatch.setattr("service.api.solutions._solved", lambda each: each.version.encode())
+    live = {"scara": catalogue["scara"]}
+    with client_of(application(live, solutions=True)) as tutor:
+        assert tutor.get(PATH.format("scara")).text == catalogue["scara"].version
+        live["scara"] = replace(catalogue["scara"], version="other")
+        assert tutor.get(PATH.format("scara")).text == "other"
 
 
 def test_the_loop_goes_on_while_one_is_worked_out(
@@ -108,10 +96,12 @@ def test_the_loop_goes_on_while_one_is_worked_out(
 ) -> None:
     """What stalls it is only the interpreter's hand-over between threads, some milliseconds."""
 
+    arm = catalogue["baxter-left-arm"]
+
     async def watched() -> tuple[float, float, int]:
         start = last = time.perf_counter()
         longest, turns = 0.0, 0
-        task = asyncio.create_task(Solutions().of(catalogue["baxter-left-arm"]))
+        task = asyncio.create_task(Kept().of("arm", partial(_solved, arm)))
         while not task.done():
             await asyncio.sleep(0)
             now = time.perf_counter()

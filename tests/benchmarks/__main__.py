@@ -20,7 +20,7 @@ from service.expressions import read
 from service.grading import Submission, grade
 from service.kinematics.chain import pose
 from service.kinematics.dh import Convention
-from tests.benchmarks import answers, paired, server
+from tests.benchmarks import answers, paired, server, starts
 from tests.benchmarks.timing import floor_seconds, multiple, multiple_of_each
 
 ENTRY = "-s1*(d3*s2 + d2*c2) + d2*c1"
@@ -56,6 +56,8 @@ SHARES = {
     "the same and new poses": 0.08,
 }
 FIRST_ANSWER_SECONDS = 1.0
+# The most that a whole process may take, its start included.
+START_SECONDS = {"dh-grader --help": 0.3, "dh-grader grade, one file": 0.8}
 
 
 def in_process() -> dict[str, float]:
@@ -112,9 +114,25 @@ def print_budgets(*, with_server: bool) -> None:
             "" if budget is None else "met" if times <= budget else "missed",
             f"{times * floor * 1e3:.3f}",
         )
+    add_starts(printed)
     if with_server:
         add_server_lines(printed)
     Console(width=120).print(printed)
+
+
+def add_starts(printed: Table) -> None:
+    """Add the processor time of whole processes, and how often an import of numpy goes into it."""
+    times = starts.start_seconds()
+    numpy_alone = next(iter(times.values()))
+    for what, seconds in times.items():
+        most = START_SECONDS.get(what)
+        printed.add_row(
+            f"{what} ({seconds / numpy_alone:.1f} times numpy alone)",
+            f"{seconds:.2f} s",
+            "" if most is None else f"≤ {most:g} s",
+            "" if most is None else "met" if seconds <= most else "missed",
+            f"{seconds * 1e3:.0f}",
+        )
 
 
 def add_server_lines(printed: Table) -> None:

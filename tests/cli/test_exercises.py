@@ -115,6 +115,33 @@ def test_where_no_part_asks_for_the_pose_it_is_shown_all_the_same(run: Run) -> N
     assert "Pose of the tool in the base frame\n[c1*(c2*(c4*c5*c6" in text
 
 
+def test_show_writes_the_figure(run: Run, tmp_path: Path) -> None:
+    file = tmp_path / "arm.svg"
+    assert run("exercises", "show", "scara", "--figure", file, "--theme", "dark").exit_code == 0
+    plain = file.read_text(encoding="utf-8")
+    assert plain.startswith("<svg ")
+    assert "frame-x" not in plain.partition("</style>")[2]
+    assert run("exercises", "show", "scara", "--figure", file, "--frames").exit_code == 0
+    assert "frame-x" in file.read_text(encoding="utf-8").partition("</style>")[2]
+
+
+@pytest.mark.parametrize(
+    ("exercise", "more", "reason"),
+    [
+        ("dh-conditions", [], "has no robot to draw"),
+        ("planar-rpr-poe", ["--frames"], "is given by screw axes"),
+        ("scara", [], "cannot be written"),
+    ],
+)
+def test_show_says_why_there_is_no_figure(
+    run: Run, tmp_path: Path, exercise: str, more: list[str], reason: str
+) -> None:
+    file = tmp_path if exercise == "scara" else tmp_path / "arm.svg"
+    result = run("exercises", "show", exercise, "--figure", file, *more)
+    assert result.exit_code == 2
+    assert reason in result.stderr.replace("\n", " ")
+
+
 def test_show_of_an_unknown_one_brings_the_nearest(run: Run) -> None:
     result = run("exercises", "show", "skara")
     assert result.exit_code == 2
@@ -145,12 +172,12 @@ def test_check_names_file_field_and_reason(run: Run, tmp_path: Path, whole_folde
     assert result.stdout == ""
 
 
-def test_a_broken_catalogue_stops_every_command(
+def test_a_broken_exercise_stops_every_command_that_needs_it(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "broken.toml").write_text(BROKEN, encoding="utf-8")
     monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", str(tmp_path))
-    for command in (["exercises", "list"], ["grade", "x.json", "--exercise", "a"], ["serve"]):
+    for command in (["exercises", "list"], ["grade", "x.json", "--exercise", "broken"], ["serve"]):
         result = run(*command)
         assert result.exit_code == 2
         assert "broken.toml: robot.table[0].alpha" in result.stderr

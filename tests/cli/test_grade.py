@@ -166,7 +166,7 @@ def test_an_interrupted_run_leaves_no_half_of_a_file(
             raise KeyboardInterrupt
         return grade(*arguments)
 
-    monkeypatch.setattr("service.cli.grade.grade", interrupted)
+    monkeypatch.setattr("service.cli.local_grading.grade", interrupted)
     result = table_only(run, answer, answer, "--format", "csv", "--output", target)
     assert result.exit_code != 0
     assert len(graded) == 2
@@ -311,3 +311,20 @@ def test_an_unknown_part_brings_the_nearest(run: Run, save: Save) -> None:
 )
 def test_a_wrong_command_line_is_unusable_input(run: Run, arguments: list[str]) -> None:
     assert run("grade", *arguments).exit_code == 2
+
+
+def test_a_class_is_a_folder_of_pages_with_an_overview(
+    run: Run, save: Save, tmp_path: Path
+) -> None:
+    files = [save(RIGHT, "anna.json"), save(HALF, "ben.json"), save(b"{", "cleo.json")]
+    folder = tmp_path / "class"
+    result = table_only(run, *files, "--format", "html", "--output", folder)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    pages = sorted(path.name for path in (folder / "reports").iterdir())
+    assert pages == ["anna.html", "ben.html", "cleo.html"]
+    assert "Class overview" in (folder / "index.html").read_text(encoding="utf-8")
+    (folder / "mine.txt").touch()
+    result = table_only(run, *files, "--format", "html", "--output", folder)
+    assert result.exit_code == 2
+    assert f"{folder}: holds 'mine.txt'" in result.stderr.replace("\n", "")

@@ -5,9 +5,13 @@ import json
 import os
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
+import typer
+
+from service.cli.program import COMMANDS
 
 ROOT = Path(__file__).parents[2]
 TABLE = {"answers": {"table": {"rows": [{"a": "l1 +", "alpha": 0, "d": 0, "theta": "q1"}]}}}
@@ -45,21 +49,43 @@ def test_help_names_every_command_and_the_program() -> None:
         assert word in text
 
 
-def test_grading_loads_neither_the_web_framework_nor_a_computer_algebra_system(
-    answer: Path,
-) -> None:
+def loaded(*arguments: object) -> tuple[set[str], bytes]:
+    """The modules that a command has loaded at its end, and its output."""
     probe = (
         "import sys; from service.cli import main\n"
         "try: main()\n"
-        "except SystemExit: pass\n"
-        "heavy = {'sympy', 'scipy', 'fastapi', 'starlette', 'uvicorn', 'httpx'}\n"
-        "print(sorted(heavy & set(sys.modules)), file=sys.stderr)"
+        "finally: print(*sys.modules, file=sys.stderr)"
     )
-    result = process(
-        "grade", answer, "--exercise", "planar-rrr", "--format", "json", python=("-c", probe)
-    )
-    assert json.loads(result.stdout)[0]["exercise"] == "planar-rrr"
-    assert result.stderr.decode().strip() == "[]"
+    result = process(*arguments, python=("-c", probe))
+    return set(result.stderr.decode().split()), result.stdout
+
+
+def test_help_and_version_load_nothing_of_the_grader() -> None:
+    for option in ("--help", "--version"):
+        modules, _ = loaded(option)
+        assert {name for name in modules if name.startswith("service.")} <= {
+            "service.cli", "service.cli.program", "service.version",
+        }  # fmt: skip
+        assert not {"numpy", "pydantic", "fastapi", "sympy", "httpx"} & modules
+
+
+def test_grading_loads_what_it_needs_and_no_more(answer: Path) -> None:
+    modules, output = loaded("grade", answer, "--exercise", "planar-rrr", "--format", "json")
+    assert json.loads(output)[0]["exercise"] == "planar-rrr"
+    assert {"numpy", "pydantic", "service.grading.kinds.dh_table"} <= modules
+    heavy = {"fastapi", "httptools", "httpx", "starlette", "sympy", "mpmath", "uvicorn", "uvloop"}
+    # http.client would be loaded with all of the mail package, for nothing.
+    slow = {"http.client", "rich.markdown", "rich.table", "scipy", "unittest"}
+    unused = {"service.api", "service.authoring", "service.server", "service.solutions"}
+    assert modules & (heavy | slow | unused) == set()
+
+
+def test_the_help_says_of_each_command_what_the_command_says_itself() -> None:
+    assert len(COMMANDS) >= 3
+    for name, line in COMMANDS.items():
+        command = typer.main.get_command(import_module(f"service.cli.{name}").commands)
+        assert (command.help or "").partition("\n")[0] == line
+        assert "completion" not in command.get_help(typer.Context(command))
 
 
 def test_the_service_loads_no_computer_algebra_system() -> None:

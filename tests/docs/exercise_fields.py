@@ -27,6 +27,7 @@ from service.catalogue.schema import (
     RobotSpec,
     ScrewRobotSpec,
     SymbolSpec,
+    ViewSpec,
 )
 
 Schema = Mapping[str, Any]
@@ -102,6 +103,7 @@ def page() -> str:
         _section("## `[robot]` with screw axes", ScrewRobotSpec),
         _section("## `[symbols]`", SymbolSpec),
         _section("## `[attempts]`", AttemptsSpec),
+        _section("## `[view]`", ViewSpec),
         _section("## `[[parts]]`", PartSpec, _PARTS),
         _section(f"### {', '.join(f'`{kind}`' for kind in poses)}", PosePartSpec, _POSES),
     ]

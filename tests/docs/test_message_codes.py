@@ -117,6 +117,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
         ),
     ),
     (("Screws",), (f"{DIAGNOSIS}screw_axis.py", f"{DIAGNOSIS}home_position.py")),
+    (("A table that is drawn",), ("figures/table_frames.py",)),
     (("Parts as a whole",), ("grading/follow_through.py", "grading/grade.py")),
 )
 

@@ -10,7 +10,15 @@ DOCS = Path(__file__).parents[2] / "docs"
 
 
 @pytest.mark.parametrize(
-    ("page", "commands"), [("write-an-exercise.md", 10), ("marks.md", 1), ("formats.md", 12)]
+    ("page", "commands"),
+    [
+        ("write-an-exercise.md", 10),
+        ("marks.md", 1),
+        ("formats.md", 12),
+        ("assignments.md", 3),
+        ("ci/README.md", 3),
+        ("figures.md", 2),
+    ],
 )
 def test_a_page_comes_true(
     page: str, commands: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

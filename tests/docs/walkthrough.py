@@ -7,7 +7,7 @@ What its code blocks do is said behind the three backticks:
     toml FILE         is added to the end of the file
     toml FILE instead replaces what the block before has added
     json FILE         becomes the file
-    toml, json        is only read
+    toml, json, sh    is only read
 
 In what is printed `…` stands for anything within a line, and alone on a line for any lines.
 `$ export NAME=VALUE` sets a variable for the commands that follow.
@@ -68,7 +68,11 @@ class Reader:
                 case "json":
                     json.loads(block.text)
                     for name in block.words:
-                        (self._folder / name).write_text(block.text, encoding="utf-8")
+                        file = self._folder / name
+                        file.parent.mkdir(parents=True, exist_ok=True)
+                        file.write_text(block.text, encoding="utf-8")
+                case "sh":
+                    pass
                 case other:
                     pytest.fail(f"line {block.line}: nothing is known of blocks of {other}")
 

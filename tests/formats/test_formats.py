@@ -76,7 +76,8 @@ def test_each_submission_is_written_before_the_next_but_one_is_graded(name: str)
     for written, _ in enumerate(report_format(name).pieces(many(), setting())):
         ahead = max(ahead, taken - written)
     assert taken == 49
-    assert ahead <= 1
+    # Text waits for nine submissions to know whether each gets a line only.
+    assert ahead <= (8 if name == "text" else 1)
 
 
 def test_names_of_parts_are_told_apart() -> None:

@@ -1,60 +1,19 @@
 import re
 import sys
 from collections.abc import Iterator
-from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
 
 from tests import chromium
+from tests.formats.html_reader import PageReader
 from tests.formats.submissions import HOSTILE, cases, document
-
-# Of each element that the page has, the attributes that it may have; none of them is a link, a
-# script or a style.
-ALLOWED = {
-    "html": {"lang"}, "head": set(), "body": set(), "style": set(), "title": set(),
-    "meta": {"charset", "http-equiv", "content", "name"}, "article": set(), "section": {"class"},
-    "header": {"class"}, "footer": set(), "h1": set(), "h2": set(), "h3": set(), "p": {"class"},
-    "div": {"class"}, "span": {"class", "title"}, "strong": set(), "code": set(), "ul": {"class"},
-    "li": set(), "table": set(), "thead": set(), "tbody": set(), "tr": set(), "td": {"class"},
-    "th": {"scope"}, "svg": {"class", "role", "aria-label", "viewbox"},
-    "circle": {"class", "cx", "cy", "r", "stroke-width", "stroke-dasharray", "transform"},
-    "text": {"x", "y", "text-anchor"},
-}  # fmt: skip
-VOID = {"meta"}
-
-
-class Reader(HTMLParser):
-    """Checks what is open and closed, and keeps the texts of the page."""
-
-    def __init__(self, page: str) -> None:
-        super().__init__(convert_charrefs=True)
-        self.open: list[str] = []
-        self.texts: list[str] = []
-        self.feed(page)
-        self.close()
-        assert self.open == []
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        assert {name for name, _ in attrs} <= ALLOWED[tag]
-        if tag not in VOID:
-            self.open.append(tag)
-
-    def handle_endtag(self, tag: str) -> None:
-        assert self.open.pop() == tag
-
-    def handle_data(self, data: str) -> None:
-        if self.open[-1:] != ["style"]:
-            self.texts.append(data)
-
-    def handle_comment(self, data: str) -> None:
-        pytest.fail(f"a comment: {data}")
 
 
 def read(*names: str) -> str:
     page = document("html", *(cases()[name] for name in names))
     assert page.startswith("<!doctype html>\n")
-    return " ".join(Reader(page).texts)
+    return " ".join(PageReader(page).texts)
 
 
 @pytest.mark.parametrize("case", cases())
@@ -93,9 +52,7 @@ def page() -> Iterator[chromium.Page]:
         yield page
 
 
-@pytest.mark.skipif(
-    chromium.PROGRAM is None or sys.platform == "win32", reason="needs a Chromium on the PATH"
-)
+@pytest.mark.skipif(chromium.FOUND is None or sys.platform == "win32", reason="needs a Chromium")
 def test_a_browser_shows_it_light_dark_and_on_paper(page: chromium.Page, tmp_path: Path) -> None:
     file = tmp_path / "page.html"
     file.write_text(document("html", *cases().values()), encoding="utf-8")

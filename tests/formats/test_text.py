@@ -20,6 +20,7 @@ from service.grading import (
     Severity,
     Verdict,
 )
+from tests.formats.submissions import cases, document
 
 V = Verdict
 WRONG_TWIST = Feedback(
@@ -192,3 +193,32 @@ def test_points_are_written_short() -> None:
 def test_points_are_not_rounded_up_to_all_of_them() -> None:
     assert points(7.999, 8.0) == "7.99 / 8"
     assert points(8.0, 8.0) == "8 / 8"
+
+
+def of_class(*names: str) -> str:
+    return document("text", *(cases()[name] for name in names))
+
+
+def test_one_submission_is_told_to_pass_or_not() -> None:
+    assert of_class("right").endswith("\nPassed: the pass mark is 80 %.\n")
+    assert of_class("wrong").endswith("\nNot passed: the pass mark is 80 %.\n")
+    assert "submissions" not in of_class("right")
+
+
+def test_several_are_summed_up() -> None:
+    page = of_class("right", "wrong", "wrong", "unusable")
+    assert page.count("(dh_table)") == 3
+    summary = page[page.index("4 submissions: ") :]
+    assert "1 of 3 graded passed (pass mark 80 %), 1 not graded" in summary
+    # The twist of link 2 is a quarter turn off; it is counted in submissions, and told in words.
+    assert "   2  α is not right: compare the two z axes. (quarter_turn in table)" in summary
+
+
+def test_a_class_has_a_line_each() -> None:
+    names = ["right", *["wrong"] * 7, "unusable", "unreadable"]
+    page = of_class(*names)
+    assert "(dh_table)" not in page
+    verdicts = [line[:10].strip() for line in page.splitlines()[: len(names)]]
+    assert verdicts == ["passed", *["not passed"] * 7, "not graded", "not passed"]
+    assert "10 submissions: 1 of 9 graded passed" in page
+    assert "What could not be read most often" in page

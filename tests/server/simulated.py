@@ -18,6 +18,8 @@ from service.server.admission import FairAdmission
 
 # Seconds from an answer to the client's next request: the wire, and the client's own work.
 WIRE = 0.0003
+# Seconds of a unit of work.
+UNIT = 0.00027
 
 
 class _Clock(selectors.SelectSelector):
@@ -33,14 +35,18 @@ class _Clock(selectors.SelectSelector):
 
 
 class Process:
-    """A process behind the admission, in which each request takes the time that it says."""
+    """A process behind the admission, in which each request takes the time that it says.
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    ``slow`` says how many times as long as on a fast machine a unit of work takes.
+    """
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, slow: float = 1.0) -> None:
         self._clock = _Clock()
         self.loop = asyncio.SelectorEventLoop(self._clock)
         monkeypatch.setattr(self.loop, "time", lambda: self._clock.now)
-        monkeypatch.setattr(admission, "thread_time", lambda: self._clock.now)
-        self._app = FairAdmission(self._work)
+        for clock in ("thread_time", "monotonic"):
+            monkeypatch.setattr(admission, clock, lambda: self._clock.now)
+        self._app = FairAdmission(self._work, lambda: slow * UNIT)
 
     def run(self, seconds: float, *clients: Coroutine[Any, Any, None]) -> None:
         """Run the clients, as long as that."""

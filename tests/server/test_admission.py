@@ -322,6 +322,21 @@ def test_a_cancelled_request_does_not_stop_the_others() -> None:
     run(story())
 
 
+@pytest.mark.usefixtures("alike")
+def test_who_waits_at_the_end_of_the_process_is_given_up_without_an_error() -> None:
+    async def story() -> None:
+        inner = Application()
+        clients = [Client(name) for name in "abc"]
+        tasks = begin(FairAdmission(inner), *clients)
+        await passes(1)
+        clients[1].gone.set()
+        tasks[1].cancel()
+        assert await asyncio.gather(*tasks, return_exceptions=True) == [None, None, None]
+        assert inner.served == ["a", "c"]
+
+    run(story())
+
+
 @pytest.mark.parametrize("size", [0, 2, 65537, MAX_BODY_SIZE, MAX_BODY_SIZE + 1, 3 * 10**6])
 def test_the_application_reads_the_body_as_it_was_sent(size: int) -> None:
     async def story() -> None:
@@ -372,6 +387,6 @@ def test_only_the_time_of_a_request_s_own_steps_is_measured() -> None:
         other = asyncio.ensure_future(others())
         await metered
         await other
-        return metered.seconds
+        return metered.spent.work
 
     assert 0.04 <= asyncio.run(measured()) < 0.15

@@ -2,10 +2,12 @@
 
 import pytest
 
-from service.server.costs import Costs
+from service.server.costs import Costs, rest
 from service.server.fair_queue import Ticket
 
-ORDINARY, COSTLY = 0.001, 0.040
+ORDINARY, COSTLY = 0.002, 0.060
+# Half of what is expected at first.
+UNIT = 0.00015
 
 
 def ticket(connection: int, size: int = 600, client: str = "campus") -> Ticket:
@@ -14,11 +16,10 @@ def ticket(connection: int, size: int = 600, client: str = "campus") -> Ticket:
 
 @pytest.fixture
 def costs() -> Costs:
-    """After some ordinary requests on one connection, and a costly one on another."""
-    costs = Costs()
-    for _ in range(20):
-        costs.note(ticket(1), ORDINARY, ordinary=True)
-    costs.note(ticket(2, 5000), COSTLY, ordinary=True)
+    """After an ordinary request on one connection, and a costly one on another."""
+    costs = Costs(lambda: UNIT)
+    costs.note(ticket(1), ORDINARY)
+    costs.note(ticket(2, 5000), COSTLY)
     return costs
 
 
@@ -41,43 +42,41 @@ def costs() -> Costs:
     ],
 )  # fmt: skip
 def test_who_has_been_costly_is_expected_to_be(costs: Costs, asked: Ticket, costly: bool) -> None:
-    assert costs.is_costly(costs.expected(asked)) is costly
+    assert (costs.class_of(costs.expected(asked)) > 0) is costly
 
 
 def test_a_cheap_request_does_not_hide_that_others_are_costly(costs: Costs) -> None:
-    costs.note(ticket(2), ORDINARY, ordinary=False)
-    assert costs.is_costly(costs.expected(ticket(2)))
+    costs.note(ticket(2), ORDINARY)
+    assert costs.class_of(costs.expected(ticket(2)))
     for _ in range(3):
-        costs.note(ticket(2), ORDINARY, ordinary=False)
-    assert not costs.is_costly(costs.expected(ticket(2)))
+        costs.note(ticket(2), ORDINARY)
+    assert costs.class_of(costs.expected(ticket(2))) == 0
 
 
-def test_what_is_costly_depends_on_the_machine_and_the_course() -> None:
-    costs = Costs()
-    assert costs.is_costly(0.030)
-    for _ in range(200):
-        costs.note(ticket(1), 0.004, ordinary=True)
-    assert not costs.is_costly(0.030)
-    assert costs.is_costly(0.100)
+def test_what_is_costly_depends_on_the_machine() -> None:
+    pace = UNIT
+    costs = Costs(lambda: pace)
+    seconds = [0.023, 0.025, 0.049, 0.095, 0.097, 9.0]
+    assert [costs.class_of(each) for each in seconds] == [0, 1, 2, 2, 3, 3]
+    pace = 8 * UNIT
+    for _ in range(100):
+        costs.note(ticket(1), 0.2)
+    assert [costs.class_of(4 * each) for each in seconds] == [0, 1, 2, 2, 3, 3]
 
 
-def test_trifles_make_nothing_costly() -> None:
-    costs = Costs()
-    for _ in range(1000):
-        costs.note(ticket(1), 0.0001, ordinary=True)
-    assert not costs.is_costly(0.008)
-    assert costs.is_costly(0.012)
+def test_a_single_measurement_says_little() -> None:
+    paces = iter([UNIT, 100 * UNIT])
+    costs = Costs(lambda: next(paces))
+    costs.note(ticket(1), 0.3)
+    assert costs.class_of(0.030) == 1
 
 
-def test_the_costlier_the_longer_is_the_rest() -> None:
-    costs = Costs()
-    assert 3 * 0.014 <= costs.rest(0.0141) < 4 * 0.014
-    assert 11 * 0.028 < costs.rest(0.028) < 13 * 0.028
-    assert costs.rest(0.100) == costs.rest(10.0) == 2.0
+def test_the_rest_is_longer_for_those_of_the_same_class() -> None:
+    assert [rest(0.040, steps) for steps in range(3)] == [9 * 0.040, 4.5 * 0.040, 2.25 * 0.040]
 
 
 def test_what_is_kept_is_bounded() -> None:
-    costs = Costs()
+    costs = Costs(lambda: UNIT)
     for number in range(11_000):
-        costs.note(ticket(number, number), ORDINARY, ordinary=True)
+        costs.note(ticket(number, number), ORDINARY)
     assert len(costs._means) == 10_000

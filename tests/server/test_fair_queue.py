@@ -72,13 +72,6 @@ def test_connections_of_one_address_are_told_apart() -> None:
     assert costly == pytest.approx(16 * 0.0015 / 0.040 * 3000 / 6, rel=0.2)
 
 
-def test_of_connections_alike_one_that_is_expected_to_take_longer_comes_later() -> None:
-    queue = FairQueue()
-    for connection, expected in enumerate((0.040, 0.010, 0.020)):
-        queue.push(Ticket("a", connection, 1, expected))
-    assert [take(queue).expected for _ in range(3)] == [0.010, 0.020, 0.040]
-
-
 def test_who_was_away_has_no_credit() -> None:
     queue = FairQueue()
     wait(queue, "here")

@@ -111,7 +111,7 @@ def test_a_second_signal_ends_it_at_once(tmp_path: Path, options: tuple[str, ...
         assert running.process.poll() is None
         began = time.monotonic()
         running.process.terminate()
-        running.process.wait(ANSWER)
+        assert running.process.wait(ANSWER) == -signal.SIGTERM
         # Without it, the half body would keep it for eight seconds.
         assert time.monotonic() - began < 5
         until(lambda: not any(map(runs, staff)))

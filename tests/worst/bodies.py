@@ -19,6 +19,7 @@ def _previewed(text: str, part: str) -> Attack:
 
 _HALVES: Final = [[halves(4 * i + j) for j in range(4)] for i in range(4)]
 _REPAIRS: Final = [[f"(tehta1 + {i}.{j}" for j in range(4)] for i in range(6)]
+_DECIMALS: Final = [[f"{0.317 * (i + 2) * (j - 1.7):.3g}" for j in range(4)] for i in range(7)]
 _UNKNOWN: Final = {"answers": {f"part{i}": 0 for i in range(15_500)}}
 
 KNOWN: Final[Mapping[str, Attack]] = {
@@ -37,8 +38,14 @@ KNOWN: Final[Mapping[str, Attack]] = {
     "unread cells in either convention": Attack(
         GRADE, f"{ARM}-either", {"answers": {"table": {"rows": LONG_TABLE}}}
     ),
-    "decimals of three figures": _graded(
-        table=[[f"{0.317 * (i + 2) * (j - 1.7):.3g}" for j in range(4)] for i in range(6)]
+    "decimals of three figures": _graded(table=_DECIMALS[:6]),
+    "a row too many, a cell unread, and padded links": _graded(
+        table=[*_DECIMALS[:6], ["", *_DECIMALS[6][1:]]], links=padded(24)
+    ),
+    "decimals and halves, told in a file": Attack(
+        FILE,
+        f"{ARM}-either",
+        {"answers": {"table": _DECIMALS[:6], "links": [_DECIMALS[:4]] * 6, "pose": _HALVES}},
     ),
     "long rows of names": Attack(
         GRADE, ARM, {"answers": {"table": [{f"k{i}": 0 for i in range(1500)}] * 12}}

@@ -7,7 +7,6 @@ import statistics
 import tempfile
 import time
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cached_property
@@ -18,15 +17,15 @@ from fastapi import FastAPI
 from rich.console import Console
 
 from service.api.application import application
-from service.catalogue import Exercise, FeedbackLevel
-from service.cli.submission_files import UnusableFileError, read_submission
+from service.catalogue import Exercise
+from service.cli.local_grading import GradingTerms, graded
 from service.expressions import reader, reading_work
 from service.expressions.evaluation import decimals
 from service.expressions.parsing import words
 from service.formats import report_format
-from service.formats.shared.graded import GradedFile, GradedSubmission, answered
 from service.formats.shared.report_format import Setting
-from service.grading import UnknownPartError, grade
+from service.submissions.assignment import of_one
+from service.submissions.handed_in import all_handed_in
 from tests.benchmarks.floors import stanford_pose
 
 GRADE, PREVIEW, FILE = "grade", "preview", "file"
@@ -131,14 +130,11 @@ class Target:
 
     def _file(self, path: Path, exercise: str) -> int:
         """As `dh-grader grade` does with a file, told as text."""
-        with suppress(UnusableFileError, UnknownPartError), Path("/dev/null").open("w") as nothing:
-            submission = read_submission(path, None).submission(FeedbackLevel.FULL)
-            told = answered(self.exercises[exercise])
-            report = grade(self.exercises[exercise], submission)
-            graded = GradedFile(str(path), told, report)
-            handed_in = GradedSubmission(str(path), path.stem, (graded,), pass_mark=0.8)
-            setting = Setting((told,), Console(file=nothing, width=80), datetime.now(UTC))
-            for _ in report_format("text").pieces([handed_in], setting):
+        terms = GradingTerms(of_one(self.exercises[exercise]), pass_mark=0.8)
+        [handed_in] = all_handed_in([path])
+        submission = graded(handed_in, terms)
+        with Path("/dev/null").open("w") as nothing:
+            setting = Setting(terms.answered, Console(file=nothing, width=80), datetime.now(UTC))
+            for _ in report_format("text").pieces([submission], setting):
                 pass
-            return 200
-        return 422
+        return 200 if submission.is_graded else 422

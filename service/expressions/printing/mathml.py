@@ -1,8 +1,8 @@
 """A tree -> presentation MathML, as typed and not rearranged."""
 
 import re
+from html import escape  # that of xml.sax would load an HTTP client
 from typing import Final
-from xml.sax.saxutils import escape
 
 from service.expressions.characters import greek
 from service.expressions.printing.brackets import (
@@ -113,7 +113,7 @@ def _identifier(text: str) -> str:
     plain = _STARS.get(plain, plain)
     tag = "mn" if plain.isdigit() else "mo" if plain in _STARS.values() else "mi"
     upright = " mathvariant='normal'" if in_command and len(plain) == 1 and tag == "mi" else ""
-    return f"<{tag}{upright}>{escape(greek.LETTERS.get(plain, plain))}</{tag}>"
+    return f"<{tag}{upright}>{escape(greek.LETTERS.get(plain, plain), quote=False)}</{tag}>"
 
 
 def _call(function: str, arguments: list[str]) -> str:

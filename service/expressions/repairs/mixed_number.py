@@ -2,7 +2,7 @@ r"""2½ and 2\frac{1}{2}, which are a sum in one notation and a product in the o
 
 import re
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
 
 _NUMBER = re.compile(r"([0-9.]+)\s*$")
 
@@ -19,7 +19,7 @@ def repair(failure: Failure) -> Repair:
         alone = not number.start() and end == len(failure.source.rstrip())
         suggestion = failure.replaced(total if alone else f"({total})", (number.start(), end))
     message = (
-        f"A number with {failure.written} after it can mean a sum or a product. "
+        f"A number with {quoted(failure.written)} after it can mean a sum or a product. "
         f"Write it out: + {fraction} or *({fraction})."
     )
     return error(failure, "two_values", message, suggestion)

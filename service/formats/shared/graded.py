@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
-from service.catalogue import Exercise
 from service.grading import Report
 from service.grading.report import rounded_points
+from service.submissions.outline import SetExercise
 
 # Scores are rounded to six digits, so 1/3 passes a pass mark of 0.33333333.
 _ROUNDED = 5e-7
@@ -40,7 +40,7 @@ class AnsweredExercise:
         return sum(part.points for part in self.parts)
 
 
-def answered(exercise: Exercise, worth: float | None = None) -> AnsweredExercise:
+def answered(exercise: SetExercise, worth: float | None = None) -> AnsweredExercise:
     """The exercise as it stands in results; it counts its own points, or else ``worth``."""
     parts = tuple(AnsweredPart(part.id, part.title, part.points) for part in exercise.parts)
     worth = sum(part.points for part in parts) if worth is None else worth
@@ -50,6 +50,8 @@ def answered(exercise: Exercise, worth: float | None = None) -> AnsweredExercise
 @dataclass(frozen=True, slots=True)
 class GradedFile:
     """A file with its report, or with the problem because of which there is none.
+
+    With both, a part of what was handed in could not be used.
 
     ``file`` is its name; empty where an exercise has no file.
     """
@@ -110,8 +112,8 @@ class GradedSubmission:
 
     @property
     def problems(self) -> tuple[str, ...]:
-        """The problems because of which files have no report."""
-        return tuple(file.problem for file in self.files if file.report is None)
+        """The problems of its files, each once."""
+        return tuple(dict.fromkeys(file.problem for file in self.files if file.problem))
 
     @property
     def passed(self) -> bool:

@@ -71,15 +71,18 @@ def _message(
     return Message(
         severity=feedback.severity,
         verdict=verdict,
-        places=visible(_places(places, rows)),
+        places=visible(places_in_words(places, rows)),
         text=visible(feedback.message),
         offers=visible(" ".join(offers)),
         example=_counterexample(feedback.values) if feedback.values else "",
     )
 
 
-def _places(places: Iterable[Place], rows: Sequence[RowReport]) -> str:
-    """The places in few words: ``row 1 d, theta; rows 2, 3``."""
+def places_in_words(places: Iterable[Place], rows: Sequence[RowReport] = ()) -> str:
+    """The places in few words: ``row 1 d, theta; rows 2, 3``.
+
+    Of ``rows`` all the cells are known, so that a whole one is not told cell by cell.
+    """
     complete = {row.label: [cell.label for cell in row.cells] for row in rows}
     cells: dict[str, list[str]] = {}
     for place in places:
@@ -116,7 +119,9 @@ def _correction(feedback: Feedback, rows: Sequence[RowReport]) -> str:
     for place in feedback.places or ():
         if place.correction is not None:
             at.setdefault(place.correction, []).append(place)
-    told = [f"{_places(places, rows)}: {_told(correction)}" for correction, places in at.items()]
+    told = [
+        f"{places_in_words(places, rows)}: {_told(correction)}" for correction, places in at.items()
+    ]
     return " ".join([*found, *told])
 
 

@@ -11,8 +11,9 @@ _COMMAND: Final = re.compile(r"(?<=([:#]))(?=\1)")
 
 def visible(text: str) -> str:
     """The text in one line without control and invisible characters, or commands to a build."""
-    shown = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
-    return _COMMAND.sub(" ", shown)
+    if not text.isprintable():
+        text = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
+    return _COMMAND.sub(" ", text)
 
 
 def code_pieces(text: str) -> list[tuple[str, bool]]:
@@ -54,6 +55,11 @@ def points(earned: float, most: float) -> str:
 def percent(score: float) -> str:
     """A score, 0..1, in per cent: ``87.5 %``, not rounded up to a mark that was not reached."""
     return f"{int(score * 1000 + 1e-6) / 10:g} %"
+
+
+def whole_percent(share: float) -> str:
+    """A share, 0..1, in whole per cent: ``87 %``, never rounded up."""
+    return f"{int(share * 100 + 1e-6)} %"
 
 
 def number(value: float) -> str:

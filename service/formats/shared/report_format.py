@@ -32,20 +32,33 @@ class UnusableSettingError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
+class Document:
+    """A file of a folder: its path there, in which ``/`` stands between names, and its content."""
+
+    path: str
+    pieces: Iterable[bytes]
+
+
+@dataclass(frozen=True, slots=True)
 class ReportFormat:
     """One format of reports.
 
     ``pieces`` takes submissions one by one and yields the document piece by piece; it decides
     nothing: no points, no verdicts. It raises UnusableSettingError before its first piece.
-    ``is_single`` says that a document holds one submission. ``for_students`` says that students
+    ``is_single`` says that a document holds one submission. ``is_stream`` says that the pieces so
+    far are of use without those to come. ``for_students`` says that students
     read the document, so that it tells no more than the exercise allows unless more is asked for.
-    ``shows_entries`` says that it shows how each cell was read.
+    ``shows_entries`` says that it shows how each cell was read. ``folder`` writes several
+    submissions as files of one folder, one after the other, each to be written before the next is
+    asked for.
     """
 
     pieces: Callable[[Iterable[GradedSubmission], Setting], Iterator[bytes]]
     is_single: bool = False
+    is_stream: bool = False
     for_students: bool = False
     shows_entries: bool = False
+    folder: Callable[[Iterable[GradedSubmission], Setting], Iterator[Document]] | None = None
 
 
 def single(

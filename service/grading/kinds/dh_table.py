@@ -14,7 +14,11 @@ from service.grading.diagnosis.table_explained import explained, freedom_lost
 from service.grading.feedback import Finding
 from service.grading.follow_through import stands_still
 from service.grading.judging.convention import judged_in_convention
-from service.grading.judging.own_frames.best_roles import roles_in, rows_of_mechanism
+from service.grading.judging.own_frames.best_roles import (
+    roles_in,
+    rows_of_mechanism,
+    usual_rows,
+)
 from service.grading.judging.own_frames.remarks import OWN_FRAME_CHOICE
 from service.grading.judging.own_frames.row_roles import FrameFreedom, freedom_of
 from service.grading.judging.report_rows import (
@@ -49,8 +53,9 @@ _QUANTITIES = tuple(QUANTITIES.values())
 _EXTRA_ROW = "extra_row"
 # The work of finding a freedom that the joints have lost, as the budget counts it.
 FREEDOM_WORK = 8.0
-# The work of judging a row of a wrong table, with frames that are given or free.
-ROW_WORK, FREE_ROW_WORK = 6.0, 12.0
+# The work of judging a wrong table once: with given frames, with free ones (and more for each row),
+# and with a free base or tool or free directions too.
+GIVEN_WORK, FREE_WORK, FREE_ROW_WORK, ALL_FREE_WORK = 12.0, 20.0, 4.0, 60.0
 # With so many wrong cells two misconceptions at once are looked for.
 WRONG_THROUGHOUT = 3
 
@@ -72,7 +77,7 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     if judged.is_right:
         return judged
     budget, work = grading.reader.budget, _search_work(part, answer, grading)
-    budget.affords_search(work)
+    budget.charge_search(work)
     if (intended := by_other_numbering(answer, grading)) is not None:
         without = _judged_as_read(part, intended.table, grading)
         return _with_slip(intended, without, judged, grading)
@@ -99,11 +104,17 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
 
 def _search_work(part: DhTableSpec, answer: StudentTable, grading: Grading) -> float:
     """The work of judging a wrong table as it is written, or as it may have been intended."""
-    of_row = ROW_WORK if freedom_of(part) == FrameFreedom() else FREE_ROW_WORK
-    ways = 2 if part.convention == "either" and answer.convention is None else 1
-    has_rows_too_many = len(answer.rows) > len(grading.exercise.joints) + 1
+    rows = len(answer.rows)
+    once = FREE_WORK + FREE_ROW_WORK * rows
+    if part.frames == "given":
+        once = GIVEN_WORK
+    elif freedom_of(part) != FrameFreedom():
+        once = ALL_FREE_WORK
+    convention = answer.convention if part.convention == "either" else part.convention
+    ways = 2 if convention is None else 1
+    has_rows_too_many = rows > usual_rows(convention or grading.exercise.robot.convention, grading)
     has_unread_cells = np.isnan(answer.values).any()
-    return of_row * len(answer.rows) * (ways + int(has_rows_too_many) + int(has_unread_cells))
+    return once * (ways + int(has_rows_too_many) + int(has_unread_cells))
 
 
 def _count_wrong(judged: Judged) -> int:

@@ -68,11 +68,17 @@ class Reader:
     budget: WorkBudget = field(default_factory=WorkBudget)
 
     @classmethod
-    def of(cls, exercise: Exercise, samples: Samples, angle_unit: AngleUnit) -> Self:
+    def of(
+        cls,
+        exercise: Exercise,
+        samples: Samples,
+        angle_unit: AngleUnit,
+        budget: WorkBudget | None = None,
+    ) -> Self:
         """The reader of a submission to an exercise."""
         units = {variable.unit for variable in exercise.variables if variable.kind == "length"}
         unit = units.pop() if len(units) == 1 else None
-        return cls(exercise.vocabulary, samples, angle_unit, unit)
+        return cls(exercise.vocabulary, samples, angle_unit, unit, budget or WorkBudget())
 
     def read(self, raw: object, quantity: Kind, *, in_table: bool = False) -> Entry:
         """The entry for a JSON value. Whatever it is, the worst that comes back is unreadable.

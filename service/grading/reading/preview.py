@@ -34,14 +34,16 @@ class CellPreview:
 
     ``row`` and ``column`` are labels as in a report: "1", "2" …, and "a", "alpha", "d", "theta" or
     the column's number. ``span`` is the cell's [from, to) in the pasted text, ``typed`` what stands
-    there. A cell left empty is neither read nor a problem. A cell beyond the work budget has no
-    LaTeX and no MathML.
+    there, and ``entry`` what is to be written in the cell alone for the same reading: below a
+    header with a unit that is another text. A cell left empty is neither read nor a problem. A cell
+    beyond the work budget has no LaTeX and no MathML.
     """
 
     row: str
     column: str
     span: Span
     typed: str
+    entry: str = ""
     text: str = ""
     latex: str = ""
     mathml: str = ""
@@ -76,9 +78,7 @@ def preview_pasted(
     The part says whether a table is pasted, a matrix or several. A matrix of any size is read:
     grading checks the size. Raises LookupError for a part that does not exist.
     """
-    spec = exercise.part(part)
-    if spec is None:
-        raise LookupError(f"exercise {exercise.id!r} has no part {part!r}")
+    spec = _part(exercise, part)
     reader = Reader.of(exercise, draw(exercise, text), angle_unit)
     try:
         preview = _preview(text, exercise, spec, reader)
@@ -91,6 +91,37 @@ def preview_pasted(
         return preview
     note = Note("work_limit", _WORK_LIMIT, (0, len(text)))
     return replace(preview, notes=(*preview.notes, note))
+
+
+def preview_entries(
+    entries: Sequence[tuple[str, Kind]],
+    exercise: Exercise,
+    part: str,
+    angle_unit: AngleUnit = "radians",
+) -> tuple[CellPreview, ...]:
+    """The readings of single entries of a part, each with what is asked for there.
+
+    They share one work budget, as the entries of a submission do, and have empty labels. Raises
+    LookupError for a part that does not exist.
+    """
+    spec = _part(exercise, part)
+    reader = Reader.of(exercise, draw(exercise, part), angle_unit)
+    in_table = spec.pasted_as == "table"
+    return tuple(
+        _read(
+            reader.read(text, quantity, in_table=in_table),
+            CellPreview("", "", (0, len(text)), text, text),
+            reader.budget,
+        )
+        for text, quantity in entries
+    )
+
+
+def _part(exercise: Exercise, part: str) -> PartSpec:
+    spec = exercise.part(part)
+    if spec is None:
+        raise LookupError(f"exercise {exercise.id!r} has no part {part!r}")
+    return spec
 
 
 def _preview(text: str, exercise: Exercise, spec: PartSpec, reader: Reader) -> PastedPreview:
@@ -113,10 +144,14 @@ def _table(text: str, reader: Reader) -> PastedPreview:
             typed = text[slice(*span)]
             rows.append((CellPreview(str(i + 1), "", span, typed, problem=problem),))
             continue
+        cells = (
+            _cell(entry, cell, (str(i + 1), column), reader.budget)
+            for entry, cell, column in zip(entries, row.cells, COLUMNS, strict=True)
+        )
         rows.append(
             tuple(
-                _cell(entry, cell, (str(i + 1), column), reader.budget)
-                for entry, cell, column in zip(entries, row.cells, COLUMNS, strict=True)
+                replace(cell, entry=cell.text) if header.unit and cell.text else cell
+                for cell, header in zip(cells, table.headers, strict=True)
             )
         )
     return PastedPreview(tuple(rows), _notes(table.findings))
@@ -161,12 +196,16 @@ def _notes(findings: Iterable[Finding]) -> tuple[Note, ...]:
 
 
 def _cell(entry: Entry, cell: GridCell, place: tuple[str, str], budget: WorkBudget) -> CellPreview:
-    empty = CellPreview(*place, cell.whole, cell.text)
-    if not cell.text:
+    return _read(entry, CellPreview(*place, cell.whole, cell.text, cell.text), budget)
+
+
+def _read(entry: Entry, empty: CellPreview, budget: WorkBudget) -> CellPreview:
+    """The preview of a cell that is still empty, with the entry that was read from it."""
+    if not empty.typed:
         return empty
     if entry.expression is None:
         [finding] = entry.findings
-        span = finding.span or cell.whole
+        span = finding.span or empty.span
         problem = Problem(finding.code, finding.hint, span, finding.suggestion)
         return replace(empty, problem=problem)
     expression = entry.expression
@@ -180,7 +219,7 @@ def _cell(entry: Entry, cell: GridCell, place: tuple[str, str], budget: WorkBudg
         latex=latex,
         mathml=mathml,
         symbols=tuple(sorted(expression.symbols)),
-        notes=tuple(Note(f.code, f.hint, f.span or cell.whole) for f in entry.findings),
+        notes=tuple(Note(f.code, f.hint, f.span or empty.span) for f in entry.findings),
     )
 
 

@@ -7,6 +7,7 @@ a line, in the names of ``ROBOT``:
     text that is read | its meaning as normal text
 """
 
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -54,6 +55,23 @@ def test_refused(repair: str, case: RepairCase) -> None:
         assert str(case.text)[slice(*error.span)] == case.part
     if case.answer is not None:
         read(case.answer, names)
+
+
+@pytest.mark.parametrize("repair", NAMES)
+def test_a_message_shows_no_separator_of_records(repair: str) -> None:
+    """This character counts as blank space, so it may stand within whatever a message quotes."""
+    texts = {str(case.text) for case in repair_cases(repair) if len(str(case.text)) < 30}
+    split = [f"{text[:i]}\x1e{text[i:]}" for text in texts for i in range(len(text) + 1)]
+    messages = [error.message for error in map(partial(_error, vocabulary(repair)), split) if error]
+    assert [message for message in messages if not message.isprintable()] == []
+
+
+def _error(names: Vocabulary, text: str) -> ExpressionError | None:
+    try:
+        read(text, names)
+    except ExpressionError as error:
+        return error
+    return None
 
 
 @pytest.mark.parametrize(("repair", "case"), ACCEPTED)

@@ -41,7 +41,7 @@ def _best_as_written(
     if len(nearest.roles) < len(rows):
         # A row of zeros that was left out may be one in which something is missing.
         other = roles_in(rows, convention, grading, expected_rows=len(rows))
-    elif len(rows) == len(joints) and len(rows) < _usual_rows(convention, grading):
+    elif len(rows) == len(joints) and len(rows) < usual_rows(convention, grading):
         # The row that is missing need not be the last.
         other, price = roles_in(rows, convention, grading, in_order=False), WRONG_CELL
     elif len(rows) > len(joints):
@@ -66,7 +66,7 @@ def roles_in(
     Without ``expected_rows`` as many are expected as the reference has. ``in_order`` says whether
     the rows are in the order of the joints, where that is known.
     """
-    expected_rows = expected_rows or _usual_rows(convention, grading)
+    expected_rows = expected_rows or usual_rows(convention, grading)
     rows = without_idle_rows(rows, expected_rows)
     joints = grading.exercise.robot.joints
     roles = roles_of(rows, joints, grading.samples, expected_rows, in_order=in_order)
@@ -78,7 +78,7 @@ def nearest_with_tool_row(
 ) -> NearestTable:
     """The nearest valid table: with the rows as they are, or with the tool row that they lack."""
     nearest = nearest_for_roles(roles, convention, freedom, grading)
-    if nearest.cost < WRONG_CELL or len(roles) >= _usual_rows(convention, grading):
+    if nearest.cost < WRONG_CELL or len(roles) >= usual_rows(convention, grading):
         return nearest
     longer = nearest_for_roles((*roles, Role(None, None)), convention, freedom, grading)
     return longer if longer.cost + WRONG_CELL <= nearest.cost else nearest
@@ -99,7 +99,7 @@ def rows_of_mechanism(
     Chosen by the joint variables alone, so that of several guesses at a row it is not the right one
     that is taken.
     """
-    usual, joints = _usual_rows(convention, grading), grading.exercise.robot.joints
+    usual, joints = usual_rows(convention, grading), grading.exercise.robot.joints
     if len(rows) <= usual:
         return list(range(len(rows)))
     roles = [role for role in roles_of(rows, joints, grading.samples, usual) if role.row]
@@ -108,7 +108,7 @@ def rows_of_mechanism(
     return [*of_joints, *range(last + 1, len(roles))[: usual - len(joints)]]
 
 
-def _usual_rows(convention: Convention, grading: Grading) -> int:
+def usual_rows(convention: Convention, grading: Grading) -> int:
     """How many rows the reference's table has, or would have without fixed ones."""
     robot = grading.exercise.robot
     reference = robot.tables.get(convention)

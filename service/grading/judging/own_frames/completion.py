@@ -25,7 +25,7 @@ from service.grading.judging.own_frames.row_roles import (
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE
 from service.grading.samples import HALF, SAMPLES, Samples
-from service.grading.work_budget import WorkBudget
+from service.grading.work_budget import JUDGING_WORK, WorkBudget
 from service.kinematics.chain import A, D, Table, frames
 from service.kinematics.dh import Convention
 from service.kinematics.frame_choice import WRONG_CELL
@@ -164,7 +164,8 @@ def _can_be_completed(case: _Case, budget: WorkBudget) -> bool:
             constants, signs, base, tool, damping, error, columns, size = (
                 each[kept] for each in (constants, signs, base, tool, damping, error, columns, size)
             )
-        if not budget.affords_search(STEP_WORK + columns.shape[0] * columns.shape[1] * CELL_WORK):
+        work = STEP_WORK + columns.shape[0] * columns.shape[1] * CELL_WORK
+        if not budget.affords_search(work, JUDGING_WORK):
             return False
         change = _step(error, columns, damping)
         if step > PATIENCE and _promise(change, error, columns).max() < LEAST_PROMISE:

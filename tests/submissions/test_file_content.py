@@ -1,14 +1,12 @@
 """Files that would take long to read are refused before they are."""
 
-from pathlib import Path
-
 import pytest
 
-from service.cli.submission_files import (
+from service.submissions.file_content import (
     MAX_TOML_DOTS,
     MAX_TOML_SIZE,
     UnusableFileError,
-    read_submission,
+    read_content,
 )
 
 
@@ -21,15 +19,12 @@ from service.cli.submission_files import (
     ],
     ids=["dots", "keys"],
 )
-def test_toml_that_takes_long_is_refused(tmp_path: Path, content: str) -> None:
-    file = tmp_path / "answers.toml"
-    file.write_text(content, encoding="utf-8")
+def test_toml_that_takes_long_is_refused(content: str) -> None:
     with pytest.raises(UnusableFileError, match="is more TOML than 64 KiB or 2,000 dots"):
-        read_submission(file, None)
+        read_content(content.encode(), "answers.toml")
 
 
-def test_toml_within_the_limits_is_read(tmp_path: Path) -> None:
-    file = tmp_path / "answers.toml"
+def test_toml_within_the_limits_is_read() -> None:
     cells = ", ".join(["1.5"] * (MAX_TOML_DOTS - 1))
-    file.write_text(f"[answers]\ntable = [{cells}]", encoding="utf-8")
-    assert read_submission(file, None).answers == {"table": [1.5] * (MAX_TOML_DOTS - 1)}
+    content = read_content(f"[answers]\ntable = [{cells}]".encode(), "answers.toml")
+    assert content.value == {"answers": {"table": [1.5] * (MAX_TOML_DOTS - 1)}}

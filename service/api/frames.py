@@ -1,0 +1,218 @@
+"""The route that says where everything is: the frames of a table, the parts of a mechanism."""
+
+from collections import OrderedDict
+from collections.abc import Hashable, Iterator, Mapping, Set
+from typing import Any, Final
+
+import numpy as np
+from fastapi import APIRouter, Request, Response
+
+from service.api.bodies import body_as
+from service.api.lookup import Catalogue, Location, require_exercise
+from service.api.openapi import posting
+from service.api.problems import ProblemError, invalid
+from service.catalogue import Exercise
+from service.contract.frames import (
+    DrawnConfiguration,
+    DrawnMechanism,
+    FramesAnswer,
+    FramesOfTable,
+    FramesRequest,
+    LostFreedom,
+    MovingJoint,
+    TableToDraw,
+    UnreadCell,
+)
+from service.contract.preview import PreviewError
+from service.figures.figure import plainest_view, subject_of
+from service.figures.mechanism import Configuration, MovableMechanism, mechanism_of
+from service.figures.scope import DrawingScope, free_scope
+from service.figures.table_frames import table_frames
+from service.figures.view import View
+from service.grading.feedback import Finding, UnreadableAnswerError
+from service.kinematics.transforms import Numbers
+
+_KEPT: Final = 64
+
+
+class _Mechanisms:
+    """Mechanisms at the lengths that they were last asked for: one per drag of a slider."""
+
+    def __init__(self) -> None:
+        self._kept: OrderedDict[Hashable, tuple[MovableMechanism, View]] = OrderedDict()
+
+    def of(self, exercise: Exercise, numbers: Mapping[str, float]) -> tuple[MovableMechanism, View]:
+        """The mechanism of an exercise that has one, with these numbers, and its view."""
+        key = (exercise.id, exercise.version, exercise.view, *numbers.values())
+        if key not in self._kept:
+            subject = subject_of(exercise)
+            mechanism = mechanism_of(subject.reference, numbers)
+            self._kept[key] = mechanism, subject.view or plainest_view(mechanism, numbers)
+            while len(self._kept) > _KEPT:
+                self._kept.popitem(last=False)
+        self._kept.move_to_end(key)
+        return self._kept[key]
+
+
+def routes(catalogue: Catalogue) -> APIRouter:
+    """The route that gives frames."""
+    router = APIRouter(prefix="/v1", tags=["drawing"])
+    mechanisms = _Mechanisms()
+
+    @router.post(
+        "/frames",
+        operation_id="getFrames",
+        summary="Say where frames and links are",
+        response_description="Numbers to draw with.",
+        **posting(FramesRequest, FramesAnswer, "frames"),
+    )
+    async def frames(request: Request) -> Response:
+        """Say where the frames of a table and the links of an exercise's mechanism are.
+
+        A table may be wrong, or half written: its frames go as far as it can be read. Nothing of a
+        mechanism answers the exercise: no frames, no parameters, only what a picture shows.
+        """
+        body = await body_as(FramesRequest, request)
+        answer = _answered(catalogue, body, mechanisms)
+        content = answer.model_dump_json(exclude_none=True)
+        return Response(content, media_type="application/json")
+
+    return router
+
+
+def _answered(catalogue: Catalogue, body: FramesRequest, mechanisms: _Mechanisms) -> FramesAnswer:
+    """The answer to a request. Raises ProblemError for one that does not fit together."""
+    exercise = None if body.exercise is None else require_exercise(catalogue, body.exercise)
+    scope = _scope(exercise, body)
+    constants = [variable.name for variable in scope.variables if variable.joint is None]
+    if unknown := sorted(body.symbols.keys() - set(constants)):
+        raise _refused(("symbols", unknown[0]), "There is no such symbol")
+    numbers = scope.numbers(body.symbols)
+    amounts = _amounts(body, scope, numbers)
+    table = mechanism = None
+    used: Set[str] = set(constants)
+    if body.table is not None:
+        table, symbols = _table(body.table, body, scope, numbers, amounts)
+        # Of the letters of a book only those that the table uses.
+        used = used if exercise else symbols
+    if exercise is not None:
+        mechanism = _mechanism(exercise, numbers, amounts, mechanisms)
+    return FramesAnswer(
+        symbols={name: numbers[name] for name in constants if name in used},
+        joints=list(_joints(scope, numbers)),
+        table=table,
+        mechanism=mechanism,
+    )
+
+
+def _scope(exercise: Exercise | None, body: FramesRequest) -> DrawingScope:
+    structure = body.table.structure if body.table else None
+    if exercise is not None:
+        if exercise.reference is None:
+            raise _refused(("exercise",), f"The exercise {exercise.id} has no robot to draw")
+        if structure not in (None, exercise.structure):
+            message = f"The joints of {exercise.id} are {exercise.structure}; leave this out"
+            raise _refused(("table", "structure"), message)
+        return DrawingScope.of(exercise)
+    if body.table is None:
+        raise _refused((), "Name an exercise, give a table, or both")
+    if structure is None:
+        message = "Write one letter for each joint, R if it turns and P if it slides"
+        raise _refused(("table", "structure"), message)
+    return free_scope(structure)
+
+
+def _refused(place: Location, message: str) -> ProblemError:
+    return invalid([{"type": "unfit", "loc": place, "msg": message}])
+
+
+def _amounts(body: FramesRequest, scope: DrawingScope, numbers: Mapping[str, float]) -> Numbers:
+    """The joint values of each picture, ``(pictures, joints)``."""
+    if body.joints is None:
+        return np.array([[numbers[joint.variable] for joint in scope.joints]])
+    for i, values in enumerate(body.joints):
+        if len(values) != len(scope.joints):
+            message = f"The robot has {len(scope.joints)} joints; write a number for each"
+            raise _refused(("joints", i), message)
+    return np.array(body.joints)
+
+
+def _joints(scope: DrawingScope, numbers: Mapping[str, float]) -> Iterator[MovingJoint]:
+    ranges = {variable.name: variable for variable in scope.variables}
+    for joint in scope.joints:
+        variable = ranges[joint.variable]
+        yield MovingJoint(
+            joint=joint.index,
+            variable=joint.variable,
+            kind="P" if joint.prismatic else "R",
+            low=variable.low,
+            high=variable.high,
+            home=numbers[joint.variable],
+        )
+
+
+def _table(
+    table: TableToDraw,
+    body: FramesRequest,
+    scope: DrawingScope,
+    numbers: Mapping[str, float],
+    amounts: Numbers,
+) -> tuple[FramesOfTable, Set[str]]:
+    """The frames of the table, and the symbols in it."""
+    try:
+        found = table_frames(table.rows, table.convention, scope, numbers, amounts, body.angle_unit)
+    except UnreadableAnswerError as error:
+        reason = _error(error.finding)
+        nothing = FramesOfTable(
+            complete=False, frames=[], unread=[], error=reason, lost_freedoms=[]
+        )
+        return nothing, set()
+    drawn = FramesOfTable(
+        complete=found.complete,
+        frames=_plain(found.frames),
+        unread=[
+            UnreadCell(row=cell.row, column=cell.column, error=_error(cell.finding))
+            for cell in found.unread
+        ],
+        degrees_of_freedom=found.freedoms,
+        lost_freedoms=[LostFreedom.model_validate(each) for each in found.lost],
+    )
+    return drawn, found.symbols
+
+
+def _error(finding: Finding) -> PreviewError:
+    return PreviewError(
+        code=finding.code,
+        message=finding.hint,
+        span=finding.span or (0, 0),
+        suggestion=finding.suggestion,
+    )
+
+
+def _mechanism(
+    exercise: Exercise, numbers: Mapping[str, float], amounts: Numbers, mechanisms: _Mechanisms
+) -> DrawnMechanism:
+    mechanism, view = mechanisms.of(exercise, numbers)
+    return DrawnMechanism(
+        size=mechanism.size,
+        azimuth=view.azimuth,
+        elevation=view.elevation,
+        configurations=[_configuration(each) for each in mechanism.at(amounts)],
+    )
+
+
+def _configuration(shown: Configuration) -> DrawnConfiguration:
+    return DrawnConfiguration(
+        centres=_plain(shown.centres),
+        axes=_plain(shown.axes),
+        links=[_plain(link) for link in shown.links],
+        base=_plain(shown.base),
+        base_normal=_plain(shown.base_normal),
+        tool=_plain(shown.tool),
+        tool_direction=_plain(shown.tool_direction),
+    )
+
+
+def _plain(numbers: Numbers) -> Any:
+    """Numbers as lists, rounded far below what can be seen, and without a negative 0."""
+    return (np.round(numbers, 12) + 0.0).tolist()

@@ -1,0 +1,91 @@
+"""The external grader of PrairieLearn: an image, and a question that it grades.
+
+Source: https://prairielearn.readthedocs.io/en/latest/externalGrading/.
+"""
+
+import json
+import uuid
+from collections.abc import Iterator
+from html import escape
+from typing import Final
+
+from service.bundles.archive import BundledFile
+from service.bundles.content import BundleContent, template
+from service.catalogue import Exercise
+
+ENTRY_POINT: Final = "/usr/local/bin/grade-submission"
+# The program starts and grades within two seconds; a container on a busy machine takes longer.
+_SECONDS: Final = 60
+# What pl-file-upload takes: the endings of files that `dh-grader grade` reads.
+_PATTERNS: Final = ", ".join(
+    f"*.{ending}" for ending in ("json", "toml", "csv", "tsv", "md", "tex", "m", "py", "txt")
+)
+
+
+def files(content: BundleContent) -> list[BundledFile]:
+    """The folders ``image``, to be built, and ``question``, to be put into a course."""
+    dockerfile = template("prairielearn", "Dockerfile")
+    script = template("prairielearn", "grade-submission")
+    return [
+        *(_moved("image", file) for file in content.program()),
+        BundledFile("image/Dockerfile", dockerfile),
+        BundledFile("image/grade-submission", script, is_executable=True),
+        *(_moved("question/tests", file) for file in content.files),
+        BundledFile("question/info.json", _info(content)),
+        BundledFile("question/question.html", _page(content)),
+    ]
+
+
+def _moved(folder: str, file: BundledFile) -> BundledFile:
+    return BundledFile(f"{folder}/{file.name}", file.content, file.is_executable)
+
+
+def _info(content: BundleContent) -> bytes:
+    ids = " ".join(exercise.id for exercise in content.exercises)
+    info = {
+        # The same question keeps its uuid when it is bundled anew.
+        "uuid": str(uuid.uuid5(uuid.NAMESPACE_URL, f"dh-grader {content.title} {ids}")),
+        "title": content.title,
+        "topic": "Forward kinematics",
+        "type": "v3",
+        "singleVariant": True,
+        "gradingMethod": "External",
+        "externalGradingOptions": {
+            "enabled": True,
+            "image": content.image,
+            "entrypoint": ENTRY_POINT,
+            "timeout": _SECONDS,
+        },
+    }
+    return (json.dumps(info, indent=2, ensure_ascii=False) + "\n").encode()
+
+
+def _page(content: BundleContent) -> bytes:
+    exercises = "".join(line for each in content.exercises for line in _exercise(each))
+    return (
+        f"<pl-question-panel>\n{exercises}"
+        f'  <pl-file-upload optional-file-patterns="{_PATTERNS}"></pl-file-upload>\n'
+        "</pl-question-panel>\n"
+        "<pl-submission-panel>\n"
+        "  <pl-external-grader-results></pl-external-grader-results>\n"
+        "  <pl-file-preview></pl-file-preview>\n"
+        "</pl-submission-panel>\n"
+    ).encode()
+
+
+def _exercise(exercise: Exercise) -> Iterator[str]:
+    """The statement, and each part with the names of the files that may answer it."""
+    yield f"  <h4>{_text(exercise.title)}</h4>\n"
+    for paragraph in exercise.statement.split("\n\n"):
+        yield f"  <p>{_text(' '.join(paragraph.split()))}</p>\n"
+    yield f"  <p>Hand in <code>{exercise.id}.json</code>, with an answer to each part:</p>\n"
+    yield "  <ul>\n"
+    for part in exercise.parts:
+        title = f"{_text(part.title)} ({part.points:g} points)"
+        yield f"    <li><code>{part.id}</code>: {title}. {_text(part.prompt)}</li>\n"
+    yield "  </ul>\n"
+
+
+def _text(text: str) -> str:
+    """Text as HTML shows it; PrairieLearn would fill in what stands between double braces."""
+    return escape(text).replace("{", "&#123;").replace("}", "&#125;")

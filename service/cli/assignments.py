@@ -1,0 +1,88 @@
+"""`dh-grader assignments`: files that set several exercises together."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.text import Text
+
+from service.cli.terminal import installed_exercise, stdout
+from service.formats.shared.plain_text import number, percent, visible
+from service.submissions.answers import ExerciseAnswers, answers_in
+from service.submissions.assignment import AssignedExercise, Assignment, load_assignment
+from service.submissions.handed_in import HandedIn, all_handed_in
+
+commands = typer.Typer(
+    help="Several exercises that are set together.", no_args_is_help=True, add_completion=False
+)
+
+
+@commands.callback()
+def _group() -> None:
+    """Keep `check` a command of its own, though it is the only one."""
+
+
+@commands.command("check")
+def check(
+    file: Annotated[Path, typer.Argument(metavar="FILE", show_default=False)],
+    folder: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="[FOLDER]",
+            help="Submissions of a class: tell which of their files would answer what.",
+            show_default=False,
+        ),
+    ] = None,
+) -> None:
+    """Check an assignment file, and tell what it sets. Nothing is graded.
+
+    Exit code 2: the file, or the file of an exercise of its own, cannot be used.
+    """
+    assignment = load_assignment(file, installed_exercise)
+    console = stdout()
+    for line in _lines(assignment):
+        console.print(line, soft_wrap=True)
+    for handed in all_handed_in([folder]) if folder else ():
+        for line in _found(handed, assignment):
+            console.print(line, soft_wrap=True)
+
+
+def _lines(assignment: Assignment) -> Iterator[Text]:
+    exercises = assignment.exercises
+    total = number(sum(each.worth for each in exercises))
+    many = f"{len(exercises)} exercise{'' if len(exercises) == 1 else 's'}"
+    mark = percent(assignment.pass_mark)
+    yield Text.assemble(
+        (visible(assignment.title), "bold"), f": {many}, {total} points, pass mark {mark}"
+    )
+    for each in exercises:
+        parts = ", ".join(part.id for part in each.exercise.parts)
+        level = assignment.ceiling(each)
+        yield Text.assemble(
+            "  ", (each.exercise.id, "bold"), f", {number(each.worth)} points: {parts}",
+            (f"; students are told {level}; files {visible(_files(each))}", "dim"),
+        )  # fmt: skip
+
+
+def _files(assigned: AssignedExercise) -> str:
+    """The names of files that answer the exercise."""
+    own = assigned.exercise.id
+    named = assigned.files or (f"{own}.json", f"{own}/PART.csv", "and the like")
+    of_parts = (f"{', '.join(names)} for {part}" for part, names in assigned.part_files.items())
+    return ", ".join((*of_parts, *named))
+
+
+def _found(handed: HandedIn, assignment: Assignment) -> Iterator[Text]:
+    yield Text(visible(handed.name), "bold")
+    answered = zip(assignment.exercises, answers_in(handed, assignment), strict=True)
+    for assigned, answers in answered:
+        yield Text(f"  {assigned.exercise.id}: {visible(_answered(answers))}")
+
+
+def _answered(answers: ExerciseAnswers) -> str:
+    if answers.problem:
+        return f"{answers.file} {answers.problem}"
+    if answers.body is None or not answers.body.answers:
+        return "missing"
+    return f"{', '.join(answers.body.answers)} from {answers.file}"

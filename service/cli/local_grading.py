@@ -1,0 +1,115 @@
+"""The grading of what one student handed in, here and now."""
+
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from service.catalogue import Exercise
+from service.formats.shared.graded import (
+    AnsweredExercise,
+    GradedFile,
+    GradedSubmission,
+    answered,
+)
+from service.grading import FeedbackLevel, Report, Submission, grade
+from service.submissions.answers import ExerciseAnswers, answers_in
+from service.submissions.assignment import AssignedExercise, Assignment
+from service.submissions.body import GradeRequest
+from service.submissions.handed_in import HandedIn
+
+_LONGEST_NAME = 60
+
+
+@dataclass(frozen=True, slots=True)
+class GradingTerms:
+    """What is graded, and how much the reports tell.
+
+    ``feedback`` is the level that the command line asks for. Without it a report tells what the
+    file asks for, and ``for_students`` no more than they may see; else these are a tutor's own
+    files, so nothing need be kept back. ``echo`` tells how each cell was read.
+    """
+
+    assignment: Assignment
+    pass_mark: float
+    feedback: FeedbackLevel | None = None
+    for_students: bool = False
+    echo: bool = False
+
+    @property
+    def answered(self) -> tuple[AnsweredExercise, ...]:
+        """The exercises that are set, as they stand in results."""
+        return tuple(
+            answered(assigned.exercise, assigned.worth) for assigned in self.assignment.exercises
+        )
+
+    def submission(self, body: GradeRequest, assigned: AssignedExercise) -> Submission:
+        """What is handed to the grader."""
+        most = self.assignment.ceiling(assigned) if self.for_students else FeedbackLevel.FULL
+        submission = body.submission(most)
+        feedback = submission.feedback if self.feedback is None else self.feedback
+        return replace(submission, feedback=feedback, echo=self.echo or submission.echo)
+
+
+# Answers to an exercise -> their report, or else the problem because of which there is none.
+ReportOn = Callable[[GradeRequest, AssignedExercise, GradingTerms], tuple[Report | None, str]]
+
+
+def unknown_part(body: GradeRequest, assigned: AssignedExercise) -> str:
+    """The problem of answers to a part that the exercise does not have; empty where it has all."""
+    known = [part.id for part in assigned.exercise.parts]
+    unknown = next((part for part in body.answers if part not in known), None)
+    if unknown is None:
+        return ""
+    listed = ", ".join(known)
+    return f"answers {unknown[:_LONGEST_NAME]!r}, but {assigned.exercise.id} has only {listed}"
+
+
+def report_here(
+    body: GradeRequest, assigned: AssignedExercise, terms: GradingTerms
+) -> tuple[Report | None, str]:
+    """The report on answers to an exercise of this installation, or the problem."""
+    exercise = assigned.exercise
+    if not isinstance(exercise, Exercise):
+        raise TypeError(f"{exercise.id} is an exercise of a server, and cannot be graded here")
+    if problem := unknown_part(body, assigned):
+        return None, problem
+    try:
+        return grade(exercise, terms.submission(body, assigned)), ""
+    except Exception as error:  # noqa: BLE001 - a fault of the program costs this submission only
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        return None, (
+            "cannot be graded, for the program has a fault; please report it: "
+            f"{type(error).__name__} in {place.name}, line {place.lineno}"
+        )
+
+
+def graded(
+    handed: HandedIn, terms: GradingTerms, report_on: ReportOn = report_here
+) -> GradedSubmission:
+    """The submission with a report on each exercise, or the problem because of which it has none.
+
+    Nothing that is handed in makes it raise an exception.
+    """
+    answers = answers_in(handed, terms.assignment)
+    files = tuple(
+        _graded_file(each, assigned, told, terms, report_on)
+        for each, assigned, told in zip(
+            answers, terms.assignment.exercises, terms.answered, strict=True
+        )
+    )
+    return GradedSubmission(handed.name, handed.learner, files, terms.pass_mark)
+
+
+def _graded_file(
+    answers: ExerciseAnswers,
+    assigned: AssignedExercise,
+    told: AnsweredExercise,
+    terms: GradingTerms,
+    report_on: ReportOn,
+) -> GradedFile:
+    if answers.body is None:
+        return GradedFile(answers.file, told, None, answers.problem)
+    report, problem = report_on(answers.body, assigned, terms)
+    return GradedFile(
+        answers.file, told, report, "; ".join(filter(None, (answers.problem, problem)))
+    )

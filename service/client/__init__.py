@@ -1,0 +1,40 @@
+"""A typed client of the service, with and without ``await``. Loads httpx; import it where needed.
+
+GraderClientError         a call has no result
+├── RequestRefusedError     the service answered with a problem
+├── ServerUnreachableError  no answer came
+└── UnexpectedAnswerError   no DH Grader answers so
+"""
+
+from service.catalogue import FeedbackLevel
+from service.client.asynchronous import AsyncGraderClient
+from service.client.errors import (
+    GraderClientError,
+    RequestRefusedError,
+    ServerUnreachableError,
+    UnexpectedAnswerError,
+)
+from service.client.retries import Retries
+from service.client.synchronous import GraderClient
+from service.contract.exercises import ExerciseSummary, ExerciseView
+from service.contract.grading import GradeResult
+from service.contract.preview import PreviewAnswer
+from service.grading import Report
+from service.submissions.body import ExerciseSubmission
+
+__all__ = [
+    "AsyncGraderClient",
+    "ExerciseSubmission",
+    "ExerciseSummary",
+    "ExerciseView",
+    "FeedbackLevel",
+    "GradeResult",
+    "GraderClient",
+    "GraderClientError",
+    "PreviewAnswer",
+    "Report",
+    "RequestRefusedError",
+    "Retries",
+    "ServerUnreachableError",
+    "UnexpectedAnswerError",
+]

@@ -1,0 +1,146 @@
+"""The calls of the service: what is sent, and how the answer is read."""
+
+import json
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Generic, TypeVar
+from urllib.parse import quote
+from uuid import uuid4
+
+from pydantic import BaseModel, ValidationError
+
+from service.catalogue import FeedbackLevel
+from service.client.answers import HttpAnswer, error_in
+from service.client.errors import UnexpectedAnswerError
+from service.contract.exercises import ExerciseList, ExerciseSummary, ExerciseView
+from service.contract.grading import GradeManyResponse, GradeResult
+from service.contract.preview import PreviewAnswer, PreviewRequest
+from service.expressions import AngleUnit
+from service.formats.json import read_report
+from service.grading import Report
+from service.submissions.body import MAX_SUBMISSIONS, ExerciseSubmission, GradeRequest
+from service.submissions.strict_json import MAX_BODY_SIZE, MAX_BRACKETS, MAX_COMMAS
+
+T = TypeVar("T")
+
+
+def _new_key() -> str:
+    return str(uuid4())
+
+
+@dataclass(frozen=True, slots=True)
+class HttpCall(Generic[T]):
+    """One call: GET, or POST where there is a body. ``read`` takes the answer to the result.
+
+    ``idempotency_key`` is the same at each retry, so that the service can tell that it is one.
+    """
+
+    path: str
+    read: Callable[[bytes], T]
+    body: bytes | None = None
+    idempotency_key: str = field(default_factory=_new_key)
+
+    @property
+    def method(self) -> str:
+        """The method of HTTP."""
+        return "GET" if self.body is None else "POST"
+
+    @property
+    def headers(self) -> Mapping[str, str]:
+        """The headers of this call."""
+        if self.body is None:
+            return {}
+        return {"Content-Type": "application/json", "Idempotency-Key": self.idempotency_key}
+
+    def result(self, server: str, answer: HttpAnswer) -> T:
+        """The result of the call. Raises GraderClientError."""
+        if answer.status != 200:
+            raise error_in(server, answer)
+        try:
+            return self.read(answer.content)
+        except ValidationError as error:
+            raise UnexpectedAnswerError(
+                f"{server} answers as no DH Grader of this version does."
+            ) from error
+
+
+def listing() -> HttpCall[list[ExerciseSummary]]:
+    """The call for the list of exercises."""
+    return HttpCall("v1/exercises", _exercises)
+
+
+def showing(exercise: str) -> HttpCall[ExerciseView]:
+    """The call for the exercise with this id."""
+    return HttpCall(_path(exercise), ExerciseView.model_validate_json)
+
+
+def submission(
+    answers: Mapping[str, Any], angle_unit: AngleUnit, feedback: FeedbackLevel | None, *, echo: bool
+) -> GradeRequest:
+    """The body of a request to grade. Raises pydantic.ValidationError, a ValueError."""
+    fields = {"answers": dict(answers), "angle_unit": angle_unit, "feedback": feedback}
+    return GradeRequest.model_validate(fields | {"echo": echo})
+
+
+def grading(exercise: str, request: GradeRequest, idempotency_key: str | None) -> HttpCall[Report]:
+    """The call that has answers to an exercise graded."""
+    return HttpCall(
+        f"{_path(exercise)}/grade", read_report, encoded(request), idempotency_key or _new_key()
+    )
+
+
+def grading_many(
+    submissions: Iterable[ExerciseSubmission],
+) -> Iterator[HttpCall[list[GradeResult]]]:
+    """The calls that have submissions graded, as few as the service's limits allow."""
+    waiting: list[bytes] = []
+    for content in map(encoded, submissions):
+        if waiting and not _fits([*waiting, content]):
+            yield HttpCall("v1/grade", _results, _together(waiting))
+            waiting = []
+        waiting.append(content)
+    if waiting:
+        yield HttpCall("v1/grade", _results, _together(waiting))
+
+
+def previewing(request: PreviewRequest) -> HttpCall[PreviewAnswer]:
+    """The call that has a text read."""
+    return HttpCall("v1/preview", PreviewAnswer.model_validate_json, encoded(request))
+
+
+def encoded(body: BaseModel) -> bytes:
+    """The body as JSON, without the fields that have their defaults."""
+    # By Python's own encoder: a NaN in an answer is sent as such, for the service to explain.
+    content = body.model_dump(exclude_defaults=True)
+    try:
+        return json.dumps(content, ensure_ascii=False, separators=(",", ":")).encode()
+    except UnicodeEncodeError:  # a lone surrogate, which can only be sent escaped
+        return json.dumps(content, separators=(",", ":")).encode()
+
+
+def _path(exercise: str) -> str:
+    """The path of an exercise; whatever the id is, it stays one step of it."""
+    return "v1/exercises/" + quote(exercise, safe="").replace(".", "%2E")
+
+
+def _together(submissions: list[bytes]) -> bytes:
+    return b'{"submissions":[%b]}' % b",".join(submissions)
+
+
+def _fits(submissions: list[bytes]) -> bool:
+    """Whether one request may hold these."""
+    body = _together(submissions)
+    return (
+        len(submissions) <= MAX_SUBMISSIONS
+        and len(body) <= MAX_BODY_SIZE
+        and body.count(b"[") + body.count(b"{") <= MAX_BRACKETS
+        and body.count(b",") <= MAX_COMMAS
+    )
+
+
+def _exercises(content: bytes) -> list[ExerciseSummary]:
+    return ExerciseList.model_validate_json(content).exercises
+
+
+def _results(content: bytes) -> list[GradeResult]:
+    return GradeManyResponse.model_validate_json(content).results

@@ -1,0 +1,85 @@
+"""Names of symbols as labels: θ with index 1 for theta1, and how much room they take."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Final
+from xml.sax.saxutils import escape
+
+from service.expressions.characters.greek import LETTERS
+from service.expressions.printing.symbol_names import stem_and_index
+
+# The size of letters in pixels, and that of an index beside them.
+SIZE: Final = 17.0
+_INDEX: Final = 0.72
+_DROP: Final = 0.24
+
+# Widths of italic letters of book types, as shares of their size; of all others the widest one's.
+_WIDTHS: Final = {
+    **dict.fromkeys("ijlt1,. ", 0.34),
+    **dict.fromkeys("acdeghknopqrsuvxyzbfθφψαβγδω023456789", 0.56),
+    **dict.fromkeys("+−=", 0.72),
+}
+_WIDEST: Final = 0.86
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A text of stems with their indices and signs between: ``(("θ", "1"), ("+", ""))``."""
+
+    runs: tuple[tuple[str, str], ...]
+
+    @property
+    def text(self) -> str:
+        """The plain text: θ1 + d2."""
+        return "".join(stem + index for stem, index in self.runs)
+
+    @property
+    def width(self) -> float:
+        """An estimate of its width, in pixels; rather too wide than too narrow."""
+        return SIZE * sum(_width(stem) + _INDEX * _width(index) for stem, index in self.runs)
+
+    def svg(self, x: float, y: float, kind: str) -> str:
+        """The text around the point (x, y), in a class of its kind."""
+        parts, lowered = [], False
+        for stem, index in self.runs:
+            back = f' dy="{-_DROP * SIZE:.1f}"' if lowered else ""
+            style = "" if stem.strip(" +,") else ' class="sign"'
+            parts.append(f"<tspan{style}{back}>{escape(stem)}</tspan>")
+            lowered = bool(index)
+            if index:
+                parts.append(
+                    f'<tspan class="index" dy="{_DROP * SIZE:.1f}">{escape(index)}</tspan>'
+                )
+        middle = y + 0.3 * SIZE
+        return f'<text class="{kind}" x="{x:.1f}" y="{middle:.1f}">{"".join(parts)}</text>'
+
+
+def name_label(name: str) -> Label:
+    """The label of one symbol."""
+    return Label((_run(name),))
+
+
+def sum_label(names: Sequence[str]) -> Label:
+    """The label of a sum of symbols."""
+    return _joined(map(_run, names), " + ")
+
+
+def list_label(names: Sequence[str]) -> Label:
+    """The label of several names for one thing."""
+    return _joined(map(_run, names), ", ")
+
+
+def _joined(runs: Iterable[tuple[str, str]], sign: str) -> Label:
+    found: list[tuple[str, str]] = []
+    for run in runs:
+        found += [(sign, ""), run] if found else [run]
+    return Label(tuple(found))
+
+
+def _run(name: str) -> tuple[str, str]:
+    stem, index = stem_and_index(name)
+    return LETTERS.get(stem, stem), index
+
+
+def _width(text: str) -> float:
+    return sum(_WIDTHS.get(character, _WIDEST) for character in text)

@@ -1,0 +1,34 @@
+"""The folder of a class: a page for each submission, and the index at last."""
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import Final
+
+from service.formats.class_page.file_names import distinct_file_names
+from service.formats.class_page.index import INDEX, index
+from service.formats.class_page.overview import Overview
+from service.formats.shared.graded import GradedSubmission
+from service.formats.shared.report_format import Document, Setting
+
+# The folder of the pages, within that of the class.
+PAGES: Final = "reports"
+
+Pages = Callable[[Iterable[GradedSubmission], Setting], Iterator[bytes]]
+Folder = Callable[[Iterable[GradedSubmission], Setting], Iterator[Document]]
+
+
+def class_folder(page: Pages) -> Folder:
+    """The files of a class, where ``page`` writes a page for one submission.
+
+    Each submission is taken once, and only counts and a line of it are kept for the index.
+    """
+
+    def documents(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[Document]:
+        overview = Overview({each.id: each for each in setting.exercises})
+        file_name = distinct_file_names(".html")
+        for submission in submissions:
+            path = f"{PAGES}/{file_name(submission.learner)}"
+            overview.add(submission, path)
+            yield Document(path, page([submission], setting))
+        yield Document(INDEX, index(overview))
+
+    return documents

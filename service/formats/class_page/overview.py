@@ -1,0 +1,89 @@
+"""All that the index tells, taken from submissions one by one."""
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from service.formats.shared.graded import AnsweredExercise, GradedSubmission
+from service.formats.shared.plain_text import points
+from service.statistics import ClassStatistics
+
+
+@dataclass(frozen=True, slots=True)
+class SubmissionLine:
+    """A submission as the index lists it; ``page`` is the path of its page from the index."""
+
+    name: str
+    learner: str
+    page: str
+    points: str
+    score: float
+    passed: bool
+    is_graded: bool
+    is_gradable: bool
+    problems: tuple[str, ...]
+
+
+@dataclass(slots=True)
+class Overview:
+    """The class: what was set by its id, a line for each submission, and the counts.
+
+    The number of a submission in the statistics is its place among the lines.
+    """
+
+    exercises: dict[str, AnsweredExercise]
+    lines: list[SubmissionLine] = field(default_factory=list)
+    statistics: ClassStatistics = field(default_factory=ClassStatistics)
+    pass_mark: float = 0.0
+    graders: set[str] = field(default_factory=set)
+    _learners: Counter[str] = field(default_factory=Counter)
+
+    def add(self, submission: GradedSubmission, page: str) -> None:
+        """Take the submission in; nothing of its reports is kept."""
+        number = len(self.lines)
+        self.pass_mark = submission.pass_mark
+        self._learners[submission.learner] += 1
+        self.lines.append(
+            SubmissionLine(
+                name=submission.name,
+                learner=submission.learner,
+                page=page,
+                points=points(submission.points, submission.max_points),
+                score=submission.score,
+                passed=submission.passed,
+                is_graded=submission.is_graded,
+                is_gradable=submission.is_gradable,
+                problems=_problems(submission),
+            )
+        )
+        if submission.is_graded:
+            self.statistics.scores.add(submission.score, passed=submission.passed)
+        for file in submission.files:
+            self.exercises.setdefault(file.exercise.id, file.exercise)
+            if file.report is not None:
+                self.graders.add(file.report.grader)
+                self.statistics.add(number, file.report)
+
+    def listed(self, numbers: Iterable[int]) -> list[SubmissionLine]:
+        """The lines of the submissions with these numbers."""
+        return [self.lines[number] for number in numbers]
+
+    def shown(self, line: SubmissionLine) -> str:
+        """Whose it is, or the name of the submission where several have the same learner."""
+        return line.learner if self._learners[line.learner] == 1 else line.name
+
+    @property
+    def ungraded(self) -> list[SubmissionLine]:
+        """The submissions of which something could not be used, or nothing could be read."""
+        return [line for line in self.lines if line.problems or not line.is_gradable]
+
+
+def _problems(submission: GradedSubmission) -> tuple[str, ...]:
+    """What could not be used, each once, with the exercise where there are several."""
+    has_several = len(submission.files) > 1
+    told = (
+        f"{file.exercise.title}: {file.problem}" if has_several else file.problem
+        for file in submission.files
+        if file.problem
+    )
+    return tuple(dict.fromkeys(told))

@@ -1,0 +1,79 @@
+"""Columns of short texts beneath each other, for a terminal."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final, Literal
+
+from rich.cells import cell_len
+from rich.console import Console, RenderableType
+from rich.padding import Padding
+from rich.segment import Segment, Segments
+from rich.table import Table
+from rich.text import Text
+
+_GAP: Final = 2
+
+# A text and its style.
+StyledText = tuple[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class AlignedColumn:
+    """A column of a table: its heading, and the side on which its cells stand."""
+
+    heading: str
+    justify: Literal["left", "center", "right"] = "left"
+
+    def filled(self, text: str, width: int) -> str:
+        """The text, filled up with blanks."""
+        missing = width - cell_len(text)
+        before = {"left": 0, "center": missing // 2, "right": missing}[self.justify]
+        return " " * before + text + " " * (missing - before)
+
+
+@dataclass(frozen=True, slots=True)
+class AlignedTable:
+    """A table without lines; each of ``rows`` has a cell for each of the ``columns``."""
+
+    columns: Sequence[AlignedColumn]
+    rows: Sequence[Sequence[StyledText]]
+    heading_style: str = "dim"
+
+    def on(self, console: Console, width: int, indent: int) -> RenderableType:
+        """The table as it is printed, with so many blanks before each line.
+
+        Where it is too wide, its columns are made narrower.
+        """
+        texts = zip(*((text for text, _ in row) for row in self.rows), strict=True)
+        widths = [
+            max(map(cell_len, {column.heading, *cells}))
+            for column, cells in zip(self.columns, texts, strict=True)
+        ]
+        if indent + sum(widths) + _GAP * (len(widths) - 1) > width:
+            return Padding(self._narrowed(), (0, 0, 0, indent), expand=False)
+        # Rich measures each cell of its own tables several times: it takes ten times as long.
+        headings = [(column.heading, self.heading_style) for column in self.columns]
+        segments = []
+        for line, gap_style in ((headings, self.heading_style), *((row, "") for row in self.rows)):
+            gap = Segment(" " * _GAP, console.get_style(gap_style))
+            segments.append(Segment(" " * indent))
+            for column, cell_width, (text, style) in zip(self.columns, widths, line, strict=True):
+                filled = column.filled(text, cell_width)
+                segments += (Segment(filled, console.get_style(style)), gap)
+            segments[-1] = Segment.line()
+        return Segments(segments)
+
+    def _narrowed(self) -> Table:
+        table = Table(
+            box=None,
+            pad_edge=False,
+            padding=(0, _GAP, 0, 0),
+            header_style=self.heading_style,
+        )
+        for column in self.columns:
+            table.add_column(
+                column.heading, justify=column.justify, no_wrap=column.justify == "right"
+            )
+        for row in self.rows:
+            table.add_row(*(Text(*cell) for cell in row))
+        return table

@@ -1,0 +1,65 @@
+"""The distribution of scores."""
+
+from array import array
+from dataclasses import dataclass
+from statistics import fmean, median
+from typing import Final
+
+BINS: Final = 10
+# A score that is rounded to six digits belongs to the bin that it is the lower edge of.
+_EDGE: Final = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class ScoreBin:
+    """The submissions with a score of at least ``low`` and below ``high``; the last bin has 1, too.
+
+    ``passed`` are those among them that reach the pass mark.
+    """
+
+    low: float
+    high: float
+    count: int
+    passed: int
+
+
+class ScoreDistribution:
+    """Scores of 0..1, added one by one; each takes eight bytes."""
+
+    def __init__(self) -> None:
+        self._scores = array("d")
+        self._counts = [0] * BINS
+        self._passed = [0] * BINS
+
+    def add(self, score: float, *, passed: bool) -> None:
+        """Count a submission with this score."""
+        self._scores.append(score)
+        place = min(int((score + _EDGE) * BINS), BINS - 1)
+        self._counts[place] += 1
+        self._passed[place] += passed
+
+    @property
+    def count(self) -> int:
+        """The number of scores."""
+        return len(self._scores)
+
+    @property
+    def passed(self) -> int:
+        """The number of submissions that reach the pass mark."""
+        return sum(self._passed)
+
+    @property
+    def mean(self) -> float:
+        """The mean score; there must be one."""
+        return fmean(self._scores)
+
+    @property
+    def median(self) -> float:
+        """The median score; there must be one."""
+        return median(self._scores)
+
+    @property
+    def bins(self) -> list[ScoreBin]:
+        """Ten bins of equal width, from 0 to 1."""
+        counted = enumerate(zip(self._counts, self._passed, strict=True))
+        return [ScoreBin(i / BINS, (i + 1) / BINS, *counts) for i, counts in counted]

@@ -1,0 +1,303 @@
+"""The answers to each exercise of an assignment, in whichever files a student handed them in.
+
+The name of a file says which exercise and part it answers. Where it does not, the file says so
+itself by its key ``exercise``, or there is one exercise only.
+"""
+
+import re
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from os.path import commonpath
+from pathlib import PurePosixPath
+from typing import Any, Final
+
+from pydantic import ValidationError
+
+from service.submissions.assignment import AssignedExercise, Assignment
+from service.submissions.body import GradeRequest
+from service.submissions.file_content import (
+    DATA_ENDINGS,
+    PASTED_ENDINGS,
+    FileContent,
+    UnusableFileError,
+    ending,
+    read_content,
+)
+from service.submissions.handed_in import HandedFile, HandedIn
+
+# Names of files that a message tells.
+_TOLD: Final = 5
+_LONGEST_NAME: Final = 60
+# A second download of one file, or a second hand-in: ``table-1.csv``, ``table (1).csv``.
+_COPY: Final = re.compile(r"(?:-\d+| ?\(\d+\))$")
+# No answers, unless their names are among those that the assignment asks for.
+_ABOUT: Final = frozenset({"readme", "license", "licence", "changelog"})
+
+
+@dataclass(frozen=True, slots=True)
+class ExerciseAnswers:
+    """The answers to one exercise.
+
+    ``file`` is where they stand: a file, the folder of several, or empty where none was handed in.
+    ``body`` is None where there is nothing to grade. ``problem`` says which of it cannot be used,
+    and why.
+    """
+
+    file: str
+    body: GradeRequest | None
+    problem: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class _Claim:
+    """A file that answers an exercise, or the part of it that its name says."""
+
+    file: HandedFile
+    part: str | None = None
+
+
+def answers_in(handed: HandedIn, assignment: Assignment) -> tuple[ExerciseAnswers, ...]:
+    """The answers to each exercise of the assignment, in order.
+
+    An exercise that no file answers has none, with no problem, as long as another one is answered.
+    """
+    try:
+        claims = _claims(handed.files(), assignment)
+    except UnusableFileError as error:
+        is_file = len(handed.entries) == 1
+        file = str(handed.entries[0].path) if is_file else handed.name
+        return (ExerciseAnswers(file, None, str(error)),) * len(assignment.exercises)
+    return tuple(map(_combined, claims, assignment.exercises))
+
+
+def _claims(files: Sequence[HandedFile], assignment: Assignment) -> list[list[_Claim]]:
+    """The files that answer each exercise. Raises UnusableFileError where there are none at all."""
+    claims: list[list[_Claim]] = [[] for _ in assignment.exercises]
+    unnamed = []
+    for file in files:
+        places = _places(file.name, assignment)
+        if len(places) == 1:
+            [(i, part)] = places
+            claims[i].append(_Claim(file, part or None))
+        else:
+            unnamed.append(file)
+    for file in unnamed:
+        if ending(file.name) in DATA_ENDINGS:
+            with suppress(UnusableFileError):
+                claims[_stated(file, assignment)].append(_Claim(file))
+    if not any(claims):
+        sole = _sole(files, assignment)
+        i = 0 if len(assignment.exercises) == 1 else _stated(sole, assignment)
+        claims[i].append(_Claim(sole))
+    return claims
+
+
+def _places(name: str, assignment: Assignment) -> list[tuple[int, str]]:
+    """The exercises that a file of this name answers, each with the part; "" where it says none."""
+    path = PurePosixPath(name.lower())
+    is_one = len(assignment.exercises) == 1
+    found = ((i, _place(path, each, is_one)) for i, each in enumerate(assignment.exercises))
+    return [(i, part) for i, part in found if part is not None]
+
+
+def _place(path: PurePosixPath, assigned: AssignedExercise, is_one: bool) -> str | None:
+    """The part that the file answers, "" where its name says none; None where it answers none."""
+    for part, patterns in assigned.part_files.items():
+        if _is_named(path, patterns):
+            return part
+    if assigned.files:
+        is_named = _is_named(path, assigned.files)
+        return (_part_in(path.stem, assigned) or "") if is_named else None
+    return _place_by_id(path, assigned, is_one)
+
+
+def _is_named(path: PurePosixPath, patterns: Sequence[str]) -> bool:
+    """Whether the path, in small letters, ends as one of the patterns says."""
+    return any(path.match(pattern.lower()) for pattern in patterns)
+
+
+def _place_by_id(path: PurePosixPath, assigned: AssignedExercise, is_one: bool) -> str | None:
+    own = assigned.exercise.id
+    for stem in _stems(path.stem):
+        if stem == own:
+            return ""
+        rest = stem.removeprefix(own)
+        if rest != stem and rest[0] in "._- " and (part := assigned.part_named(rest[1:])):
+            return part
+    is_inside = own in path.parent.parts
+    if (is_one or is_inside) and (part := _part_in(path.stem, assigned)):
+        return part
+    holds_parts = ending(path.name) in DATA_ENDINGS or assigned.only_part is not None
+    return "" if is_inside and holds_parts and path.stem not in _ABOUT else None
+
+
+def _part_in(stem: str, assigned: AssignedExercise) -> str | None:
+    return next(filter(None, map(assigned.part_named, _stems(stem))), None)
+
+
+def _stems(stem: str) -> tuple[str, ...]:
+    """The name, and the one that it had before it was a copy."""
+    return tuple(dict.fromkeys((stem, _COPY.sub("", stem))))
+
+
+def _stated(file: HandedFile, assignment: Assignment) -> int:
+    """The exercise that the content of a file says it answers. Raises UnusableFileError."""
+    content = read_content(file.read(), file.name)
+    known = [each.exercise.id for each in assignment.exercises]
+    if content.is_pasted:
+        raise UnusableFileError(
+            "is a pasted answer, whose name does not say the exercise and the part: "
+            f"name it as {_example(assignment.exercises[0], ending(file.name))}"
+        )
+    if not isinstance(content.value, dict) or "answers" not in content.value:
+        raise UnusableFileError(_no_answers())
+    if len(known) == 1:
+        return 0
+    if "exercise" not in content.value:
+        raise UnusableFileError(
+            'does not say which exercise it answers: write "exercise", or name the file after it, '
+            f"one of {_listed(known)}"
+        )
+    stated = content.value["exercise"]
+    if stated not in known:
+        raise UnusableFileError(
+            f"answers the exercise {_quoted(stated)}; those set are {_listed(known)}"
+        )
+    return known.index(stated)
+
+
+def _sole(files: Sequence[HandedFile], assignment: Assignment) -> HandedFile:
+    """The file that must hold the answers, for no other can. Raises UnusableFileError."""
+    if not files:
+        raise UnusableFileError("holds no file")
+    others = [file for file in files if _stem(file) not in _ABOUT] or files
+    data = [file for file in others if ending(file.name) in DATA_ENDINGS]
+    pasted = [file for file in others if ending(file.name) in PASTED_ENDINGS]
+    candidates = data or pasted or others
+    if len(candidates) == 1:
+        return candidates[0]
+    raise UnusableFileError(
+        "holds no answer that can be told by its name: there are "
+        f"{_listed([file.name for file in files])}; "
+        f"name it as {_example(assignment.exercises[0], ending(candidates[0].name))}"
+    )
+
+
+def _stem(file: HandedFile) -> str:
+    return PurePosixPath(file.name.lower()).stem
+
+
+def _example(assigned: AssignedExercise, suffix: str) -> str:
+    """A name that would say the exercise, and the part where it must."""
+    if assigned.files:
+        return assigned.files[0]
+    if suffix in PASTED_ENDINGS:
+        return f"{assigned.exercise.id}/{assigned.exercise.parts[0].id}{suffix}"
+    return f"{assigned.exercise.id}.json"
+
+
+def _combined(claims: Sequence[_Claim], assigned: AssignedExercise) -> ExerciseAnswers:
+    """The answers of all files to one exercise; a file that is unusable costs only itself."""
+    if not claims:
+        return ExerciseAnswers("", GradeRequest(answers={}))
+    paths = [str(claim.file.path) for claim in claims]
+    shown = paths[0] if len(paths) == 1 else commonpath(paths)
+    bodies: list[tuple[str, GradeRequest]] = []
+    problems = []
+    for claim in claims:
+        try:
+            bodies.append((claim.file.name, _body(claim, assigned)))
+        except UnusableFileError as error:
+            problems.append(str(error) if len(claims) == 1 else f"{claim.file.name} {error}")
+    try:
+        body = _merged(bodies)
+    except UnusableFileError as error:
+        return ExerciseAnswers(shown, None, str(error))
+    return ExerciseAnswers(shown, body, "; ".join(problems))
+
+
+def _merged(bodies: Sequence[tuple[str, GradeRequest]]) -> GradeRequest | None:
+    """The answers of several files together. Raises UnusableFileError where two contradict."""
+    answers: dict[str, Any] = {}
+    came_from: dict[str, str] = {}
+    options: dict[str, Any] = {}
+    for name, body in bodies:
+        for part, answer in body.answers.items():
+            if part in answers:
+                raise UnusableFileError(
+                    f"has two answers to {_quoted(part)}, in {came_from[part]} and in {name}"
+                )
+            answers[part], came_from[part] = answer, name
+        for option in body.model_fields_set - {"answers"}:
+            value = getattr(body, option)
+            if options.setdefault(option, value) != value:
+                raise UnusableFileError(
+                    f"has two files that differ in {option!r}: {name} and another"
+                )
+    return GradeRequest(answers=answers, **options) if bodies else None
+
+
+def _body(claim: _Claim, assigned: AssignedExercise) -> GradeRequest:
+    """The answers in one file. Raises UnusableFileError."""
+    content = read_content(claim.file.read(), claim.file.name)
+    return read_body(content, assigned, claim.part)
+
+
+def read_body(
+    content: FileContent, assigned: AssignedExercise, part: str | None = None
+) -> GradeRequest:
+    """The answers to the parts that are set; ``part`` may be answered by all of the content.
+
+    Raises UnusableFileError.
+    """
+    part = part or assigned.only_part
+    value = content.value
+    if content.is_pasted and part is None:
+        parts = ", ".join(each.id for each in assigned.exercise.parts)
+        raise UnusableFileError(
+            f"is the pasted answer to one part: name the file after it, one of {parts}, or name "
+            "the part with --part"
+        )
+    if content.is_pasted or not isinstance(value, dict) or "answers" not in value:
+        if part is None:
+            raise UnusableFileError(_no_answers())
+        value = {"answers": {part: value}}
+    own = assigned.exercise.id
+    if (stated := value.get("exercise", own)) != own:
+        raise UnusableFileError(f"answers the exercise {_quoted(stated)}, and not {own!r}")
+    try:
+        body = GradeRequest.model_validate(
+            {key: each for key, each in value.items() if key != "exercise"}
+        )
+    except ValidationError as error:
+        raise UnusableFileError(_first(error)) from error
+    answers = {
+        name: answer for name, answer in body.answers.items() if name not in assigned.left_out
+    }
+    return body.model_copy(update={"answers": answers})
+
+
+def _no_answers() -> str:
+    return (
+        'holds no "answers"; write {"answers": {"PART": …}}, '
+        "or name the part that it answers with --part"
+    )
+
+
+def _first(error: ValidationError) -> str:
+    detail = error.errors(include_url=False)[0]
+    key = ".".join(str(step) for step in detail["loc"])
+    if detail["type"] == "extra_forbidden":
+        known = ", ".join(["exercise", *GradeRequest.model_fields])
+        return f"has the unknown field {key!r}; the fields are {known}"
+    return f"{key}: {detail['msg']}"
+
+
+def _quoted(name: object) -> str:
+    return repr(name)[:_LONGEST_NAME]
+
+
+def _listed(names: Sequence[str]) -> str:
+    told = ", ".join(name[:_LONGEST_NAME] for name in names[:_TOLD])
+    return told if len(names) <= _TOLD else f"{told} and {len(names) - _TOLD} more"

@@ -1,0 +1,232 @@
+"""An assignment: exercises that are set together, their points, and the files that answer them."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path, PurePosixPath
+from typing import Annotated, Any, Final
+
+from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, model_validator
+
+from service.catalogue import FeedbackLevel, load_exercise
+from service.catalogue.fields import Identifier, NotBool, StrictModel, Text
+from service.catalogue.formulas import FieldError
+from service.catalogue.toml_file import load_toml
+from service.submissions.lookup import UnknownExerciseError, nearest
+from service.submissions.outline import ExerciseOutline, SetExercise
+
+PASS_MARK: Final = 0.8
+MAX_EXERCISES: Final = 100
+
+
+def _as_list(value: object) -> object:
+    return [value] if isinstance(value, str) else value
+
+
+def _names_a_file(value: str) -> str:
+    if not PurePosixPath(value).name:
+        raise ValueError(f'{value!r} names no file; write a name such as "table.csv" or "*.tex"')
+    return value
+
+
+_Pattern = Annotated[Text, AfterValidator(_names_a_file)]
+Patterns = Annotated[list[_Pattern], BeforeValidator(_as_list), Field(min_length=1, max_length=100)]
+
+
+class AssignedExerciseSpec(StrictModel):
+    """One exercise of an assignment: of the catalogue by its id, or of one's own by its file."""
+
+    id: Identifier | None = None
+    """The id of an exercise of the catalogue."""
+    path: Text | None = None
+    """An exercise file of your own instead, seen from the folder of this file."""
+    points: Annotated[float, Field(gt=0, le=10_000, strict=True), NotBool] | None = None
+    """The points that it counts; without them those of its parts."""
+    parts: Annotated[list[Identifier], Field(min_length=1)] | None = None
+    """The parts that are set; without them all."""
+    files: Patterns | None = None
+    """The names of files that answer it, as one text or a list; ``*`` stands for any characters.
+    Without them ``ID.json``, ``ID/PART.csv`` and the like."""
+    part_files: dict[Identifier, Patterns] = Field({})
+    """The names of files that answer one part, by the part's id."""
+
+    @model_validator(mode="after")
+    def _names_one_exercise(self) -> "AssignedExerciseSpec":
+        if (self.id is None) == (self.path is None):
+            raise ValueError(
+                'names no exercise; write id = "…" for one of the catalogue, or path = "….toml" '
+                "for one of your own"
+                if self.id is None
+                else "has an id and a path; leave one of them out"
+            )
+        return self
+
+
+class AssignmentSpec(StrictModel):
+    """One assignment file."""
+
+    title: Text
+    """The title of the assignment."""
+    pass_mark: Annotated[float, Field(ge=0, le=1, strict=True), NotBool] = PASS_MARK
+    """The score to reach, as a share of 1."""
+    feedback: FeedbackLevel | None = None
+    """The most that students are told: "full", "hints", "verdicts" or "score"; without it as much
+    as each exercise allows."""
+    exercises: Annotated[list[AssignedExerciseSpec], Field(min_length=1, max_length=MAX_EXERCISES)]
+    """The exercises, one ``[[exercises]]`` for each."""
+
+
+@dataclass(frozen=True, slots=True)
+class AssignedExercise:
+    """An exercise that is set, with the parts that are set only.
+
+    ``worth`` are the points that it counts. ``left_out`` are the ids of its parts that are not set.
+    ``path`` is the exercise's own file, where it is none of the catalogue. ``files`` and
+    ``part_files`` are the names of files that answer it; without ``files``, its id and those of
+    its parts are.
+    """
+
+    exercise: SetExercise
+    worth: float
+    left_out: frozenset[str] = frozenset()
+    path: Path | None = None
+    files: tuple[str, ...] = ()
+    part_files: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    @property
+    def only_part(self) -> str | None:
+        """The id of its part, where one only is set."""
+        parts = self.exercise.parts
+        return parts[0].id if len(parts) == 1 else None
+
+    def part_named(self, name: str) -> str | None:
+        """The id of the part that is named so, in whatever letters; None where none is."""
+        lowered = name.lower()
+        return next((part.id for part in self.exercise.parts if part.id == lowered), None)
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """What is set: exercises in order. One exercise alone is the assignment of that.
+
+    ``feedback`` is the most that students are told, where that is not left to the exercises.
+    """
+
+    exercises: tuple[AssignedExercise, ...]
+    title: str = ""
+    pass_mark: float = PASS_MARK
+    feedback: FeedbackLevel | None = None
+
+    def ceiling(self, assigned: AssignedExercise) -> FeedbackLevel:
+        """The most that students are told of this exercise."""
+        return self.feedback or assigned.exercise.feedback
+
+
+class UnknownPartNameError(LookupError):
+    """An exercise has no part of this name; the text brings the nearest."""
+
+
+def of_one(exercise: SetExercise, part: str | None = None) -> Assignment:
+    """The assignment of one exercise, or of one part of it. Raises UnknownPartNameError."""
+    return Assignment((assigned(exercise, None if part is None else [part]),), exercise.title)
+
+
+def assigned(
+    exercise: SetExercise, parts: list[str] | None = None, worth: float | None = None
+) -> AssignedExercise:
+    """The exercise with these parts, or all, set for its own points or else for ``worth``.
+
+    Raises UnknownPartNameError.
+    """
+    known = [part.id for part in exercise.parts]
+    for part in parts or ():
+        if part not in known:
+            meant = nearest(part, known)
+            hint = f" Did you mean {meant!r}?" if meant else ""
+            raise UnknownPartNameError(
+                f"{exercise.id} has no part {part!r}.{hint} Its parts are: {', '.join(known)}."
+            )
+    chosen = frozenset(known if parts is None else parts)
+    restricted = _restricted(exercise, chosen)
+    own = sum(part.points for part in restricted.parts)
+    return AssignedExercise(restricted, own if worth is None else worth, frozenset(known) - chosen)
+
+
+def _restricted(exercise: SetExercise, chosen: frozenset[str]) -> SetExercise:
+    """The exercise with the chosen parts only.
+
+    One that follows a part which is not set follows the part that this one follows, as it would if
+    that part had no answer.
+    """
+    if isinstance(exercise, ExerciseOutline):
+        kept = tuple(part for part in exercise.parts if part.id in chosen)
+        return replace(exercise, parts=kept)
+    follows: dict[str, str | None] = {}
+    parts = []
+    for part in exercise.parts:
+        followed = part.follows
+        if followed is not None and followed not in chosen:
+            followed = follows[followed]
+        follows[part.id] = followed
+        if part.id in chosen:
+            parts.append(part.model_copy(update={"follows": followed}))
+    return replace(exercise, parts=tuple(parts))
+
+
+def load_assignment(file: Path, find: Callable[[str], SetExercise]) -> Assignment:
+    """The assignment in a TOML file. Raises CatalogueError.
+
+    ``find`` brings the exercise of the catalogue with an id, or raises UnknownExerciseError.
+    """
+
+    def build(content: dict[str, Any]) -> Assignment:
+        spec = AssignmentSpec.model_validate(content)
+        exercises = tuple(
+            _assigned(each, f"exercises[{i}]", file.parent, find)
+            for i, each in enumerate(spec.exercises)
+        )
+        _check_distinct(exercises)
+        return Assignment(exercises, spec.title, spec.pass_mark, spec.feedback)
+
+    return load_toml(file, build, _table_at)
+
+
+def _assigned(
+    spec: AssignedExerciseSpec, place: str, folder: Path, find: Callable[[str], SetExercise]
+) -> AssignedExercise:
+    """One exercise of the assignment. Raises FieldError, and CatalogueError for its own file."""
+    path = folder / spec.path if spec.path is not None else None
+    try:
+        exercise = load_exercise(path) if path else find(spec.id or "")
+    except UnknownExerciseError as error:
+        raise FieldError(f"{place}.id", f"{error} Known are: {', '.join(error.known)}.") from error
+    try:
+        chosen = assigned(exercise, spec.parts, spec.points)
+    except UnknownPartNameError as error:
+        raise FieldError(f"{place}.parts", str(error)) from error
+    for part in spec.part_files:
+        if chosen.part_named(part) is None:
+            known = ", ".join(each.id for each in chosen.exercise.parts)
+            raise FieldError(
+                f"{place}.part_files.{part}", f"no part {part!r} is set; those set are: {known}"
+            )
+    return replace(
+        chosen,
+        path=path,
+        files=tuple(spec.files or ()),
+        part_files={part: tuple(patterns) for part, patterns in spec.part_files.items()},
+    )
+
+
+def _check_distinct(exercises: tuple[AssignedExercise, ...]) -> None:
+    first: dict[str, int] = {}
+    for i, each in enumerate(exercises):
+        at = first.setdefault(each.exercise.id, i)
+        if at != i:
+            raise FieldError(
+                f"exercises[{i}]",
+                f"is {each.exercise.id!r} again, as exercises[{at}] is; set all its parts there",
+            )
+
+
+def _table_at(location: Any) -> type[BaseModel]:
+    return AssignedExerciseSpec if location and location[0] == "exercises" else AssignmentSpec

@@ -1,0 +1,175 @@
+"""The content of a file that was handed in: JSON, TOML, or the pasted answer to one part."""
+
+import codecs
+import datetime
+import errno
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import Any, Final
+
+from service.catalogue import read_regular
+from service.submissions.documents import pasted_from
+from service.submissions.strict_json import (
+    MAX_BODY_SIZE,
+    MAX_DEPTH,
+    MalformedError,
+    nested_deeper,
+    read_json,
+)
+
+# Python reads TOML a hundred times slower than JSON, and a key of many dots takes memory that grows
+# with their square.
+MAX_TOML_SIZE: Final = 64 * 1024
+MAX_TOML_DOTS: Final = 2_000
+
+STANDARD_INPUT: Final = "-"
+DATA_ENDINGS: Final = (".json", ".toml")
+# A web page is what the online text of Moodle is downloaded as.
+PASTED_ENDINGS: Final = (".csv", ".tsv", ".md", ".tex", ".m", ".py", ".txt", ".html", ".htm")
+
+
+class UnusableFileError(Exception):
+    """A file that holds no submission; the text says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class FileContent:
+    """The value in a JSON or TOML file, or else the text that was pasted into it."""
+
+    value: object
+    is_pasted: bool = False
+
+
+def ending(name: str) -> str:
+    """The ending of the name of a file in small letters: ``.json``."""
+    return PurePosixPath(name).suffix.lower()
+
+
+def read_file(path: Path) -> bytes:
+    """The bytes of a file, within the limit of a request. Raises UnusableFileError."""
+    try:
+        return read_regular(path, MAX_BODY_SIZE)
+    except OSError as error:
+        raise UnusableFileError(_unread(error)) from error
+    except ValueError as error:  # a zero byte in the name
+        raise UnusableFileError(f"cannot be read: {error}") from error
+
+
+def _unread(error: OSError) -> str:
+    if error.errno == errno.EFBIG:
+        return f"is larger than {MAX_BODY_SIZE // 1024} KiB"
+    return f"cannot be read: {error.strerror}"
+
+
+def read_content(data: bytes, name: str) -> FileContent:
+    """The content of a file of this name. Raises UnusableFileError.
+
+    The ending of the name says what it is. A ``.txt`` file and standard input may be anything.
+    """
+    if len(data) > MAX_BODY_SIZE:
+        raise UnusableFileError(f"is larger than {MAX_BODY_SIZE // 1024} KiB")
+    data = _in_utf_8(data)
+    match ending(name):
+        case ".toml":
+            return FileContent(_toml(data))
+        case ".txt":
+            return _recognised(data)
+        case known if known in PASTED_ENDINGS:
+            return FileContent(pasted_from(_text(data), known), is_pasted=True)
+        case _ if name == STANDARD_INPUT:
+            return _recognised(data)
+        case known if known in DATA_ENDINGS:
+            return FileContent(_json(data))
+        case other:
+            return FileContent(_json_of_no_name(data, other))
+
+
+def _in_utf_8(data: bytes) -> bytes:
+    """The same text in UTF-8, where it begins as UTF-16 does: spreadsheets and Windows write it."""
+    if not data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return data
+    try:
+        return data.decode("utf-16").encode()
+    except UnicodeError as error:
+        raise UnusableFileError("is no text: it begins as UTF-16 does and is not") from error
+
+
+def _text(data: bytes) -> str:
+    if b"\0" in data:
+        raise UnusableFileError("is no text, but has zero bytes")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise UnusableFileError(
+            f"is not UTF-8 text: byte {error.start + 1} is wrong; save it as UTF-8"
+        ) from error
+    if not text.strip():
+        raise UnusableFileError("is empty")
+    return text
+
+
+def _json(data: bytes) -> object:
+    try:
+        return read_json(data)
+    except MalformedError as error:
+        raise UnusableFileError(f"is not usable JSON: {error}") from error
+
+
+def _json_of_no_name(data: bytes, found: str) -> object:
+    """The value of JSON in a file whose ending promises none."""
+    try:
+        return _json(data)
+    except UnusableFileError as error:
+        known = " ".join((*DATA_ENDINGS, *PASTED_ENDINGS))
+        kind = f"of a kind that is not read ({found})" if found else "without an ending"
+        raise UnusableFileError(f"is a file {kind}, and {error}; known are {known}") from error
+
+
+def _recognised(data: bytes) -> FileContent:
+    """JSON or TOML with answers, or else a pasted text."""
+    text = _text(data).strip()
+    if text.startswith(("{", "[")):
+        try:
+            return FileContent(read_json(data))
+        except MalformedError as error:
+            if '"answers"' in text:
+                raise UnusableFileError(f"is not usable JSON: {error}") from error
+    if "answers" in text:
+        try:
+            value = _toml(data)
+        except UnusableFileError:
+            pass
+        else:
+            if isinstance(value, dict) and "answers" in value:
+                return FileContent(value)
+    return FileContent(text, is_pasted=True)
+
+
+def _toml(data: bytes) -> object:
+    if len(data) > MAX_TOML_SIZE or data.count(b".") > MAX_TOML_DOTS:
+        raise UnusableFileError(
+            f"is more TOML than {MAX_TOML_SIZE // 1024} KiB or {MAX_TOML_DOTS:,} dots"
+        )
+    try:
+        content: object = tomllib.loads(data.decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        raise UnusableFileError(f"is not UTF-8 text: byte {error.start + 1} is wrong") from error
+    except RecursionError as error:
+        raise UnusableFileError("has tables or lists too deep in each other") from error
+    except ValueError as error:  # of TOML itself, or of a number with thousands of digits
+        raise UnusableFileError(f"is not usable TOML: {error}") from error
+    if nested_deeper(content, MAX_DEPTH):
+        raise UnusableFileError("has tables or lists too deep in each other")
+    return _as_json(content)
+
+
+def _as_json(value: Any) -> Any:
+    """The value with its dates and times, which JSON does not have, as the text that they are."""
+    if isinstance(value, dict):
+        return {key: _as_json(child) for key, child in value.items()}
+    if isinstance(value, list):
+        return [_as_json(child) for child in value]
+    if isinstance(value, datetime.date | datetime.time):
+        return value.isoformat()
+    return value

@@ -1,0 +1,180 @@
+"""Who handed in which files: a file, a folder of a class, a folder of one student.
+
+A file in the folder of a class is the submission of one student, and so is a folder in it with all
+that it holds. What a learning platform names alike belongs to one student.
+"""
+
+import os
+import sys
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+from service.submissions.file_content import STANDARD_INPUT, UnusableFileError, read_file
+from service.submissions.platform_names import platform_name
+from service.submissions.strict_json import MAX_BODY_SIZE
+
+MAX_SUBMISSIONS_IN_FOLDER: Final = 100_000
+# Of one student. A clone of a repository holds more than the answers.
+MAX_FILES: Final = 2_000
+MAX_FOLDERS_DEEP: Final = 8
+
+_JUNK: Final = frozenset({"__macosx", "thumbs.db", "desktop.ini", "__pycache__", "node_modules"})
+
+
+@dataclass(frozen=True, slots=True)
+class HandedFile:
+    """One file of a submission; ``name`` is its path in there, with ``/``, as a student named it.
+
+    ``problem`` says why it may not be read; ``content`` is there where it has been read already.
+    """
+
+    path: Path
+    name: str
+    problem: str = ""
+    content: bytes | None = field(default=None, repr=False)
+
+    def read(self) -> bytes:
+        """The bytes of the file. Raises UnusableFileError."""
+        if self.problem:
+            raise UnusableFileError(self.problem)
+        return read_file(self.path) if self.content is None else self.content
+
+
+@dataclass(frozen=True, slots=True)
+class HandedIn:
+    """What one student handed in: files and folders. They are listed by ``files``.
+
+    ``name`` tells it apart from others, ``learner`` is the student's in a gradebook. ``folder`` is
+    the one that they were found in, which a symbolic link must not leave, nor one in a student's
+    own folder that; without it they were named by the caller. ``problem`` says why nothing of it
+    can be graded.
+    """
+
+    name: str
+    learner: str
+    entries: tuple[HandedFile, ...]
+    folder: Path | None = None
+    problem: str = ""
+
+    def files(self) -> list[HandedFile]:
+        """All files, in the order of their names. Raises UnusableFileError."""
+        if self.problem:
+            raise UnusableFileError(self.problem)
+        found: list[HandedFile] = []
+        for entry in self.entries:
+            inside = None if _is_folder(entry.path) else self.folder
+            boundary = inside or entry.path
+            for file in _files_below(entry, boundary, MAX_FOLDERS_DEEP):
+                if len(found) == MAX_FILES:
+                    raise UnusableFileError(f"holds more than {MAX_FILES:,} files")
+                found.append(file)
+        return found
+
+
+def all_handed_in(
+    paths: Iterable[Path], *, folder_is_one: bool = False, left_out: Path | None = None
+) -> Iterator[HandedIn]:
+    """The submissions in files and folders, in the order given and then of their names.
+
+    ``-`` is standard input, which is read at once. With ``folder_is_one`` a folder is the
+    submission of one student. ``left_out`` is no submission, wherever it stands: the output.
+    """
+    for path in paths:
+        if str(path) == STANDARD_INPUT:
+            content = sys.stdin.buffer.read(MAX_BODY_SIZE + 1)
+            entry = HandedFile(path, STANDARD_INPUT, content=content)
+            yield HandedIn(STANDARD_INPUT, STANDARD_INPUT, (entry,))
+        elif not path.is_dir():
+            entry = HandedFile(path, path.as_posix())
+            yield HandedIn(str(path), _learner(entry), (entry,))
+        elif folder_is_one:
+            entry = HandedFile(path, "")
+            yield HandedIn(str(path), _learner(entry), (entry,))
+        else:
+            yield from _of_class(path, left_out)
+
+
+def _of_class(folder: Path, left_out: Path | None) -> Iterator[HandedIn]:
+    """The submissions in the folder of a class."""
+    try:
+        names = _names(folder, MAX_SUBMISSIONS_IN_FOLDER)
+    except UnusableFileError as error:
+        yield HandedIn(str(folder), folder.name, (), problem=str(error))
+        return
+    by_student: dict[str, list[str]] = {}
+    for name in names:
+        if left_out is None or not _is_same(folder / name, left_out):
+            found = platform_name(name)
+            # A name with / is nobody's file.
+            by_student.setdefault(f"/{found.student}" if found else name, []).append(name)
+    for student, own in by_student.items():
+        entries = tuple(_entry(folder, name) for name in own)
+        shown = folder / (own[0] if len(own) == 1 else student[1:])
+        yield HandedIn(str(shown), _learner(entries[0]), entries, folder)
+
+
+def _entry(folder: Path, name: str) -> HandedFile:
+    """A file or folder of a class; a folder's files are named by what is below it."""
+    path = folder / name
+    found = platform_name(name)
+    own = found.file if found else name
+    return HandedFile(path, "" if _is_folder(path) else own)
+
+
+def _files_below(entry: HandedFile, boundary: Path, levels: int) -> Iterator[HandedFile]:
+    """The file itself, or the files in the folder, as far as links do not lead out."""
+    if entry.path != boundary and entry.path.is_symlink():
+        yield HandedFile(entry.path, entry.name, _link_problem(entry.path, boundary))
+    elif entry.content is not None or not entry.path.is_dir():
+        yield entry
+    elif levels == 0:
+        raise UnusableFileError(f"has folders more than {MAX_FOLDERS_DEEP} deep in each other")
+    else:
+        for name in _names(entry.path, MAX_FILES):
+            below = f"{entry.name}/{name}" if entry.name else name
+            yield from _files_below(HandedFile(entry.path / name, below), boundary, levels - 1)
+
+
+def _names(folder: Path, most: int) -> list[str]:
+    """The names in a folder in order, without what is hidden or nobody has written."""
+    try:
+        names = sorted(name for name in os.listdir(folder) if not _is_junk(name))  # noqa: PTH208
+    except OSError as error:
+        raise UnusableFileError(f"cannot be read: {error.strerror}") from error
+    if len(names) > most:
+        raise UnusableFileError(f"holds more than {most:,} files")
+    return names
+
+
+def _is_junk(name: str) -> bool:
+    return name.startswith((".", "~$")) or name.endswith("~") or name.lower() in _JUNK
+
+
+def _link_problem(link: Path, boundary: Path) -> str:
+    """Why a symbolic link is not read; empty where it leads to a file inside the folder."""
+    try:
+        target = link.resolve(strict=True)
+        is_inside = target.is_relative_to(boundary.resolve())
+    except (OSError, RuntimeError):  # RuntimeError is a circle, in older Pythons
+        return "is a symbolic link to nothing"
+    if not is_inside:
+        return "is a symbolic link out of the folder"
+    return "is a symbolic link to a folder" if target.is_dir() else ""
+
+
+def _is_folder(path: Path) -> bool:
+    return path.is_dir() and not path.is_symlink()
+
+
+def _is_same(path: Path, other: Path) -> bool:
+    return path.name == other.name and path.resolve() == other.resolve()
+
+
+def _learner(entry: HandedFile) -> str:
+    """The student: as the platform has it, or else the name of the file or folder."""
+    name = entry.path.name or entry.path.resolve().name
+    if found := platform_name(name):
+        return found.learner
+    return name if _is_folder(entry.path) else entry.path.stem

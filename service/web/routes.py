@@ -1,0 +1,76 @@
+"""The routes of the pages and of their files."""
+
+from http import HTTPStatus
+from typing import Final
+
+from fastapi import APIRouter
+from starlette.responses import HTMLResponse, RedirectResponse, Response
+
+from service.api.lookup import Catalogue, exercise_or_404
+from service.api.piecewise import PiecewiseResponse
+from service.api.problems import ProblemError
+from service.web.assets import Asset, load_assets
+from service.web.pages import catalogue_page, exercise_page
+
+# Nothing from another host, no script or style in the page itself, and no text that becomes markup
+# but by the one policy of markup.js.
+_POLICY: Final = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
+    "base-uri 'none'; form-action 'self'; frame-ancestors 'self'; "
+    "require-trusted-types-for 'script'; trusted-types dh-grader"
+)
+_PAGE_HEADERS: Final = {
+    "Content-Security-Policy": _POLICY,
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Referrer-Policy": "no-referrer",
+    "Permissions-Policy": "camera=(), geolocation=(), microphone=()",
+    "Cache-Control": "no-cache",
+}
+# Any page may load the element; what it may then ask the service is said by DH_GRADER_CORS_ORIGINS.
+_FILE_HEADERS: Final = {
+    "Access-Control-Allow-Origin": "*",
+    "Cross-Origin-Resource-Policy": "cross-origin",
+}
+_FOR_EVER: Final = "public, max-age=31536000, immutable"
+_ENTRY: Final = "embed.js"
+
+
+def web_routes(catalogue: Catalogue) -> APIRouter:
+    """The pages, ``/embed.js`` for other sites, and the static files."""
+    router = APIRouter(include_in_schema=False)
+    assets = load_assets()
+    files = assets.by_name
+
+    @router.get("/")
+    async def home(exercise: str | None = None) -> Response:
+        """The catalogue, or where the page of the exercise is that the query names."""
+        if exercise is not None:
+            known = exercise_or_404(catalogue, exercise)
+            return RedirectResponse(f"exercises/{known.id}", HTTPStatus.SEE_OTHER)
+        return HTMLResponse(catalogue_page(catalogue, assets), headers=_PAGE_HEADERS)
+
+    @router.get("/exercises/{exercise_id}")
+    async def exercise(exercise_id: str) -> Response:
+        """One exercise; its statement and figure are there without a script, too."""
+        shown = exercise_or_404(catalogue, exercise_id)
+        return HTMLResponse(exercise_page(shown, assets), headers=_PAGE_HEADERS)
+
+    @router.get(f"/{_ENTRY}")
+    async def embed() -> Response:
+        """The one module with a name that stays; it loads the rest by names that change."""
+        content = assets.by_plain_name[_ENTRY].content.replace(b'"./', b'"./static/')
+        return _file(assets.by_plain_name[_ENTRY], content, "no-cache")
+
+    @router.get("/static/{name}")
+    async def static(name: str) -> Response:
+        """A script, style or picture."""
+        if name not in files:
+            raise ProblemError(HTTPStatus.NOT_FOUND, "The page has no such file.")
+        return _file(files[name], files[name].content, _FOR_EVER)
+
+    return router
+
+
+def _file(asset: Asset, content: bytes, caching: str) -> Response:
+    headers = {**_FILE_HEADERS, "Cache-Control": caching}
+    return PiecewiseResponse(content, headers=headers, media_type=asset.media_type)

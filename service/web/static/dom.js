@@ -1,0 +1,43 @@
+// Elements are made here and nowhere from text: whatever a student or a file says stays text.
+
+/** An element with properties, attributes and children; a child that is null or false is left out. */
+export function h(tag, attributes = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === null || value === undefined || value === false) continue;
+    if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
+    else element.setAttribute(name, value === true ? "" : value);
+  }
+  element.append(...children.flat().filter((child) => child !== null && child !== undefined && child !== false));
+  return element;
+}
+
+// Characters that are not seen, or that turn the text around them.
+const UNSEEN = /[\p{Cc}\p{Cf}\p{Co}\p{Cn}\u2028\u2029]/gu;
+
+/** The text with every invisible character written out by its number, so that it cannot mislead. */
+export function visible(text) {
+  return String(text).replace(UNSEEN, (character) =>
+    character === "\n" || character === "\t"
+      ? " "
+      : `[U+${character.codePointAt(0).toString(16).toUpperCase().padStart(4, "0")}]`,
+  );
+}
+
+/** A message of the service: what stands between two backticks is code. */
+export function message(text) {
+  const pieces = visible(text).split("`");
+  if (pieces.length % 2 === 0) return [pieces.join("`")];
+  return pieces.map((piece, i) => (i % 2 ? h("code", {}, piece) : piece));
+}
+
+/** Points as a report gives them: two decimals at most. */
+export function number(value) {
+  return String(Math.round(value * 100) / 100);
+}
+
+/** Points out of the most there are, never rounded up to the most. */
+export function points(earned, most) {
+  const shown = earned < most && number(earned) === number(most) ? Math.floor(earned * 100) / 100 : earned;
+  return `${number(shown)} / ${number(most)}`;
+}

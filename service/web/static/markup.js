@@ -1,0 +1,51 @@
+// Markup from the service, MathML and statements: parsed without being run, and copied element by
+// element where it is known. What is unknown loses its tags and keeps its text.
+
+const MATHML = "http://www.w3.org/1998/Math/MathML";
+const XHTML = "http://www.w3.org/1999/xhtml";
+
+const MATHML_TAGS = new Set(
+  ("math mrow mi mn mo ms mtext mspace msup msub msubsup mfrac msqrt mroot mtable mtr mtd mover munder " +
+    "munderover mstyle mpadded mphantom semantics").split(" "),
+);
+const XHTML_TAGS = new Set(
+  "p ul ol li em strong b i code pre br hr blockquote table thead tbody tr th td h2 h3 h4 h5 h6 sub sup dl dt dd div span".split(" "),
+);
+const DROPPED = new Set(["annotation", "annotation-xml", "script", "style", "template", "iframe", "object"]);
+const ATTRIBUTES = new Set(
+  ("mathvariant width height depth display stretchy fence separator lspace rspace minsize maxsize linethickness " +
+    "columnalign scope start colspan rowspan").split(" "),
+);
+
+const policy = globalThis.trustedTypes?.createPolicy("dh-grader", { createHTML: (text) => text });
+
+function parsed(text, type) {
+  return new DOMParser().parseFromString(policy ? policy.createHTML(text) : text, type);
+}
+
+function copied(node) {
+  if (node.nodeType === Node.TEXT_NODE) return document.createTextNode(node.data);
+  if (node.nodeType !== Node.ELEMENT_NODE || DROPPED.has(node.localName)) return null;
+  const children = [...node.childNodes].map(copied).filter(Boolean);
+  const tags = node.namespaceURI === MATHML ? MATHML_TAGS : node.namespaceURI === XHTML ? XHTML_TAGS : null;
+  if (!tags?.has(node.localName)) {
+    const fragment = document.createDocumentFragment();
+    fragment.append(...children);
+    return fragment;
+  }
+  const element = document.createElementNS(node.namespaceURI, node.localName);
+  for (const { name, value } of node.attributes) if (ATTRIBUTES.has(name)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
+/** The one `<math>` element in the text, or null where it is none. */
+export function mathml(text) {
+  const root = text ? parsed(text, "application/xml").documentElement : null;
+  return root?.namespaceURI === MATHML && root.localName === "math" ? copied(root) : null;
+}
+
+/** The statement of an exercise as nodes. */
+export function html(text) {
+  return [...parsed(text, "text/html").body.childNodes].map(copied).filter(Boolean);
+}

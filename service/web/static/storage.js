@@ -1,0 +1,62 @@
+// Answers that survive a reload, and links that carry them. A browser that keeps nothing is no error.
+
+const PREFIX = "dh-grader";
+// The fragment of an address is never sent to a server.
+const NAME = "#answers=";
+const LONGEST = 60_000;
+
+/** The answers to an exercise of one service, in this browser. */
+export class Store {
+  constructor(base, exercise) {
+    this.name = `${PREFIX}:${base}:${exercise}`;
+  }
+
+  load() {
+    try {
+      return checked(JSON.parse(localStorage.getItem(this.name)));
+    } catch {
+      return null;
+    }
+  }
+
+  /** Keep the answers; false where the browser does not. */
+  save(answers) {
+    try {
+      if (answers === null) localStorage.removeItem(this.name);
+      else localStorage.setItem(this.name, JSON.stringify(answers));
+      return true;
+    } catch {
+      return false;
+    }
+  }
+}
+
+/** The answers as a fragment. */
+export function fragment(answers) {
+  const bytes = new TextEncoder().encode(JSON.stringify(answers));
+  const text = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
+  return NAME + text.replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+}
+
+/** The answers in a fragment, or null. */
+export function answersIn(hash) {
+  if (!hash.startsWith(NAME) || hash.length > LONGEST) return null;
+  try {
+    const text = atob(hash.slice(NAME.length).replaceAll("-", "+").replaceAll("_", "/"));
+    const bytes = Uint8Array.from(text, (character) => character.charCodeAt(0));
+    return checked(JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(bytes)));
+  } catch {
+    return null;
+  }
+}
+
+/** Answers of the right shape, whatever was stored or linked: `{unit, parts: {id: {cells, choice}}}`. */
+function checked(value) {
+  if (typeof value !== "object" || value === null || typeof value.parts !== "object" || value.parts === null) return null;
+  const parts = {};
+  for (const [id, part] of Object.entries(value.parts)) {
+    if (!Array.isArray(part?.cells) || !part.cells.every((cell) => typeof cell === "string")) return null;
+    parts[id] = { cells: part.cells, choice: typeof part.choice === "string" ? part.choice : "" };
+  }
+  return { unit: value.unit === "degrees" ? "degrees" : "radians", parts };
+}

@@ -1,0 +1,99 @@
+"""Statements as HTML: Markdown and formulas, and nothing that a page would run or load."""
+
+from html.parser import HTMLParser
+
+import httpx
+import pytest
+
+from service.api.statement import statement_html
+
+
+class Elements(HTMLParser):
+    """The elements and attributes of a text, as a browser's parser finds them."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.found: list[tuple[str, dict[str, str | None]]] = []
+        self.feed(html)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found.append((tag, dict(attrs)))
+
+
+def names(html: str) -> set[str]:
+    return {tag for tag, _ in Elements(html).found}
+
+
+def test_markdown_and_formulas() -> None:
+    html = statement_html("Two **joints**:\n\n- $\\theta_1$ and $\\frac{\\pi}{2}$\n- costs \\$5")
+    assert "<strong>joints</strong>" in html
+    assert "<msub><mi>θ</mi><mn>1</mn></msub>" in html
+    assert "<mfrac><mrow><mi>π</mi></mrow><mrow><mn>2</mn></mrow></mfrac>" in html
+    assert "costs $5</li>" in html
+
+
+def test_a_matrix_and_a_table() -> None:
+    html = statement_html(
+        "$$\\begin{bmatrix}1&2\\\\3&4\\end{bmatrix}$$\n\n| a | b |\n|:-:|--|\n| $x$ | 2 |"
+    )
+    assert html.count("<mtd>") == 4
+    assert 'display="block"' in html
+    assert {"table", "th", "td"} <= names(html)
+    assert "style" not in html
+
+
+def test_subscripts_in_plain_text_stay_as_they_are() -> None:
+    text = "Rot_z(theta) Trans_z(d), frame {0}, z_i and x_i"
+    assert statement_html(text) == f"<p>{text}</p>\n"
+
+
+HOSTILE = [
+    "<script>alert(1)</script>",
+    '<img src=x onerror="alert(1)">',
+    "<svg onload=alert(1)>",
+    "[x](javascript:alert(1))",
+    "[x](JaVaScRiPt&colon;alert(1))",
+    "[x](data:text/html,<script>alert(1)</script>)",
+    "![x](https://example.org/x.png)",
+    "<https://example.org/\"onmouseover='alert(1)'>",
+    "$\\text{<script>alert(1)</script>}$",
+    "$\\text{<img src=x onerror=alert(1)>}$",
+    "$\\href{javascript:alert(1)}{x}$",
+    "$\\style{background:url(//example.org)}{x}$",
+    "$\\class{evil}{x}$",
+    "$\\unicode{x3c}script\\unicode{x3e}$",
+    "$</math><script>alert(1)</script>$",
+    "$$\\text{</mtext></math><iframe src=//example.org>}$$",
+    "a[^1]: <b>",
+    "[a]: javascript:alert(1)\n\n[a]",
+]
+HARMLESS = {
+    "p", "strong", "em", "a", "ul", "ol", "li", "code", "pre", "table", "thead", "tbody", "tr",
+    "th", "td", "span", "div", "br", "math", "mrow", "mi", "mn", "mo", "mtext",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_what_is_hostile_is_shown_as_text(text: str) -> None:
+    for tag, attributes in Elements(statement_html(text)).found:
+        assert tag in HARMLESS
+        assert set(attributes) <= {"href", "class", "display", "stretchy"}
+        assert (attributes.get("href") or "https://").lower().startswith("https://")
+
+
+def test_marks_that_turn_the_direction_are_shown() -> None:
+    assert statement_html("a\u202eb\u2066c") == "<p>a[U+202E]b[U+2066]c</p>\n"
+
+
+@pytest.mark.parametrize(
+    "latex", ["{" * 1_900, "\\frac{1}" * 900, "\\left(", "\\begin{x}", "x" * 3_000]
+)
+def test_a_formula_that_cannot_be_shown_is_shown_as_it_is_written(latex: str) -> None:
+    html = statement_html(f"${latex}$")
+    assert names(html) <= {"p", "span", "code", "math", "mrow", "mfrac", "mn", "mo", "mi"}
+
+
+def test_the_exercise_has_it(client: httpx.Client) -> None:
+    shown = client.get("/v1/exercises/baxter-left-arm").json()
+    assert shown["statement_html"] == statement_html(shown["statement"])
+    assert shown["statement_html"].count("<li>") == 7

@@ -1,0 +1,42 @@
+"""Processor time of whole processes of the command line, from their start to their end."""
+
+import os
+import resource
+import subprocess
+import sys
+from typing import Final
+
+from service.catalogue import shipped_folder
+
+ROUNDS: Final = 5
+SUBMISSION: Final = shipped_folder().parent / "docs" / "examples" / "stanford-arm.json"
+
+# To be compared with, on a machine that is slow for a while.
+NUMPY: Final = ("-c", "import numpy")
+COMMANDS: Final = {
+    "dh-grader --help": ("-m", "service", "--help"),
+    "dh-grader grade, one file": (
+        *("-m", "service", "grade", str(SUBMISSION)),
+        *("--exercise", "stanford-arm"),
+    ),
+}  # fmt: skip
+
+
+def seconds(*arguments: str) -> float:
+    """The processor time of one Python process, with the modules compiled before."""
+    environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run(
+        [sys.executable, *arguments], env=environment, stdout=subprocess.DEVNULL, check=False
+    )
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def start_seconds() -> dict[str, float]:
+    """Each command's time, and that of an import of numpy alone; the least of some rounds."""
+    measured = {"python -c 'import numpy'": NUMPY, **COMMANDS}
+    rounds = [
+        {what: seconds(*command) for what, command in measured.items()} for _ in range(ROUNDS)
+    ]
+    return {what: min(each[what] for each in rounds) for what in measured}

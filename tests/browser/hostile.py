@@ -1,0 +1,44 @@
+"""An exercise as somebody would write it who wants to run a script in a student's browser."""
+
+# Each would be seen by a test if it were taken for markup: it calls `stolen`, or loads a picture.
+SCRIPT = "<script>stolen('script')</script>"
+PICTURE = "<img src=x onerror=\"stolen('picture')\">"
+DRAWING = "<svg onload=\"stolen('drawing')\"><a href='javascript:stolen(1)'>q</a></svg>"
+TURNED = "theta1 \u202e 1ateht \u2066 x"
+TEXTS = [
+    SCRIPT,
+    PICTURE,
+    DRAWING,
+    TURNED,
+    "javascript:stolen('address')",
+    "]]><math href='javascript:0'>",
+]
+
+HOSTILE_EXERCISE = f"""
+title = '''Hostile {PICTURE}'''
+source = '''{SCRIPT} {DRAWING}'''
+statement = '''
+Read {SCRIPT} and {PICTURE}.
+
+[a link](javascript:stolen(2)) and {DRAWING}
+'''
+
+[robot]
+structure = "RR"
+joints = ["theta1", "theta2"]
+convention = "standard"
+table = [["a1", "0", "0", "theta1"], ["a2", "0", "0", "theta2"]]
+
+[symbols]
+a1 = {{ kind = "length", unit = "m", range = [0.3, 0.9], description = '''length {PICTURE}''' }}
+a2 = {{ kind = "length", unit = "m", range = [0.3, 0.9], description = '''{DRAWING}''' }}
+
+[[parts]]
+id = "table"
+kind = "dh_table"
+title = '''The table {PICTURE}'''
+prompt = '''Give it {SCRIPT}{DRAWING}'''
+points = 4
+convention = "standard"
+frames = "free"
+"""

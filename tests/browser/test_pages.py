@@ -1,0 +1,139 @@
+"""All views in a real browser: for everybody, on other sites, without scripts, under attack."""
+
+import json
+import re
+from collections.abc import Callable
+from typing import Any
+
+from playwright.sync_api import Page, expect
+
+from tests.api.serving import ROOT
+from tests.browser.conftest import Origin, Visit
+from tests.browser.hostile import TEXTS
+from tests.browser.steps import cells, open_exercise
+
+Opening = Callable[..., Visit]
+
+
+def course_page(service: str) -> str:
+    """The page of docs/embedding.md, with this service."""
+    text = (ROOT / "docs" / "embedding.md").read_text(encoding="utf-8")
+    [page] = re.findall(r"```html\n(.*?)```", text, re.DOTALL)
+    return str(page).replace("https://grader.example.edu", service)
+
+
+def violations(page: Page, axe: str) -> list[str]:
+    """The violations that axe-core finds, in light and dark."""
+    page.evaluate(f"({json.dumps(axe)}, 0)")
+    found = []
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)
+        result: dict[str, Any] = page.evaluate("axe.run(document, {resultTypes: ['violations']})")
+        found += [
+            f"{scheme}: {each['id']}: {node['target']} {node['failureSummary']}"
+            for each in result["violations"]
+            for node in each["nodes"]
+        ]
+    return found
+
+
+def test_nobody_is_kept_out_of_any_view(visit: Opening, service: str, axe: str) -> None:
+    # The policy of the pages lets no script in but their own: the checker comes in beside it.
+    page = visit(bypass_csp=True, viewport={"width": 1280, "height": 900}).page
+    page.add_init_script(axe)
+    page.goto(service)
+    page.get_by_label("Find an exercise").fill("scara")
+    expect(page.locator(".exercises > li:visible")).to_have_count(1)
+    assert violations(page, "") == []
+    page.get_by_label("Find an exercise").fill("no such robot")
+    expect(page.get_by_text("No exercise has all these words.")).to_be_visible()
+    assert violations(page, "") == []
+    open_exercise(page, service, "planar-rr")
+    for i, text in enumerate(["a1", "0", "sin(", "theta1", "-a2", "0", "", "theta2"]):
+        cells(page).nth(i).fill(text)
+    page.locator("input").first.focus()
+    page.get_by_role("button", name="Check").click()
+    expect(page.locator("td[data-verdict=unreadable]")).to_have_count(1)
+    assert violations(page, "") == []
+    page.set_viewport_size({"width": 320, "height": 700})
+    assert violations(page, "") == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= 320
+    open_exercise(page, service, "dh-conditions")
+    assert violations(page, "") == []
+
+
+def test_the_element_on_a_course_s_own_page(
+    visit: Opening, service: str, other_origin: Origin, stranger: Origin, axe: str
+) -> None:
+    other_origin.pages["/"] = course_page(service)
+    page = visit(bypass_csp=True).page
+    page.add_init_script(axe)
+    page.goto(other_origin.address)
+    expect(page.locator(".part")).to_have_count(1)
+    for i, text in enumerate(["a1", "0", "0", "theta1"]):
+        cells(page).nth(i).fill(text)
+    page.get_by_role("button", name="Check").click()
+    expect(page.locator("td[data-verdict=correct]")).to_have_count(4)
+    expect(page.locator("#earned")).to_have_text(re.compile(r"^\d[\d.]* of 24 points$"))
+    assert violations(page, "") == []
+    page.locator("dh-exercise").evaluate("each => each.setAttribute('exercise', 'planar-rr')")
+    expect(page.get_by_role("heading", name="Planar RR arm, distal convention")).to_be_visible()
+
+    # A site that the service does not know sees why there is no exercise.
+    stranger.pages["/"] = course_page(service)
+    unknown = visit()
+    unknown.page.goto(stranger.address)
+    expect(unknown.page.get_by_role("alert")).to_contain_text("could not be loaded")
+    assert any("CORS" in each for each in unknown.complaints)
+    unknown.complaints.clear()
+
+
+def test_an_exercise_can_be_read_with_scripts_blocked(visit: Opening, service: str) -> None:
+    opened = visit(java_script_enabled=False)
+    page = opened.page
+    page.goto(service)
+    page.get_by_role("link", name="SCARA manipulator, distal convention").click()
+    expect(page.get_by_role("heading", level=1)).to_have_text(
+        "SCARA manipulator, distal convention"
+    )
+    expect(page.get_by_text("all four axes are vertical")).to_be_visible()
+    expect(page.get_by_role("img", name="The robot: SCARA manipulator")).to_be_visible()
+    expect(page.get_by_text("Give the standard DH table, one row for each joint.")).to_be_visible()
+    # Only the scripts were refused.
+    assert [each for each in opened.complaints if not each.endswith(".js")] == []
+    opened.complaints.clear()
+
+
+def test_hostile_texts_stay_texts(visit: Opening, service: str) -> None:
+    page = visit().page
+    page.add_init_script("window.taken = []; window.stolen = (what) => taken.push(what);")
+    page.goto(service)
+    expect(page.get_by_text("Hostile <img src=x")).to_be_visible()
+    answers = {"unit": "radians", "parts": {"table": {"cells": TEXTS, "choice": "<img src=x>"}}}
+    written = page.evaluate(
+        "text => btoa(String.fromCharCode(...new TextEncoder().encode(text)))", json.dumps(answers)
+    )
+    open_exercise(
+        page, service, "hostile", f"#answers={written.replace('+', '-').replace('/', '_')}"
+    )
+    expect(page.get_by_text("These answers came with the link.")).to_be_visible()
+    assert [each.input_value() for each in cells(page).all()][: len(TEXTS)] == TEXTS
+    page.get_by_role("button", name="Check").click()
+    expect(page.locator("td[data-verdict=unreadable]").first).to_be_visible()
+    for i in range(len(TEXTS)):
+        cells(page).nth(i).focus()
+    # A character that turns the text around is written out where the service repeats it.
+    shown = page.locator("dh-exercise").evaluate(
+        """(each) => {
+          // The echo lies unseen below the input, letter for letter.
+          for (const echo of each.shadowRoot.querySelectorAll(".echo")) echo.remove();
+          return each.shadowRoot.textContent;
+        }"""
+    )
+    assert "\u202e" not in shown
+    strange = "script, img:not([src*='figure.svg']), svg, a, iframe, [onerror], [onload]"
+    found = page.locator("dh-exercise").evaluate(
+        "(each, strange) => each.shadowRoot.querySelectorAll(strange).length", strange
+    )
+    assert found == 0
+    assert page.evaluate("taken") == []

@@ -1,0 +1,120 @@
+"""Several exercises at once: `dh-grader grade --assignment` and `dh-grader assignments check`."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Run
+
+ASSIGNMENT = """\
+title = "Homework"
+pass_mark = 0.4
+[[exercises]]
+id = "planar-rrr"
+parts = ["table"]
+points = 30
+[[exercises]]
+id = "scara"
+points = 10
+"""
+ROWS = [
+    ["0", "0", "0", "q1"],
+    ["l1", "0", "0", "q2"],
+    ["l2", "0", "0", "q3"],
+    ["l3", "0", "0", "0"],
+]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "hw.toml").write_text(ASSIGNMENT, encoding="utf-8")
+    anna, bert = tmp_path / "class/anna", tmp_path / "class/bert.json"
+    anna.mkdir(parents=True)
+    lines = ["a, alpha, d, theta", *map(", ".join, ROWS)]
+    (anna / "planar-rrr.csv").write_text("\n".join(lines), encoding="utf-8")
+    body = {"exercise": "scara", "answers": {}}
+    bert.write_text(json.dumps(body), encoding="utf-8")
+    return tmp_path
+
+
+def test_points_and_pass_mark_are_the_assignment_s(run: Run, folder: Path) -> None:
+    common = ["grade", "--assignment", folder / "hw.toml", "--format", "csv"]
+    result = run(*common, folder / "class")
+    assert result.exit_code == 1
+    head, anna, bert = (line.split(",") for line in result.stdout.splitlines())
+    assert head[1:5] == ["points", "max_points", "score", "passed"]
+    assert anna[1:5] == ["30", "40", "0.75", "yes"]
+    assert bert[1:5] == ["0", "40", "0", "no"]
+    assert run(*common, folder / "class/anna", "--one-student").exit_code == 0
+    above = run(*common, folder / "class/anna", "--one-student", "--pass-mark", "0.8")
+    assert above.exit_code == 1
+
+
+def test_each_exercise_has_an_entry_in_json(run: Run, folder: Path) -> None:
+    result = run("grade", folder / "class", "--assignment", folder / "hw.toml", "--format", "json")
+    entries = json.loads(result.stdout)
+    assert [(entry["exercise"], entry["report"]["score"]) for entry in entries] == [
+        ("planar-rrr", 1), ("scara", 0), ("planar-rrr", 0), ("scara", 0),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        ([], "--exercise ID, or --assignment F"),
+        (["--exercise", "scara", "--assignment", "hw.toml"], "--exercise ID, or --assignment F"),
+        (["--assignment", "hw.toml", "--part", "table"], "--part goes with --exercise"),
+        (["--assignment", "none.toml"], "none.toml: cannot be read: No such file"),
+        (["--assignment", "."], "cannot be read: Is a directory"),
+    ],
+)
+def test_what_is_graded_must_be_said_once(
+    run: Run, folder: Path, options: list[str], reason: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(folder)
+    result = run("grade", "class", *options)
+    assert result.exit_code == 2
+    assert reason in result.stderr
+
+
+def test_an_empty_folder_is_no_class(run: Run, folder: Path) -> None:
+    (folder / "empty").mkdir()
+    result = run("grade", folder / "empty", "--assignment", folder / "hw.toml")
+    assert (result.exit_code, "holds no submission" in result.stderr) == (2, True)
+
+
+def test_check_tells_which_file_answers_what(run: Run, folder: Path) -> None:
+    (folder / "class/carl.csv").write_text("1", encoding="utf-8")
+    result = run("assignments", "check", folder / "hw.toml", folder / "class")
+    assert result.exit_code == 0
+    assert "Homework: 2 exercises, 40 points, pass mark 40 %" in result.stdout
+    assert f"planar-rrr: table from {folder}/class/anna/planar-rrr.csv" in result.stdout
+    assert "scara: missing" in result.stdout
+    assert "carl.csv is a pasted answer, whose name does not say the exercise" in result.stdout
+
+
+def test_check_names_the_line_of_a_fault(run: Run, folder: Path) -> None:
+    (folder / "hw.toml").write_text(ASSIGNMENT.replace("scara", "skara"), encoding="utf-8")
+    result = run("assignments", "check", folder / "hw.toml")
+    assert result.exit_code == 2
+    assert "exercises[1].id (line 8): There is no exercise 'skara'. Did you mean 'scara'?" in (
+        result.stderr
+    )
+
+
+def test_a_file_that_cannot_be_used_stands_beside_the_report_on_the_others(
+    run: Run, folder: Path
+) -> None:
+    (folder / "class/anna/scara").mkdir()
+    (folder / "class/anna/scara/table.csv").write_text("0, 0, 0, q1", encoding="utf-8")
+    (folder / "class/anna/scara/pose.csv").write_bytes(b"\xff")
+    common = ["grade", folder / "class", "--assignment", folder / "hw.toml", "--format"]
+    result = run(*common, "json")
+    assert result.exit_code == 2
+    first, second, *others = json.loads(result.stdout)
+    assert "error" not in first
+    assert second["error"].startswith("scara/pose.csv is not UTF-8 text")
+    assert second["report"]["parts"][0]["verdict"] != "missing"
+    assert not any("error" in entry for entry in others)
+    assert "scara/pose.csv is not UTF-8 text" in run(*common, "csv").stdout

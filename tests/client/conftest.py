@@ -1,0 +1,46 @@
+import asyncio
+from collections.abc import Awaitable, Callable, Iterator
+from typing import Any
+
+import pytest
+
+from service.client import AsyncGraderClient, GraderClient, Retries
+from tests.api.serving import Served, served
+
+# What a test does with a client of either sort: it calls one method.
+Use = Callable[[Any], Any]
+# Does that with a client for an address, which has further options.
+Using = Callable[..., Any]
+
+QUICK = Retries(number=2, first_wait=0.001, longest_wait=5.0)
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """A real process; it may show all that its exercises allow."""
+    with served(tmp_path_factory.mktemp("server")) as server:
+        yield server
+
+
+def synchronous(address: str, use: Use, **options: Any) -> Any:
+    with GraderClient(address, **{"retries": QUICK} | options) as client:
+        found = use(client)
+        return list(found) if isinstance(found, Iterator) else found
+
+
+def asynchronous(address: str, use: Use, **options: Any) -> Any:
+    async def used() -> Any:
+        async with AsyncGraderClient(address, **{"retries": QUICK} | options) as client:
+            found = use(client)
+            if isinstance(found, Awaitable):
+                return await found
+            return [each async for each in found]
+
+    return asyncio.run(used())
+
+
+@pytest.fixture(params=[synchronous, asynchronous], ids=["sync", "async"])
+def using(request: pytest.FixtureRequest) -> Using:
+    """Calls a method of a client, of both sorts: ``using(address, lambda client: …)``."""
+    use: Using = request.param
+    return use

@@ -1,0 +1,252 @@
+"""Both clients on a real server process, and on servers that fail in every way."""
+
+import json
+import socket
+from collections.abc import Iterator, Mapping
+from datetime import UTC, datetime
+from email.utils import format_datetime
+from random import Random
+from typing import Any
+from uuid import UUID
+
+import pytest
+
+from service.catalogue import Exercise, FeedbackLevel
+from service.client import (
+    ExerciseSubmission,
+    GraderClient,
+    RequestRefusedError,
+    ServerUnreachableError,
+    UnexpectedAnswerError,
+)
+from service.client import (
+    answers as received,
+)
+from service.grading import Submission, Verdict, grade
+from service.submissions.body import MAX_SUBMISSIONS
+from service.submissions.strict_json import read_json
+from tests.api.serving import Served
+from tests.attack.bodies import model_of, spoiled
+from tests.client.conftest import Using
+from tests.client.scripted import http, scripted
+
+READY = http(200, json.dumps({"exercises": []}))
+BUSY = {"type": "about:blank", "title": "Busy", "status": 503, "detail": "Wait.", "instance": "/"}
+
+
+def in_a_file(value: object) -> Any:
+    """The value as it is read from a file of JSON."""
+    return read_json(json.dumps(value).encode())
+
+
+def posts(server: Served) -> int:
+    return server.log.read_text(encoding="utf-8").count('"POST /v1/')
+
+
+def test_the_exercises_are_those_of_the_catalogue(
+    server: Served, using: Using, catalogue: Mapping[str, Exercise]
+) -> None:
+    listed = using(server.address, lambda client: client.exercises())
+    assert [(each.id, each.title) for each in listed] == [
+        (each.id, each.title) for each in catalogue.values()
+    ]
+
+
+def test_an_exercise_is_told_with_the_shapes_of_its_answers(server: Served, using: Using) -> None:
+    exercise = using(server.address, lambda client: client.exercise("stanford-arm"))
+    assert exercise.feedback is FeedbackLevel.HINTS
+    assert [(part.id, part.shape.form) for part in exercise.parts] == [
+        ("table", "dh_table"), ("links", "link_transforms"), ("pose", "matrix"),
+    ]  # fmt: skip
+
+
+def test_a_report_over_http_is_the_one_that_is_made_here(
+    server: Served, catalogue: Mapping[str, Exercise]
+) -> None:
+    random = Random(13)
+    right = [(exercise, model_of(exercise).answers) for exercise in catalogue.values()]
+    # As a file holds them: JSON has no infinity and no half of a pair of surrogates.
+    wrong = [(exercise, in_a_file(spoiled(answers, random, 0.2))) for exercise, answers in right]
+    with GraderClient(server.address) as client:
+        for exercise, answers in right + wrong:
+            here = grade(exercise, Submission(answers, feedback=exercise.feedback))
+            assert client.grade(exercise.id, answers) == here
+            assert (here.score == 1) is ((exercise, answers) in right)
+
+
+def test_the_options_of_a_grading_are_heeded(server: Served, using: Using) -> None:
+    rows = [{"a": "0", "alpha": "0", "d": "0", "theta": "q1 + 90"}]
+    report = using(
+        server.address,
+        lambda client: client.grade(
+            "planar-rr",
+            {"table": {"rows": rows}},
+            angle_unit="degrees",
+            feedback=FeedbackLevel.VERDICTS,
+            echo=True,
+        ),
+    )
+    assert report.feedback is FeedbackLevel.VERDICTS
+    *_, theta = report.parts[0].rows[0].cells
+    assert theta.read is not None
+    assert theta.read.text == "theta1 + 90deg"
+
+
+def test_many_are_graded_in_order_and_in_few_requests(server: Served, using: Using) -> None:
+    ids = ["planar-rr", "no-such-exercise", *["planar-rr"] * (MAX_SUBMISSIONS + 6)]
+    submissions = [ExerciseSubmission(exercise=each, answers={}) for each in ids]
+    before = posts(server)
+    results = using(server.address, lambda client: client.grade_many(submissions))
+    assert posts(server) == before + 2
+    assert [result.report is None for result in results] == [each != "planar-rr" for each in ids]
+    assert results[1].problem.type.endswith(":unknown-exercise")
+    assert {part.verdict for part in results[0].report.parts} == {Verdict.MISSING}
+
+
+def test_a_text_is_read(server: Served, using: Using) -> None:
+    read = using(
+        server.address,
+        lambda client: client.preview("l1 c1 +", exercise="planar-rrr", quantity="length"),
+    )
+    assert (read.ok, read.error.code, read.error.suggestion) == (
+        False, "trailing_operator", "l1 c1",
+    )  # fmt: skip
+
+
+def test_a_refusal_says_what_was_wrong_and_is_not_tried_again(server: Served, using: Using) -> None:
+    before = posts(server)
+    with pytest.raises(RequestRefusedError, match="Did you mean 'planar-rr'") as caught:
+        using(server.address, lambda client: client.grade("planar-r", {}))
+    refused = caught.value
+    assert (refused.status, refused.code) == (404, "unknown-exercise")
+    with pytest.raises(RequestRefusedError) as caught:
+        using(server.address, lambda client: client.grade("planar-rr", {"tabel": 1}))
+    refused = caught.value
+    assert (refused.status, refused.code) == (422, "unknown-part")
+    assert [reason.pointer for reason in refused.reasons] == ["#/answers/tabel"]
+    assert posts(server) == before + 2
+
+
+def test_what_was_not_answered_is_sent_again_as_the_same_submission(using: Using) -> None:
+    report = b""  # the connection ends without a word
+    busy = http(503, json.dumps(BUSY), retry_after="0")
+    done = http(200, json.dumps({"ok": True}))
+    with scripted(report, busy, done) as server:
+        read = using(server.address, lambda client: client.preview("c1"), key="dhg_a.b-c==")
+    assert read.ok
+    assert [each.line for each in server.requests] == ["POST /v1/preview HTTP/1.1"] * 3
+    assert {each.headers["authorization"] for each in server.requests} == {"Bearer dhg_a.b-c=="}
+    (key,) = {each.headers["idempotency-key"] for each in server.requests}
+    assert UUID(key).version == 4
+    assert {each.body for each in server.requests} == {b'{"text":"c1"}'}
+
+
+def test_a_key_of_the_callers_own_is_sent(using: Using) -> None:
+    with scripted(http(404)) as server, pytest.raises(RequestRefusedError):
+        using(server.address, lambda client: client.grade("x", {}, idempotency_key="mine"))
+    assert server.requests[0].headers["idempotency-key"] == "mine"
+
+
+@pytest.mark.parametrize("status", [400, 401, 403, 404, 408, 409, 413, 422, 500])
+def test_these_are_not_tried_again(using: Using, status: int) -> None:
+    with scripted(http(status, "<h1>no</h1>"), READY) as server:
+        with pytest.raises(RequestRefusedError, match=f"the status {status}") as caught:
+            using(server.address, lambda client: client.exercises())
+        assert len(server.requests) == 1
+    assert (caught.value.status, caught.value.is_temporary) == (status, False)
+
+
+@pytest.mark.parametrize("status", [429, 502, 503, 504])
+def test_these_are_tried_again_until_the_retries_are_spent(using: Using, status: int) -> None:
+    with scripted(*[http(status, "<h1>no</h1>")] * 3, READY) as server:
+        with pytest.raises(RequestRefusedError) as caught:
+            using(server.address, lambda client: client.exercises())
+        assert len(server.requests) == 3
+    assert (caught.value.status, caught.value.is_temporary) == (status, True)
+
+
+@pytest.mark.parametrize("date", ["6", format_datetime(datetime(2200, 1, 1, tzinfo=UTC))])
+def test_a_service_that_asks_for_a_long_wait_is_left_alone(using: Using, date: str) -> None:
+    with scripted(http(503, json.dumps(BUSY), retry_after=date), READY) as server:
+        with pytest.raises(RequestRefusedError, match=r"Wait\."):
+            using(server.address, lambda client: client.exercises())
+        assert len(server.requests) == 1
+
+
+@pytest.mark.parametrize("date", ["0", "Sun, 06 Nov 1994 08:49:37 GMT", "soon", "-1", "²"])
+def test_a_wait_that_is_over_or_says_nothing_is_none(using: Using, date: str) -> None:
+    with scripted(http(429, retry_after=date), READY) as server:
+        assert using(server.address, lambda client: client.exercises()) == []
+
+
+def test_the_key_follows_no_redirection(using: Using) -> None:
+    with scripted(READY) as other, scripted(http(307, location=f"{other.address}/v1")) as server:
+        with pytest.raises(UnexpectedAnswerError, match=f"redirects to {other.address}/v1"):
+            using(server.address, lambda client: client.exercises(), key="secret")
+        assert other.requests == []
+
+
+@pytest.mark.parametrize("prefix", ["/grader", "/a/b/"])
+def test_a_service_below_a_path_is_called_there(using: Using, prefix: str) -> None:
+    with scripted(READY, http(404)) as server:
+        using(server.address + prefix, lambda client: client.exercises())
+        with pytest.raises(RequestRefusedError):
+            using(server.address + prefix, lambda client: client.exercise("../../x?y#z/é"))
+    place = prefix.rstrip("/")
+    assert [each.line.split()[1] for each in server.requests] == [
+        f"{place}/v1/exercises",
+        f"{place}/v1/exercises/%2E%2E%2F%2E%2E%2Fx%3Fy%23z%2F%C3%A9",
+    ]
+
+
+@pytest.mark.parametrize(
+    "body", ["", "<h1>Welcome</h1>", "[]", '{"exercises": [{"id": 1}]}', b"\xff", "[" * 100_000]
+)
+def test_what_is_no_answer_of_a_grader_is_told_so(using: Using, body: str | bytes) -> None:
+    expected = pytest.raises(UnexpectedAnswerError, match="answers as no DH Grader")
+    with scripted(http(200, body)) as server, expected:
+        using(server.address, lambda client: client.exercises())
+
+
+def test_an_endless_answer_is_ended(using: Using, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(received, "MAX_ANSWER", 1024 * 1024)
+    sent: list[int] = []
+
+    def endless() -> Iterator[bytes]:
+        yield b"HTTP/1.1 200 OK\r\n\r\n"
+        while len(sent) < 1000:
+            sent.append(1)
+            yield b" " * 65536
+
+    with scripted(endless()) as server, pytest.raises(UnexpectedAnswerError, match="1 MiB"):
+        using(server.address, lambda client: client.exercises())
+    assert len(sent) < 1000
+
+
+def test_an_answer_that_comes_too_slowly_is_ended(using: Using) -> None:
+    released = socket.socketpair()
+
+    def slow() -> Iterator[bytes]:
+        yield b"HTTP/1.1 200 OK\r\n\r\n"
+        released[0].settimeout(0.02)
+        while True:
+            try:
+                released[0].recv(1)
+                return
+            except TimeoutError:
+                yield b" "
+
+    with scripted(slow(), slow(), slow()) as server:
+        with pytest.raises(ServerUnreachableError, match=r"no whole answer within 0\.2 seconds"):
+            using(server.address, lambda client: client.exercises(), timeout=0.2)
+        assert len(server.requests) == 3
+    for each in released:
+        each.close()
+
+
+def test_nobody_listens(using: Using) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        port = listener.getsockname()[1]
+    with pytest.raises(ServerUnreachableError, match=f"127.0.0.1:{port} cannot be reached") as it:
+        using(f"http://127.0.0.1:{port}", lambda client: client.exercises())
+    assert it.value.is_temporary

@@ -1,0 +1,32 @@
+"""A class so small that it can be counted by hand, graded by the grader."""
+
+from functools import cache
+
+from service.formats.shared.graded import GradedFile, GradedSubmission, answered
+from service.grading import FeedbackLevel
+from tests.formats.submissions import POSE, ROWS, graded, planar, submission
+
+ANNA, BEN, CLEO, DANA, EMRE, FRITZ, GINA = range(7)
+
+_TURNED = [ROWS[0], {**ROWS[1], "alpha": "pi/2"}, *ROWS[2:]]
+_UNFINISHED = [*ROWS[:2], {**ROWS[2], "theta": "q3 +"}, *ROWS[3:], ROWS[1]]
+
+
+@cache
+def class_of_seven() -> tuple[GradedSubmission, ...]:
+    """Seven submissions to an exercise of a table and a pose.
+
+    Anna's is right. Ben and Cleo have the same wrong cell. Dana has no tool row and no pose. Emre
+    has an entry that cannot be read, and a row too many. Fritz's is empty, Gina's no submission.
+    """
+    answers: dict[str, dict[str, object]] = {
+        "anna": {"table": {"rows": ROWS}, "pose": POSE},
+        "ben": {"table": {"rows": _TURNED}, "pose": POSE},
+        "cleo": {"table": {"rows": _TURNED}, "pose": POSE},
+        "dana": {"table": {"rows": ROWS[:3]}},
+        "emre": {"table": {"rows": _UNFINISHED}, "pose": POSE},
+        "fritz": {},
+    }
+    handed_in = [graded(each, name, FeedbackLevel.HINTS) for name, each in answers.items()]
+    problem = GradedFile("gina.json", answered(planar()), None, "is empty")
+    return (*handed_in, submission(problem, name="gina.json", learner="gina"))

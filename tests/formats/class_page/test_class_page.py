@@ -1,0 +1,208 @@
+"""The overview of a class: its files, its figures, and whatever anybody wrote in it."""
+
+import re
+import sys
+import unicodedata
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from urllib.parse import unquote
+
+import pytest
+
+from service.formats import report_format
+from service.formats.shared.graded import GradedSubmission
+from service.grading import FeedbackLevel
+from tests import chromium
+from tests.formats.class_of_seven import class_of_seven
+from tests.formats.html_reader import ALLOWED, PageReader
+from tests.formats.submissions import HOSTILE, cases, document, graded, setting
+
+ALLOWED_IN_INDEX = {
+    **ALLOWED,
+    "main": set(), "nav": {"aria-label"}, "section": {"id", "class", "aria-label"},
+    "a": {"href"}, "ul": {"class", "aria-label"}, "li": {"class"}, "h4": set(),
+    "dl": {"class"}, "dt": set(), "dd": {"class"}, "figure": {"class"}, "figcaption": {"class"},
+    "div": {"class", "role", "aria-label", "aria-hidden", "tabindex"},
+    "span": {"class", "title", "aria-hidden"}, "table": {"class"}, "caption": {"class"},
+    "th": {"scope", "class"}, "details": {"class"}, "summary": set(),
+    "svg": ALLOWED["svg"] | {"aria-hidden", "preserveaspectratio"},
+    "rect": {"class", "y", "width", "height"}, "line": {"x1", "x2", "y1", "y2"},
+}  # fmt: skip
+
+
+def folder(*submissions: GradedSubmission) -> dict[str, str]:
+    """The files of the class by their paths."""
+    writes = report_format("html").folder
+    assert writes is not None
+    documents = writes(submissions, setting())
+    return {each.path: b"".join(each.pieces).decode() for each in documents}
+
+
+def read(page: str) -> PageReader:
+    assert page.startswith("<!doctype html>\n")
+    return PageReader(page, ALLOWED_IN_INDEX)
+
+
+def told(page: str) -> str:
+    return re.sub(r"\s+", " ", " ".join(read(page).texts))
+
+
+def test_a_page_for_each_submission_and_an_index_that_leads_to_each() -> None:
+    files = folder(*class_of_seven())
+    names = ("anna", "ben", "cleo", "dana", "emre", "fritz", "gina")
+    assert list(files) == [*(f"reports/{name}.html" for name in names), "index.html"]
+    index = read(files["index.html"])
+    places = {f"#{name}" for name in index.names}
+    assert {unquote(link) for link in index.links} == (files.keys() | places) - {"index.html"}
+    assert files["reports/ben.html"] == document("html", class_of_seven()[1])
+
+
+def test_the_index_tells_the_counts() -> None:
+    words = told(folder(*class_of_seven())["index.html"])
+    for sentence in (
+        "Submissions 7 1 not graded",
+        "5 of 6 answered, 1 all right.",
+        "2 100 % 5/5 60 % 3/5",  # row 2 of the table: a, alpha
+        "2 submissions α is not right: compare the two z axes. quarter_turn in Denavit-Hartenberg",
+        "table (2) ben cleo 1 submission The fixed row",
+        "1 submission Something is missing after the + at the end. trailing_operator",
+        "2 submissions Denavit-Hartenberg table, 1 wrong cell row 2 alpha: pi/2 ben cleo",
+        "This is no proof of copying",
+        "gina is empty is left out",
+        "row 2 alpha pi/2 2",
+    ):
+        assert sentence in words
+    anna = words.rindex("anna 16 / 16 100 % ✓ passed")
+    assert words.index("gina – – ? not graded") > anna
+
+
+def test_submissions_that_count_nothing_are_told_from_those_that_are_left_out() -> None:
+    words = told(folder(cases()["unreadable"], cases()["unusable"])["index.html"])
+    assert "Nothing in it could be read. counts 0 / 16 points" in words
+    assert "is left out" in words
+
+
+def test_a_file_that_could_be_used_in_part_is_listed_with_the_reason() -> None:
+    [file] = class_of_seven()[1].files
+    half = replace(class_of_seven()[1], files=(replace(file, problem="answers nothing for pose"),))
+    words = told(folder(half)["index.html"])
+    assert "ben answers nothing for pose counts 13.89 / 16 points" in words
+
+
+def test_what_the_feedback_level_keeps_back_is_said() -> None:
+    scores = [graded({"table": {"rows": []}}, each, FeedbackLevel.SCORE) for each in "ab"]
+    assert "2 reports tell no slips" in told(folder(*scores)["index.html"])
+
+
+def test_a_class_of_none() -> None:
+    files = folder()
+    assert list(files) == ["index.html"]
+    assert "Nothing was graded." in told(files["index.html"])
+
+
+@pytest.mark.parametrize("case", cases())
+def test_whatever_was_written_is_text(case: str) -> None:
+    pair = [cases()[case], replace(cases()[case], name="another")]
+    for page in folder(*pair).values():
+        read(page)
+        kinds = {unicodedata.category(c) for c in page} & {"Cc", "Cf", "Cs", "Cn"}
+        assert kinds <= {"Cc"}
+        assert "\r" not in page
+        assert "default-src 'none'; style-src 'sha256-" in page
+    index = folder(*pair)["index.html"]
+    if case == "hostile words":
+        assert "<script>alert(1)</script> <img src=x onerror=alert(1)>" in HOSTILE
+        assert "<script>alert(1)</script> <img src=x onerror=alert(1)>" in told(index)
+
+
+def test_names_lead_to_files_in_the_folder_alone() -> None:
+    names = ("../../etc/passwd", "/etc/passwd", "..", HOSTILE, 'x" onload="y', "a\\b:c", "CON", "")
+    submissions = [replace(class_of_seven()[0], learner=name) for name in (*names, *names)]
+    files = folder(*submissions)
+    assert len(files) == 17
+    for path in files.keys() - {"index.html"}:
+        assert re.fullmatch(r"reports/[\w-]+\.html", path)
+    links = {link for link in read(files["index.html"]).links if not link.startswith("#")}
+    assert all(re.fullmatch(r"reports/[\w%-]+\.html", link) for link in links)
+
+
+def test_learners_of_one_name_are_told_apart() -> None:
+    submissions = [replace(class_of_seven()[0], name=f"{group}/anna.json") for group in "ab"]
+    words = told(folder(*submissions)["index.html"])
+    assert "a/anna.json" in words
+    assert "b/anna.json" in words
+
+
+def test_each_submission_is_written_before_the_next_is_graded() -> None:
+    taken = 0
+
+    def many() -> Iterator[GradedSubmission]:
+        nonlocal taken
+        for submission in class_of_seven():
+            taken += 1
+            yield submission
+
+    writes = report_format("html").folder
+    assert writes is not None
+    for written, _ in enumerate(writes(many(), setting()), start=1):
+        assert taken == min(written, 7)
+
+
+@pytest.fixture
+def page() -> Iterator[chromium.Page]:
+    with chromium.blank_page() as page:
+        yield page
+
+
+# The least contrast of any text with what is behind it, by the formula of WCAG 2.
+CONTRAST = """(() => {
+  const canvas = document.createElement('canvas').getContext('2d');
+  const channels = colour => {
+    canvas.clearRect(0, 0, 1, 1); canvas.fillStyle = colour; canvas.fillRect(0, 0, 1, 1);
+    return [...canvas.getImageData(0, 0, 1, 1).data];
+  };
+  const light = colour => channels(colour).slice(0, 3).map(c => c / 255)
+    .map(c => c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4)
+    .reduce((sum, c, i) => sum + c * [0.2126, 0.7152, 0.0722][i], 0);
+  const behind = node => {
+    for (let each = node; each; each = each.parentElement) {
+      const colour = getComputedStyle(each).backgroundColor;
+      if (channels(colour)[3] === 255) return colour;
+    }
+  };
+  let least = 21;
+  const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  while (texts.nextNode()) {
+    const node = texts.currentNode.parentElement;
+    if (!texts.currentNode.data.trim()) continue;
+    const pair = [light(getComputedStyle(node).color), light(behind(node))].sort((a, b) => b - a);
+    least = Math.min(least, (pair[0] + 0.05) / (pair[1] + 0.05));
+  }
+  return least;
+})()"""
+
+
+@pytest.mark.skipif(chromium.FOUND is None or sys.platform == "win32", reason="needs a Chromium")
+def test_a_browser_shows_it_readably_and_asks_for_nothing(
+    page: chromium.Page, tmp_path: Path
+) -> None:
+    file = tmp_path / "index.html"
+    file.write_text(folder(*cases().values(), *class_of_seven())["index.html"], encoding="utf-8")
+    page.open(file.as_uri())
+    page.wait_for("document.querySelectorAll('section[id]').length === 7")
+    assert page.wait_for(
+        "[...document.querySelectorAll('details')].every(each => each.open = true)"
+    )
+    for media, scheme in (("screen", "light"), ("screen", "dark"), ("print", "dark")):
+        page.show_as(media, scheme)
+        page.wait_for(f"matchMedia('{media} and (prefers-color-scheme: {scheme})').matches")
+        assert page.wait_for(CONTRAST) >= 4.5, (media, scheme)
+    page.show_as("screen")
+    for width in (320, 360, 1280):
+        page.resize(width)
+        page.wait_for(f"innerWidth === {width}")
+        assert page.wait_for("document.documentElement.scrollWidth <= innerWidth"), width
+    assert page.complaints == []
+    assert page.requests == [file.as_uri()]
+    assert page.wait_for("document.scripts.length === 0")

@@ -1,0 +1,53 @@
+"""Reads a page and holds it to the elements and attributes that pages may have."""
+
+from collections.abc import Mapping
+from collections.abc import Set as AbstractSet
+from html.parser import HTMLParser
+
+import pytest
+
+# Of each element, the attributes that it may have; none of them is a script or a style, and none
+# but ``a`` a link.
+ALLOWED: Mapping[str, AbstractSet[str]] = {
+    "html": {"lang"}, "head": set(), "body": set(), "style": set(), "title": set(),
+    "meta": {"charset", "http-equiv", "content", "name"}, "article": set(), "section": {"class"},
+    "header": {"class"}, "footer": set(), "h1": set(), "h2": set(), "h3": set(), "p": {"class"},
+    "div": {"class"}, "span": {"class", "title"}, "strong": set(), "code": set(), "ul": {"class"},
+    "li": set(), "table": set(), "thead": set(), "tbody": set(), "tr": set(), "td": {"class"},
+    "th": {"scope"}, "svg": {"class", "role", "aria-label", "viewbox"},
+    "circle": {"class", "cx", "cy", "r", "stroke-width", "stroke-dasharray", "transform"},
+    "text": {"x", "y", "text-anchor"},
+}  # fmt: skip
+VOID = {"meta"}
+
+
+class PageReader(HTMLParser):
+    """Checks what is open and closed, and keeps the texts, the links and the names of places."""
+
+    def __init__(self, page: str, allowed: Mapping[str, AbstractSet[str]] = ALLOWED) -> None:
+        super().__init__(convert_charrefs=True)
+        self._allowed = allowed
+        self.open: list[str] = []
+        self.texts: list[str] = []
+        self.links: list[str] = []
+        self.names: list[str] = []
+        self.feed(page)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        assert {name for name, _ in attrs} <= self._allowed[tag], tag
+        self.links += [value or "" for name, value in attrs if name == "href"]
+        self.names += [value or "" for name, value in attrs if name == "id"]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if self.open[-1:] != ["style"]:
+            self.texts.append(data)
+
+    def handle_comment(self, data: str) -> None:
+        pytest.fail(f"a comment: {data}")

@@ -1,0 +1,45 @@
+"""Install the built wheel with all its dependencies and grade with it: ``make wheel``.
+
+On each supported Python of this machine by pip, and by pipx on this one, as a user would. It needs
+the package index.
+"""
+
+import sys
+import tempfile
+from pathlib import Path
+
+from tests.installed.environment import ROOT, build, checked, other_pythons, run
+
+SUBMISSION = ROOT / "docs" / "examples" / "stanford-arm.json"
+POINTS = "8.67 / 32 points"
+
+
+def report(program: Path, folder: Path) -> str:
+    """The figures of one installation; raises AssertionError where it grades otherwise."""
+    graded = run(program, "grade", SUBMISSION, "--exercise", "stanford-arm", cwd=folder)
+    assert graded.returncode == 1, graded.stderr
+    assert POINTS in graded.stdout
+    return checked(program, "--version", cwd=folder).strip()
+
+
+def main() -> None:
+    """Print a line for each installation."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        wheel = build(folder)
+        for i, python in enumerate([sys.executable, *other_pythons()]):
+            place = folder / str(i)
+            checked(python, "-m", "venv", place, cwd=folder)
+            checked(place / "bin" / "pip", "install", "--quiet", wheel, cwd=folder)
+            size = sum(file.stat().st_size for file in place.rglob("*") if file.is_file())
+            print(f"{python}: {report(place / 'bin' / 'dh-grader', folder)}, {size >> 20} MB")
+        pipx = folder / "pipx"
+        checked(sys.executable, "-m", "venv", pipx, cwd=folder)
+        checked(pipx / "bin" / "pip", "install", "--quiet", "pipx", cwd=folder)
+        homes = {"PIPX_HOME": str(folder / "home"), "PIPX_BIN_DIR": str(folder / "programs")}
+        checked(pipx / "bin" / "pipx", "install", wheel, cwd=folder, **homes)
+        print(f"pipx: {report(folder / 'programs' / 'dh-grader', folder)}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,153 @@
+"""Which file answers what: by its name, by what it says, or because nothing else can."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from service.catalogue import load_catalogue, shipped_folder
+from service.submissions.answers import ExerciseAnswers, answers_in
+from service.submissions.assignment import Assignment, assigned, of_one
+from service.submissions.handed_in import all_handed_in
+
+CATALOGUE = load_catalogue(shipped_folder())
+RRR = of_one(CATALOGUE["planar-rrr"])  # parts: table, pose
+TWO = Assignment(tuple(assigned(CATALOGUE[name]) for name in ("planar-rrr", "scara")))
+CSV = "a, alpha, d, theta\n0, 0, 0, q1\n"
+
+
+def handed(folder: Path, files: Mapping[str, Any], what: Assignment) -> list[ExerciseAnswers]:
+    """The answers of one student, whose folder has these files."""
+    for name, content in files.items():
+        file = folder / "anna" / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        if isinstance(content, bytes):
+            file.write_bytes(content)
+        else:
+            text = content if isinstance(content, str) else json.dumps(content)
+            file.write_text(text, encoding="utf-8")
+    [found] = all_handed_in([folder])
+    return list(answers_in(found, what))
+
+
+def answers_of(found: ExerciseAnswers) -> dict[str, Any]:
+    assert found.body is not None, found.problem
+    return found.body.answers
+
+
+@pytest.mark.parametrize(
+    ("files", "answers"),
+    [
+        ({"hand-in.json": {"answers": {"table": 1}}}, {"table": 1}),
+        ({"x.json": {"exercise": "planar-rrr", "answers": {"pose": 1}}}, {"pose": 1}),
+        ({"planar-rrr.toml": "answers.pose = 2"}, {"pose": 2}),
+        ({"table.csv": CSV, "pose.tex": "x", "README.md": "# Hi"}, {"table": CSV, "pose": "x"}),
+        ({"Table.CSV": CSV}, {"table": CSV}),
+        ({"table-1.csv": CSV, "pose (2).m": "y"}, {"table": CSV, "pose": "y"}),
+        ({"planar-rrr/table.csv": CSV}, {"table": CSV}),
+        ({"planar-rrr.table.csv": CSV, "planar-rrr_pose.md": "x"}, {"table": CSV, "pose": "x"}),
+        ({"table.json": {"rows": []}}, {"table": {"rows": []}}),
+        ({"a.json": {"answers": {"table": 1}}, "pose.txt": "x"}, {"table": 1, "pose": "x"}),
+        ({"a.json": {"answers": {"table": 1}}, "package.json": {"name": "x"}}, {"table": 1}),
+        ({"a.txt": '{"answers": {"table": 1}}'}, {"table": 1}),
+        ({"answer": {"answers": {"table": 1}}}, {"table": 1}),
+        ({"table.csv": "\ufeff1".encode("utf-16-le")}, {"table": "1"}),
+        ({"table.csv": "\ufeffα".encode()}, {"table": "α"}),
+    ],
+)
+def test_the_file_is_found(tmp_path: Path, files: dict[str, Any], answers: dict[str, Any]) -> None:
+    [found] = handed(tmp_path, files, RRR)
+    assert found.problem == ""
+    assert answers_of(found) == answers
+
+
+def test_the_only_part_needs_no_name(tmp_path: Path) -> None:
+    table = of_one(CATALOGUE["planar-rrr"], "table")
+    [found] = handed(tmp_path, {"hand-in.csv": CSV, "README.md": "# Hi"}, table)
+    assert answers_of(found) == {"table": CSV}
+
+
+def test_parts_that_are_not_set_are_left_out(tmp_path: Path) -> None:
+    table = of_one(CATALOGUE["planar-rrr"], "table")
+    [found] = handed(tmp_path, {"x.json": {"answers": {"table": 1, "pose": 2}}}, table)
+    assert answers_of(found) == {"table": 1}
+
+
+@pytest.mark.parametrize(
+    ("files", "reason"),
+    [
+        ({"x.csv": CSV}, "name the file after it, one of table, pose"),
+        ({"x.csv": CSV, "y.csv": CSV}, "there are x.csv, y.csv; name it as planar-rrr/table.csv"),
+        ({"x.pdf": b"%PDF"}, "a kind that is not read (.pdf)"),
+        ({"x.docx": b"PK\x03\x04\0"}, "a kind that is not read (.docx)"),
+        ({"table.csv": b"\xff\xfa"}, "not UTF-8"),
+        ({"table.csv": b"a\0b"}, "zero bytes"),
+        ({"table.csv": " \n"}, "is empty"),
+        ({"table.csv": b"x" * 300_000}, "larger than 256 KiB"),
+        ({"a.json": {"exercise": "scara", "answers": {}}}, "answers the exercise 'scara', and not"),
+        (
+            {"a.json": {"answers": {"table": 1}}, "table.csv": CSV},
+            "two answers to 'table', in table.csv and in a.json",
+        ),
+        (
+            {
+                "a.json": {"answers": {"table": 1}, "angle_unit": "degrees"},
+                "b.json": {"answers": {"pose": 1}, "angle_unit": "radians"},
+            },
+            "differ in 'angle_unit'",
+        ),
+    ],
+)
+def test_what_cannot_be_told_says_why(tmp_path: Path, files: dict[str, Any], reason: str) -> None:
+    [found] = handed(tmp_path, files, RRR)
+    assert found.body is None
+    assert reason in found.problem
+
+
+def test_a_file_that_is_broken_costs_only_itself(tmp_path: Path) -> None:
+    [found] = handed(tmp_path, {"table.csv": CSV, "pose.csv": b"\xff"}, RRR)
+    assert answers_of(found) == {"table": CSV}
+    assert found.problem.startswith("pose.csv is not UTF-8")
+    assert found.file == str(tmp_path / "anna")
+
+
+def test_each_exercise_gets_its_file(tmp_path: Path) -> None:
+    files = {
+        "scara/table.csv": CSV,
+        "scara/README.md": "# Hi",
+        "first.json": {"exercise": "planar-rrr", "answers": {"table": 1}},
+    }
+    first, second = handed(tmp_path, files, TWO)
+    assert (answers_of(first), answers_of(second)) == ({"table": 1}, {"table": CSV})
+    assert first.file == str(tmp_path / "anna/first.json")
+
+
+def test_an_exercise_without_a_file_is_missing_and_no_problem(tmp_path: Path) -> None:
+    first, second = handed(tmp_path, {"scara.json": {"answers": {"table": 1}}}, TWO)
+    assert (first.file, first.problem, answers_of(first)) == ("", "", {})
+    assert answers_of(second) == {"table": 1}
+
+
+@pytest.mark.parametrize(
+    ("files", "reason"),
+    [
+        ({"x.json": {"answers": {}}}, 'write "exercise", or name the file after it'),
+        ({"x.json": {"exercise": "rrrp", "answers": {}}}, "those set are planar-rrr, scara"),
+        ({"x.csv": CSV}, "name it as planar-rrr/table.csv"),
+        ({"x.json": "{"}, "line 1, column 2"),
+    ],
+)
+def test_of_several_exercises_one_must_be_named(
+    tmp_path: Path, files: dict[str, Any], reason: str
+) -> None:
+    found = handed(tmp_path, files, TWO)
+    assert [each.body for each in found] == [None, None]
+    assert all(reason in each.problem for each in found)
+
+
+def test_an_empty_folder_says_so(tmp_path: Path) -> None:
+    (tmp_path / "anna").mkdir()
+    [found] = handed(tmp_path, {}, RRR)
+    assert (found.body, found.problem) == (None, "holds no file")

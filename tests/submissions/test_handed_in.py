@@ -1,0 +1,146 @@
+"""Students, and the files of each, in folders as they come from a course."""
+
+import io
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+from service.submissions import handed_in
+from service.submissions.file_content import UnusableFileError
+from service.submissions.handed_in import HandedIn, all_handed_in
+
+needs_links = pytest.mark.skipif(os.name == "nt", reason="needs a right for symbolic links")
+
+
+def save(folder: Path, *names: str) -> None:
+    for name in names:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text("{}", encoding="utf-8")
+
+
+def told(found: HandedIn) -> tuple[str, list[str]]:
+    return found.learner, [file.name for file in found.files()]
+
+
+def students(folder: Path) -> list[tuple[str, list[str]]]:
+    return [told(each) for each in all_handed_in([folder])]
+
+
+def test_a_file_is_a_student_and_so_is_a_folder(tmp_path: Path) -> None:
+    save(tmp_path, "carl.b/scara/table.csv", "carl.b/answer.json", "bert.json", "anna.json")
+    assert students(tmp_path) == [
+        ("anna", ["anna.json"]),
+        ("bert", ["bert.json"]),
+        ("carl.b", ["answer.json", "scara/table.csv"]),
+    ]
+
+
+def test_what_nobody_handed_in_is_skipped(tmp_path: Path) -> None:
+    save(
+        tmp_path, "anna.json", ".DS_Store", "._anna.json", "__MACOSX/anna.json", "Thumbs.db",
+        "~$anna.json", "anna.json~", "bert/.git/config", "bert/answer.json", "grades.csv",
+    )  # fmt: skip
+    found = all_handed_in([tmp_path], left_out=tmp_path / "grades.csv")
+    assert [told(each) for each in found] == [("anna", ["anna.json"]), ("bert", ["answer.json"])]
+
+
+def test_one_student_of_a_platform_has_all_files_of_that_name(tmp_path: Path) -> None:
+    save(
+        tmp_path,
+        "Ada Lovelace_12_assignsubmission_file_/answer.json",
+        "Ada Lovelace_12_assignsubmission_onlinetext_/onlinetext.html",
+        "Ada Lovelace_13_assignsubmission_file_table.csv",
+        "Ada Lovelace_13_assignsubmission_file_pose.tex",
+        "boolegeorge_LATE_100_2001_table.csv",
+        "boolegeorge_LATE_100_2002_pose-1.tex",
+    )
+    assert students(tmp_path) == [
+        ("Participant 12", ["answer.json", "onlinetext.html"]),
+        ("Participant 13", ["pose.tex", "table.csv"]),
+        ("100", ["table.csv", "pose-1.tex"]),
+    ]
+    names = [Path(each.name).name for each in all_handed_in([tmp_path])]
+    assert names == ["Ada Lovelace_12", "Ada Lovelace_13", "boolegeorge_100"]
+
+
+def test_a_folder_may_be_one_student_s(tmp_path: Path) -> None:
+    save(tmp_path, "table.csv", "more/pose.tex")
+    [found] = all_handed_in([tmp_path], folder_is_one=True)
+    assert told(found) == (tmp_path.name, ["more/pose.tex", "table.csv"])
+
+
+def test_paths_keep_their_order_and_may_be_named_twice(tmp_path: Path) -> None:
+    save(tmp_path, "b.json", "a.json")
+    paths = [tmp_path / "b.json", tmp_path, tmp_path / "b.json"]
+    assert [each.learner for each in all_handed_in(paths)] == ["b", "a", "b", "b"]
+
+
+def test_standard_input_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b'{"answers": {}}')))
+    [found] = all_handed_in([Path("-")])
+    assert [file.read() for file in found.files()] == [b'{"answers": {}}']
+
+
+@needs_links
+def test_links_are_followed_within_what_belongs_together_only(tmp_path: Path) -> None:
+    folder = tmp_path / "class"
+    save(tmp_path, "secret.json", "shared/x.json")
+    save(folder, "anna/answer.json", "bert/mine.json", "carl.json")
+    (folder / "dora.json").symlink_to(tmp_path / "secret.json")
+    (folder / "emil.json").symlink_to("carl.json")
+    (folder / "fred").symlink_to(tmp_path / "shared")
+    (folder / "gone.json").symlink_to("nothing.json")
+    (folder / "bert/own.json").symlink_to("mine.json")
+    (folder / "bert/theirs.json").symlink_to("../anna/answer.json")
+    (folder / "bert/up").symlink_to("..")
+    problems = {
+        str(file.path.relative_to(folder)): file.problem
+        for each in all_handed_in([folder])
+        for file in each.files()
+    }
+    out = "is a symbolic link out of the folder"
+    assert problems == {
+        "anna/answer.json": "",
+        "bert/mine.json": "",
+        "bert/own.json": "",
+        "bert/theirs.json": out,
+        "bert/up": out,
+        "carl.json": "",
+        "dora.json": out,
+        "emil.json": "",
+        "fred": out,
+        "gone.json": "is a symbolic link to nothing",
+    }
+
+
+@needs_links
+def test_a_link_that_the_caller_names_is_followed(tmp_path: Path) -> None:
+    save(tmp_path, "real/anna.json")
+    (tmp_path / "file.json").symlink_to("real/anna.json")
+    (tmp_path / "folder").symlink_to("real")
+    paths = [tmp_path / "file.json", tmp_path / "folder"]
+    files = [file for each in all_handed_in(paths) for file in each.files()]
+    assert [file.read() for file in files] == [b"{}", b"{}"]
+
+
+def test_a_folder_without_end_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(handed_in, "MAX_FILES", 3)
+    save(tmp_path, *(f"many/{i}/x.json" for i in range(3)), "many/4.json")
+    save(tmp_path, "deep/1/2/3/4/5/6/7/8/9/x.json", "fine/x.json")
+    found = {each.learner: each for each in all_handed_in([tmp_path])}
+    with pytest.raises(UnusableFileError, match="deep in each other"):
+        found["deep"].files()
+    with pytest.raises(UnusableFileError, match="more than 3 files"):
+        found["many"].files()
+    assert len(found["fine"].files()) == 1
+
+
+@pytest.mark.skipif(os.name == "nt", reason="has no named pipes")
+def test_a_pipe_does_not_wait_for_a_writer(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "anna.json")
+    [found] = all_handed_in([tmp_path])
+    [file] = found.files()
+    with pytest.raises(UnusableFileError, match="pipe"):
+        file.read()
