@@ -1,4 +1,5 @@
 import json
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
@@ -150,3 +151,12 @@ def test_a_learner_is_a_short_line_of_text(course_of: Any, learner: Any) -> None
 def test_a_learner_may_have_any_letters(course_of: Any) -> None:
     for learner in ("Ада Лавлейс", "ada@example.edu", "'; DROP TABLE attempts; --", "名前"):
         assert course_of().post(RIGHT, learner).json()["attempt"]["learner"] == learner
+
+
+def test_the_page_on_attempts_shows_what_is_answered(course_of: Any) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "attempts.md").read_text(encoding="utf-8")
+    sent, shown = (json.loads(block) for block in re.findall(r"```json\n(.*?)```", page, re.DOTALL))
+    recorded = course_of().post(**sent).json()["attempt"]
+    its_own = {"id": recorded["id"], "at": recorded["at"]}
+    assert recorded == shown | its_own
+    assert (len(recorded["id"]), len(recorded["at"])) == (len(shown["id"]), len(shown["at"]))
