@@ -44,6 +44,11 @@ class Settings(BaseSettings):
         description="Where attempts are recorded: the path of an SQLite file, or the URL of a "
         "PostgreSQL database (postgresql://user:password@host/name). Without it nothing is.",
     )
+    read_attempts: bool | None = Field(
+        None,
+        description="Whether recorded attempts and their statistics are shown to whoever can reach "
+        "the service; by default to whoever asks from this machine itself, without a proxy.",
+    )
     solutions: bool = Field(
         False,
         description="Whether GET /v1/exercises/{id}/solution shows the model solutions, to whoever "

@@ -18,12 +18,14 @@ from service.api import (
     health,
     preview,
     problems,
+    recorded,
     reference,
 )
 from service.api import solutions as model_solutions
 from service.api.boundary import BoundaryMiddleware
 from service.api.lookup import Catalogue
 from service.api.openapi import HEADING, completed, other_failures
+from service.api.tutor import tutor_right
 from service.attempts.store import AttemptStore
 from service.catalogue import FeedbackLevel
 from service.submissions.strict_json import MAX_BODY_SIZE
@@ -105,6 +107,7 @@ def application(
     feedback: FeedbackLevel = FeedbackLevel.FULL,
     turns: Layer | None = None,
     store: AttemptStore | None = None,
+    read_attempts: bool | None = False,
     pages: APIRouter | None = None,
 ) -> FastAPI:
     """The HTTP service for these exercises; pages of ``cors_origins`` may call it.
@@ -112,6 +115,8 @@ def application(
     With ``solutions`` it shows the model solutions to whoever asks. Reports tell no more than
     ``feedback``, nor than their exercise allows. ``turns`` decides who comes next, ``pages`` are
     the web pages of the service itself. Attempts are recorded in ``store``; without one none are.
+    With ``read_attempts`` they are shown to whoever asks; None means whoever asks from this
+    machine.
     """
     app = _Api(cors_origins, turns, store)
     problems.install(app)
@@ -119,6 +124,7 @@ def application(
         exercises.routes(catalogue, feedback),
         grading.routes(catalogue, feedback),
         attempts.routes(catalogue, feedback, store),
+        recorded.routes(catalogue, store, tutor_right(read_attempts)),
         preview.routes(catalogue),
         figures.routes(catalogue),
         frames.routes(catalogue),

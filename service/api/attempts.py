@@ -13,14 +13,14 @@ from service.api.lookup import Catalogue, ExerciseId, exercise_or_404, require_p
 from service.api.openapi import posting
 from service.api.problems import ProblemError, store_down
 from service.attempts.database import StoreDownError
-from service.attempts.outcome import Outcome, outcome_of
+from service.attempts.graded import graded_attempt
 from service.attempts.policy import AttemptRefusedError, Ruling, ruling
 from service.attempts.recording import NewAttempt, RecordedAttempt
 from service.attempts.store import AttemptStore
-from service.catalogue import Exercise, FeedbackLevel, least
+from service.catalogue import Exercise, FeedbackLevel
 from service.contract.attempts import Attempt, AttemptRequest, AttemptResponse
 from service.formats.json import rendered
-from service.grading import Report, grade
+from service.grading import Report
 
 # So often an attempt is graded anew because another of the same learner came first.
 _TRIES: Final = 5
@@ -66,12 +66,7 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel, store: AttemptStore | 
         does not count. What is answered with 201 is not lost, whatever happens to the service.
         """
         if store is None:
-            raise ProblemError(
-                HTTPStatus.NOT_FOUND,
-                "No attempts are recorded here: the service has no database.",
-                "attempts-not-recorded",
-                "Attempts are not recorded here",
-            )
+            raise not_recorded()
         exercise = exercise_or_404(catalogue, exercise_id)
         body = await body_as(AttemptRequest, request)
         require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
@@ -88,6 +83,16 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel, store: AttemptStore | 
         return Response(_answer(recorded), HTTPStatus.CREATED, media_type="application/json")
 
     return router
+
+
+def not_recorded() -> ProblemError:
+    """The service has no database."""
+    return ProblemError(
+        HTTPStatus.NOT_FOUND,
+        "No attempts are recorded here: the service has no database.",
+        "attempts-not-recorded",
+        "Attempts are not recorded here",
+    )
 
 
 class _Attempting:
@@ -121,7 +126,9 @@ class _Attempting:
                 return self._same(standing.earlier)
             now = datetime.now(UTC)
             taken = ruling(self._exercise.attempts, standing.counted, now)
-            report, outcome = self._graded(taken.ordinal)
+            report, outcome = graded_attempt(
+                self._exercise, self._body, taken.ordinal, self._ceiling
+            )
             new = self._new(taken, now, report)
             written = await self._store.record(new, outcome)
             if written is not None:
@@ -138,16 +145,6 @@ class _Attempting:
                 "The idempotency key belongs to another attempt",
             )
         return earlier
-
-    def _graded(self, ordinal: int) -> tuple[Report, Outcome]:
-        """The report as the learner gets it, and the outcome, which needs more than bare marks."""
-        ceiling = least(self._exercise.feedback_at(ordinal), self._ceiling)
-        submission = self._body.submission(ceiling)
-        report = grade(self._exercise, submission)
-        if report.feedback in (FeedbackLevel.FULL, FeedbackLevel.HINTS):
-            return report, outcome_of(report)
-        with_codes = self._body.model_copy(update={"feedback": None})
-        return report, outcome_of(grade(self._exercise, with_codes.submission(FeedbackLevel.HINTS)))
 
     def _new(self, taken: Ruling, now: datetime, report: Report) -> NewAttempt:
         body = self._body.model_dump(mode="json", exclude={"learner"}, exclude_unset=True)

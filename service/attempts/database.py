@@ -5,6 +5,7 @@ from typing import Any, Final
 
 from alembic import command
 from alembic.config import Config
+from alembic.util import CommandError
 from sqlalchemy import Connection, Engine, create_engine, event, make_url, text
 from sqlalchemy.exc import ArgumentError, SQLAlchemyError
 
@@ -35,6 +36,9 @@ def open_database(url: str) -> Engine:
             _migrate(connection)
     except SQLAlchemyError as error:
         raise UnusableDatabaseError(f"{safe_url(engine)}: {reason(error)}") from error
+    except CommandError as error:
+        newer = "its tables are those of a newer version of the program"
+        raise UnusableDatabaseError(f"{safe_url(engine)}: {newer}") from error
     return engine
 
 

@@ -29,7 +29,7 @@ class Outcome:
 def outcome_of(report: Report) -> Outcome:
     """The outcome of a report that has its rows (feedback level above ``score``)."""
     content = {part.part: _part(part) for part in report.parts}
-    return Outcome(report.exercise, json.dumps(content, sort_keys=True, separators=(",", ":")))
+    return Outcome(report.exercise, json.dumps(content, separators=(",", ":")))
 
 
 def _part(part: PartReport) -> dict[str, object]:

@@ -4,7 +4,7 @@ import secrets
 from dataclasses import asdict, dataclass
 from datetime import datetime
 
-from sqlalchemy import Connection, func, select
+from sqlalchemy import Connection, Table, func, select
 from sqlalchemy.dialects import postgresql, sqlite
 
 from service.attempts.outcome import Outcome
@@ -77,10 +77,10 @@ def record(connection: Connection, new: NewAttempt, outcome: Outcome) -> Recorde
     """Write the attempt; None where another took its ordinal or its key in the meantime."""
     values = asdict(new) | {
         "id": secrets.token_hex(16),
-        "outcome": _outcome_id(connection, outcome),
+        "outcome": outcome_id(connection, outcome),
     }
     written = connection.execute(
-        _insert(connection)(attempts).values(values).on_conflict_do_nothing().returning(*_COLUMNS)
+        insert_or_ignore(connection, attempts).values(values).returning(*_COLUMNS)
     ).one_or_none()
     return RecordedAttempt(**written._mapping) if written else None
 
@@ -88,7 +88,7 @@ def record(connection: Connection, new: NewAttempt, outcome: Outcome) -> Recorde
 _COLUMNS = [attempts.c[name] for name in RecordedAttempt.__dataclass_fields__]
 
 
-def _outcome_id(connection: Connection, outcome: Outcome) -> int:
+def outcome_id(connection: Connection, outcome: Outcome) -> int:
     """The row of an outcome, written where it is new."""
     wanted = select(outcomes.c.id).where(
         outcomes.c.exercise == outcome.exercise, outcomes.c.digest == outcome.digest
@@ -100,12 +100,14 @@ def _outcome_id(connection: Connection, outcome: Outcome) -> int:
             "digest": outcome.digest,
             "content": outcome.content,
         }
-        connection.execute(_insert(connection)(outcomes).values(values).on_conflict_do_nothing())
+        connection.execute(insert_or_ignore(connection, outcomes).values(values))
         found = connection.scalar(wanted)
     assert found is not None
     return int(found)
 
 
-def _insert(connection: Connection):  # type: ignore[no-untyped-def]
-    """INSERT of this database, which knows ON CONFLICT."""
-    return postgresql.insert if connection.dialect.name == "postgresql" else sqlite.insert
+def insert_or_ignore(connection: Connection, table: Table) -> postgresql.Insert | sqlite.Insert:
+    """INSERT that leaves out what another row stands in the way of."""
+    if connection.dialect.name == "postgresql":
+        return postgresql.insert(table).on_conflict_do_nothing()
+    return sqlite.insert(table).on_conflict_do_nothing()

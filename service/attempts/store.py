@@ -1,15 +1,23 @@
 """The store of attempts: what a route of the service asks of it."""
 
-from typing import Final
+import asyncio
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Final, TypeVar
 
-from sqlalchemy import Engine, text
+from sqlalchemy import Connection, Engine, text
+from sqlalchemy.exc import SQLAlchemyError
 
-from service.attempts.database import open_database
+from service.attempts.database import StoreDownError, open_database, reason
 from service.attempts.outcome import Outcome
 from service.attempts.recording import NewAttempt, RecordedAttempt, Standing, record, standing
 from service.attempts.writer import AttemptWriter
 
+R = TypeVar("R")
+
 _ALIVE: Final = text("SELECT 1")
+# So many tutors read at once; others wait.
+_READERS: Final = 2
 
 
 class AttemptStore:
@@ -22,6 +30,7 @@ class AttemptStore:
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
         self._writer: AttemptWriter | None = None
+        self._readers = ThreadPoolExecutor(_READERS, "attempts-read")
 
     @classmethod
     def open(cls, url: str) -> "AttemptStore":
@@ -56,6 +65,17 @@ class AttemptStore:
     async def check(self) -> None:
         """Make sure that the database answers."""
         await self._running.run(lambda connection: connection.execute(_ALIVE))
+
+    async def read(self, work: Callable[[Connection], R]) -> R:
+        """The result of ``work``, which writes nothing; beside the attempts that are recorded."""
+        return await asyncio.get_running_loop().run_in_executor(self._readers, self._read_by, work)
+
+    def _read_by(self, work: Callable[[Connection], R]) -> R:
+        try:
+            with self.engine.connect() as connection:
+                return work(connection)
+        except SQLAlchemyError as error:
+            raise StoreDownError(reason(error)) from error
 
     @property
     def _running(self) -> AttemptWriter:

@@ -66,6 +66,8 @@ outcomes = Table(
 
 # ``number`` is the order of arrival, ``ordinal`` the learner's own count of counted attempts at the
 # exercise: its uniqueness keeps two requests at once from both being the last one allowed.
+# ``awarded`` are the points of a tutor instead of the report's. The indexes hold all that lists are
+# filtered and statistics counted by: the rows themselves, with their reports, are far larger.
 attempts = Table(
     "attempts",
     metadata,
@@ -90,7 +92,44 @@ attempts = Table(
     Column("request_digest", String(64), nullable=False),
     UniqueConstraint("exercise", "learner", "ordinal"),
     UniqueConstraint("owner", "idempotency_key"),
-    Index(None, "exercise", "number"),
-    Index(None, "learner", "number"),
-    Index(None, "exercise", "outcome"),
+    Column("awarded", Float),
+    Index("ix_attempts_at", "at", "number", "ordinal"),
+    Index("ix_attempts_exercise", "exercise", "at", "number", "ordinal"),
+    Index("ix_attempts_learner", "learner", "at", "number", "ordinal"),
+    Index("ix_attempts_outcome", "exercise", "outcome", "answers_digest", "learner", "at"),
+)
+
+# Points that a tutor has awarded instead of a report's, or (NULL) withdrawn; the newest counts.
+overrides = Table(
+    "overrides",
+    metadata,
+    Column("id", RowNumber, primary_key=True),
+    Column("attempt", RowNumber, ForeignKey(attempts.c.number), nullable=False, index=True),
+    Column("points", Float),
+    Column("reason", Text, nullable=False),
+    Column("author", String(200), nullable=False),
+    Column("at", UtcTime, nullable=False),
+)
+
+# The reports that a regrade has replaced.
+earlier_reports = Table(
+    "earlier_reports",
+    metadata,
+    Column("id", RowNumber, primary_key=True),
+    Column("attempt", RowNumber, ForeignKey(attempts.c.number), nullable=False, index=True),
+    Column("replaced_at", UtcTime, nullable=False),
+    Column("report", Text, nullable=False),
+    Column("version", String(64), nullable=False),
+    Column("grader", String(32), nullable=False),
+    Column("points", Float, nullable=False),
+    Column("max_points", Float, nullable=False),
+)
+
+# The attempts that wait to be regraded; a worker holds those locked that it is at.
+regrade_queue = Table(
+    "regrade_queue",
+    metadata,
+    Column("attempt", RowNumber, ForeignKey(attempts.c.number), primary_key=True),
+    Column("exercise", String(100), nullable=False),
+    Index(None, "exercise", "attempt"),
 )

@@ -18,6 +18,9 @@ R = TypeVar("R")
 # So many share a transaction at the most, and so many wait before others are turned away.
 _TOGETHER: Final = 64
 _WAITING: Final = 4096
+# What PostgreSQL says where two transactions of several attempts each wait for one another: those
+# of one attempt each do not.
+_DEADLOCK: Final = "40P01"
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +108,8 @@ class AttemptWriter:
 
 def is_lost(error: Exception) -> bool:
     """Whether the database itself failed, so that another try at once would fail as well."""
+    if getattr(getattr(error, "orig", None), "sqlstate", None) == _DEADLOCK:
+        return False
     return isinstance(error, SQLAlchemyError) and (
         not isinstance(error, DBAPIError)
         or error.connection_invalidated

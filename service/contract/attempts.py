@@ -1,7 +1,7 @@
 """The body of an attempt, and the attempt as recorded."""
 
 from datetime import datetime
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import BaseModel, Field, StringConstraints
 
@@ -46,3 +46,52 @@ class AttemptResponse(BaseModel):
 
     attempt: Attempt
     report: Report
+
+
+class AttemptSummary(Attempt):
+    """A recorded attempt as tutors see it in a list."""
+
+    awarded: float | None = Field(
+        None, description="The points that a tutor has given instead, where one has."
+    )
+    version: str = Field(description="The version of the exercise that it was graded by.")
+    grader: str = Field(description="The version of the program that graded it.")
+
+
+class AttemptList(BaseModel):
+    """Recorded attempts, the newest first."""
+
+    attempts: list[AttemptSummary]
+    next: str | None = Field(
+        None, description="The `cursor` of the next page; left out on the last one."
+    )
+
+
+class AttemptOverride(BaseModel):
+    """Points that a tutor has given instead of the report's."""
+
+    points: float | None = Field(None, description="Left out where earlier ones were withdrawn.")
+    reason: str
+    author: str
+    at: datetime
+
+
+class EarlierReport(BaseModel):
+    """A report that a regrade has replaced."""
+
+    replaced_at: datetime
+    version: str
+    grader: str
+    points: float
+    max_points: float
+    report: Report
+
+
+class AttemptDetail(BaseModel):
+    """A recorded attempt with its answers and all its reports."""
+
+    attempt: AttemptSummary
+    submission: dict[str, Any] = Field(description="What was sent, without the learner.")
+    report: Report
+    overrides: list[AttemptOverride] = Field(description="The oldest first.")
+    earlier_reports: list[EarlierReport] = Field(description="The oldest first.")

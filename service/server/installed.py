@@ -28,6 +28,7 @@ def installed_app(settings: Settings) -> FastAPI:
         feedback=settings.feedback,
         turns=FairAdmission,
         store=store,
+        read_attempts=settings.read_attempts,
         pages=web_routes(catalogue),
     )
     set_up_access_log(addresses=settings.log_addresses)

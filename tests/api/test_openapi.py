@@ -30,7 +30,8 @@ PROBLEM = {"$ref": "#/components/schemas/Problem"}
 # Written out, for they are the names of functions in other people's programs.
 OPERATIONS = {
     "listExercises", "getExercise", "getFigure", "getFrames", "getSolution", "grade",
-    "gradeMany", "recordAttempt", "preview", "previewMany", "getLiveness", "getReadiness",
+    "gradeMany", "recordAttempt", "listAttempts", "getAttempt", "getStatistics",
+    "preview", "previewMany", "getLiveness", "getReadiness",
 }  # fmt: skip
 NAMES = {
     "Exercise", "ExerciseList", "Part", "GradeRequest", "GradeManyRequest", "GradeManyResponse",

@@ -22,6 +22,8 @@ def postgresql_server() -> Iterator[Any]:
 
     with tempfile.TemporaryDirectory(prefix="dhg-pg-", dir="/tmp") as folder:
         server = get_server(folder)
+        # These tests kill clients of the server, never the machine.
+        server.psql("ALTER SYSTEM SET fsync = off; SELECT pg_reload_conf();")
         try:
             yield server
         finally:

@@ -1,0 +1,55 @@
+"""Attempts for the tests of what is done with them later."""
+
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+from service.attempts.graded import graded_attempt
+from service.attempts.recording import NewAttempt, RecordedAttempt, record
+from service.attempts.store import AttemptStore
+from service.catalogue import Exercise, FeedbackLevel
+from service.contract.attempts import AttemptRequest
+from service.formats.json import rendered
+
+NOON = datetime(2026, 11, 22, 12, tzinfo=UTC)
+RIGHT = "a1 0 0 θ1\na2 180deg 0 θ2\n0 0 d3 0\n0 0 d4 θ4"
+NO_TWIST = "a1 0 0 θ1\na2 0 0 θ2\n0 0 d3 0\n0 0 d4 θ4"
+LAZY = "0 0 0 θ1\n0 0 0 θ2\n0 0 d3 0\n0 0 0 θ4"
+
+
+def recorded(
+    store: AttemptStore,
+    exercise: Exercise,
+    learner: str,
+    table: str,
+    ordinal: int | None = 1,
+    hours: float = 0,
+    **more: Any,
+) -> RecordedAttempt:
+    """Write an attempt at the exercise, ``hours`` after noon."""
+    body = AttemptRequest(learner=learner, answers={"table": table})
+    report, outcome = graded_attempt(exercise, body, ordinal or 1, FeedbackLevel.FULL)
+    new = NewAttempt(
+        exercise=exercise.id,
+        learner=learner,
+        ordinal=ordinal,
+        at=NOON + timedelta(hours=hours),
+        is_late=False,
+        worth=1.0,
+        submission=body.model_dump_json(exclude={"learner"}, exclude_unset=True),
+        answers_digest=str(hash(table)),
+        report=rendered(report).decode(),
+        version=report.version,
+        grader=report.grader,
+        points=report.points,
+        max_points=report.max_points,
+        owner="",
+        idempotency_key=None,
+        request_digest="",
+    )
+    with store.engine.connect() as connection:
+        connection = connection.execution_options(writes=True)
+        with connection.begin():
+            written = record(connection, replace(new, **more), outcome)
+    assert written is not None
+    return written
