@@ -1,13 +1,16 @@
 """The database of the attempts: opened by its URL, brought to the newest tables, kept durable."""
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from alembic import command
 from alembic.config import Config
 from alembic.util import CommandError
 from sqlalchemy import Connection, Engine, create_engine, event, make_url, text
 from sqlalchemy.exc import ArgumentError, SQLAlchemyError
+
+R = TypeVar("R")
 
 _MIGRATIONS: Final = Path(__file__).parent / "migrations"
 # So long a statement waits for another process that is writing (seconds).
@@ -91,6 +94,14 @@ def _migrate(connection: Connection) -> None:
         config.set_main_option("script_location", str(_MIGRATIONS).replace("%", "%%"))
         config.attributes["connection"] = connection
         command.upgrade(config, "head")
+
+
+def in_transaction(engine: Engine, work: Callable[[Connection], R]) -> R:
+    """The result of ``work``, committed."""
+    with engine.connect() as connection:
+        connection = connection.execution_options(writes=True)
+        with connection.begin():
+            return work(connection)
 
 
 def safe_url(engine: Engine) -> str:

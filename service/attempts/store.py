@@ -30,7 +30,7 @@ class AttemptStore:
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
         self._writer: AttemptWriter | None = None
-        self._readers = ThreadPoolExecutor(_READERS, "attempts-read")
+        self._readers: ThreadPoolExecutor | None = None
 
     @classmethod
     def open(cls, url: str) -> "AttemptStore":
@@ -43,12 +43,17 @@ class AttemptStore:
     def start(self) -> None:
         """Begin to take attempts, in the process that serves."""
         self._writer = AttemptWriter(self.engine)
+        self._readers = ThreadPoolExecutor(_READERS, "attempts-read")
 
     def close(self) -> None:
         """Write what waits, and end."""
         if self._writer is not None:
             self._writer.close()
             self._writer = None
+        if self._readers is not None:
+            self._readers.shutdown()
+            self._readers = None
+        self.engine.dispose()
 
     async def standing(
         self, exercise: str, learner: str, owner: str, idempotency_key: str | None
@@ -68,6 +73,7 @@ class AttemptStore:
 
     async def read(self, work: Callable[[Connection], R]) -> R:
         """The result of ``work``, which writes nothing; beside the attempts that are recorded."""
+        assert self._readers is not None, "the store has not been started"
         return await asyncio.get_running_loop().run_in_executor(self._readers, self._read_by, work)
 
     def _read_by(self, work: Callable[[Connection], R]) -> R:

@@ -59,7 +59,6 @@ class AttemptWriter:
         """Write what waits, and end."""
         self._jobs.put(None)
         self._thread.join()
-        self._engine.dispose()
 
     def _run(self) -> None:
         ended = False

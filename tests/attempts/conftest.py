@@ -22,7 +22,14 @@ def database_url(request: pytest.FixtureRequest, tmp_path: Path) -> str:
     """An empty database of each kind."""
     if request.param == "sqlite":
         return new_file(tmp_path)
-    return new_database(request.getfixturevalue("server"), f"attempts{next(_number)}")
+    url: str = request.getfixturevalue("postgresql_url")
+    return url
+
+
+@pytest.fixture
+def postgresql_url(server: Any) -> str:
+    """An empty database of the PostgreSQL server."""
+    return new_database(server, f"attempts{next(_number)}")
 
 
 @pytest.fixture

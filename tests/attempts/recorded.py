@@ -1,10 +1,12 @@
 """Attempts for the tests of what is done with them later."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from service.attempts.graded import graded_attempt
+from service.attempts.outcome import Outcome
 from service.attempts.recording import NewAttempt, RecordedAttempt, record
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise, FeedbackLevel
@@ -18,15 +20,34 @@ LAZY = "0 0 0 θ1\n0 0 0 θ2\n0 0 d3 0\n0 0 0 θ4"
 
 
 def recorded(
-    store: AttemptStore,
+    store: AttemptStore, exercise: Exercise, learner: str, table: str, *given: Any, **more: Any
+) -> RecordedAttempt:
+    """Write an attempt; see ``new_attempt``."""
+    (written,) = recorded_all(store, [new_attempt(exercise, learner, table, *given, **more)])
+    return written
+
+
+def recorded_all(
+    store: AttemptStore, new: Iterable[tuple[NewAttempt, Outcome]]
+) -> list[RecordedAttempt]:
+    """Write attempts in one commit."""
+    with store.engine.connect() as connection:
+        connection = connection.execution_options(writes=True)
+        with connection.begin():
+            written = [record(connection, *each) for each in new]
+    assert None not in written
+    return [each for each in written if each]
+
+
+def new_attempt(
     exercise: Exercise,
     learner: str,
     table: str,
     ordinal: int | None = 1,
     hours: float = 0,
     **more: Any,
-) -> RecordedAttempt:
-    """Write an attempt at the exercise, ``hours`` after noon."""
+) -> tuple[NewAttempt, Outcome]:
+    """An attempt at the exercise, ``hours`` after noon; ``more`` replaces fields."""
     body = AttemptRequest(learner=learner, answers={"table": table})
     report, outcome = graded_attempt(exercise, body, ordinal or 1, FeedbackLevel.FULL)
     new = NewAttempt(
@@ -47,9 +68,4 @@ def recorded(
         idempotency_key=None,
         request_digest="",
     )
-    with store.engine.connect() as connection:
-        connection = connection.execution_options(writes=True)
-        with connection.begin():
-            written = record(connection, replace(new, **more), outcome)
-    assert written is not None
-    return written
+    return replace(new, **more), outcome
