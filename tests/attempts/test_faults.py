@@ -1,0 +1,82 @@
+"""The store in trouble: locked, full or gone, it says so in time and works again afterwards."""
+
+import asyncio
+import sqlite3
+import time
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+from sqlalchemy import event
+
+from service.attempts.database import StoreDownError
+from service.attempts.store import AttemptStore
+from service.catalogue import Exercise
+from tests.attempts.databases import new_database, new_file, postgresql_server
+from tests.attempts.recorded import RIGHT, new_attempt
+
+
+def record(store: AttemptStore, exercise: Exercise, ordinal: int) -> bool:
+    new, outcome = new_attempt(exercise, "ada", RIGHT, ordinal)
+    return asyncio.run(store.record(new, outcome)) is not None
+
+
+def test_a_locked_file_is_told_after_a_wait_and_works_when_it_is_free(
+    tmp_path: Path, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.attempts.database._LOCK_WAIT", 0.5)
+    scara = catalogue["scara"]
+    file = new_file(tmp_path)
+    store = AttemptStore.open(file)
+    store.start()
+    other = sqlite3.connect(file, isolation_level=None)
+    other.execute("BEGIN EXCLUSIVE")
+    begun = time.monotonic()
+    with pytest.raises(StoreDownError, match="locked"):
+        record(store, scara, 1)
+    assert 0.4 < time.monotonic() - begun < 5
+    other.execute("ROLLBACK")
+    other.close()
+    assert record(store, scara, 1)
+    store.close()
+
+
+def test_a_full_disk_is_told_and_costs_nothing_that_was_recorded(
+    tmp_path: Path, catalogue: Mapping[str, Exercise]
+) -> None:
+    scara = catalogue["scara"]
+    store = AttemptStore.open(new_file(tmp_path))
+    pages = 60
+    event.listen(
+        store.engine,
+        "connect",
+        lambda connection, _: connection.execute(f"PRAGMA max_page_count = {pages}"),
+    )
+    store.start()
+    acknowledged = list[int]()
+
+    def until_it_is_full() -> None:
+        for ordinal in range(1, 200):
+            record(store, scara, ordinal)
+            acknowledged.append(ordinal)
+
+    with pytest.raises(StoreDownError, match="full"):
+        until_it_is_full()
+    found = asyncio.run(store.standing("scara", "ada", "", None))
+    assert found.counted == len(acknowledged) > 0
+    store.close()
+
+
+def test_a_server_that_is_started_again_is_used_again(catalogue: Mapping[str, Exercise]) -> None:
+    scara = catalogue["scara"]
+    # One of its own: others use that of the session.
+    with postgresql_server() as server:
+        store = AttemptStore.open(new_database(server, "attempts"))
+        store.start()
+        assert record(store, scara, 1)
+        server.stop()
+        with pytest.raises(StoreDownError):
+            record(store, scara, 2)
+        server.start()
+        assert record(store, scara, 2)
+        store.close()
