@@ -49,10 +49,15 @@ class Settings(BaseSettings):
         description="Whether recorded attempts and their statistics are shown to whoever can reach "
         "the service; by default to whoever asks from this machine itself, without a proxy.",
     )
-    solutions: bool = Field(
-        False,
-        description="Whether GET /v1/exercises/{id}/solution shows the model solutions, to whoever "
-        "can reach the service.",
+    solutions: bool | None = Field(
+        None,
+        description="Whether model solutions and the tutor's pages are shown, to whoever can reach "
+        "the service; by default to whoever asks from this machine itself, without a proxy.",
+    )
+    editor_dir: Path | None = Field(
+        None,
+        description="The folder that the editor of the page writes exercise files to, for whoever "
+        "asks from this machine itself; by default it writes none.",
     )
     feedback: FeedbackLevel = Field(
         FeedbackLevel.FULL,

@@ -115,8 +115,10 @@ def test_exercises_may_lie_in_several_folders(
         load_settings()
 
 
-def test_solutions_and_reloading_are_off(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert (load_settings().solutions, load_settings().reload_exercises) == (False, False)
+def test_solutions_are_not_for_all_and_reloading_is_off(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert (load_settings().solutions, load_settings().reload_exercises) == (None, False)
     monkeypatch.setenv("DH_GRADER_SOLUTIONS", "true")
     monkeypatch.setenv("DH_GRADER_RELOAD_EXERCISES", "1")
     assert (load_settings().solutions, load_settings().reload_exercises) == (True, True)

@@ -23,6 +23,7 @@ from service.api import (
 )
 from service.api import solutions as model_solutions
 from service.api.boundary import BoundaryMiddleware
+from service.api.compression import PackedGets
 from service.api.lookup import Catalogue
 from service.api.openapi import HEADING, completed, other_failures
 from service.api.tutor import tutor_right
@@ -74,11 +75,11 @@ class _Api(FastAPI):
             self._store.close()
 
     def build_middleware_stack(self) -> ASGIApp:
-        """The framework's layers, the turns between clients, the boundary.
+        """The framework's layers, packed answers, the turns between clients, the boundary.
 
         Then CORS: a page may read problems, too.
         """
-        app: ASGIApp = super().build_middleware_stack()
+        app: ASGIApp = PackedGets(super().build_middleware_stack())
         if self._turns is not None:
             app = self._turns(app)
         app = BoundaryMiddleware(app)
@@ -103,7 +104,7 @@ def application(
     catalogue: Catalogue,
     cors_origins: tuple[str, ...] = (),
     *,
-    solutions: bool = False,
+    solutions: bool | None = False,
     feedback: FeedbackLevel = FeedbackLevel.FULL,
     turns: Layer | None = None,
     store: AttemptStore | None = None,
@@ -112,7 +113,8 @@ def application(
 ) -> FastAPI:
     """The HTTP service for these exercises; pages of ``cors_origins`` may call it.
 
-    With ``solutions`` it shows the model solutions to whoever asks. Reports tell no more than
+    With ``solutions`` it shows the model solutions to whoever asks; None means whoever asks from
+    this machine. Reports tell no more than
     ``feedback``, nor than their exercise allows. ``turns`` decides who comes next, ``pages`` are
     the web pages of the service itself. Attempts are recorded in ``store``; without one none are.
     With ``read_attempts`` they are shown to whoever asks; None means whoever asks from this
@@ -129,7 +131,7 @@ def application(
         figures.routes(catalogue),
         frames.routes(catalogue),
         health.routes(catalogue, store),
-        model_solutions.routes(catalogue, shown=solutions),
+        model_solutions.routes(catalogue, tutor_right(solutions)),
     ):
         app.include_router(router, responses=other_failures())
     app.include_router(reference.routes())

@@ -37,7 +37,7 @@ def checked(model: type[M], value: object, at: Location = ()) -> M:
     try:
         return model.model_validate(_with_few_unknown(model, value))
     except ValidationError as error:
-        details = error.errors(include_url=False, include_input=False, include_context=False)
+        details = error.errors(include_url=False, include_input=False)
         placed = [{**detail, "loc": (*at, *detail["loc"])} for detail in details]
         raise invalid(placed, list(model.model_fields)) from error
 

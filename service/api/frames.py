@@ -13,6 +13,7 @@ from service.api.openapi import posting
 from service.api.problems import ProblemError, invalid
 from service.catalogue import Exercise
 from service.contract.frames import (
+    ConvertedRow,
     DrawnConfiguration,
     DrawnMechanism,
     FramesAnswer,
@@ -20,13 +21,17 @@ from service.contract.frames import (
     FramesRequest,
     LostFreedom,
     MovingJoint,
+    PrintedFormula,
+    TableInFormulas,
     TableToDraw,
     UnreadCell,
 )
 from service.contract.preview import PreviewError
+from service.expressions import Expression
 from service.figures.figure import plainest_view, subject_of
 from service.figures.mechanism import Configuration, MovableMechanism, mechanism_of
 from service.figures.scope import DrawingScope, free_scope
+from service.figures.table_formulas import table_formulas
 from service.figures.table_frames import table_frames
 from service.figures.view import View
 from service.grading.feedback import Finding, UnreadableAnswerError
@@ -107,6 +112,8 @@ def _answered(catalogue: Catalogue, body: FramesRequest, mechanisms: _Mechanisms
 
 def _scope(exercise: Exercise | None, body: FramesRequest) -> DrawingScope:
     structure = body.table.structure if body.table else None
+    if exercise is not None and body.table is not None and body.table.formulas:
+        raise _refused(("table", "formulas"), "Formulas are given of a table without an exercise")
     if exercise is not None:
         if exercise.reference is None:
             raise _refused(("exercise",), f"The exercise {exercise.id} has no robot to draw")
@@ -176,8 +183,30 @@ def _table(
         ],
         degrees_of_freedom=found.freedoms,
         lost_freedoms=[LostFreedom.model_validate(each) for each in found.lost],
+        formulas=_formulas(table, body, scope) if table.formulas else None,
     )
     return drawn, found.symbols
+
+
+def _formulas(table: TableToDraw, body: FramesRequest, scope: DrawingScope) -> TableInFormulas:
+    found = table_formulas(table.rows, table.convention, scope, body.angle_unit)
+    converted = [
+        ConvertedRow(label=row.label, cells=[_formula(cell) for cell in row.cells])
+        for row in found.converted
+    ]
+    return TableInFormulas(
+        cells=[[_formula(cell) for cell in row] for row in found.cells],
+        converted=converted or None,
+        pose=[[_formula(entry) for entry in row] for row in found.pose] or None,
+    )
+
+
+def _formula(expression: Expression | None) -> PrintedFormula:
+    if expression is None:
+        return PrintedFormula(text="", latex="", mathml="")
+    return PrintedFormula(
+        text=expression.text(), latex=expression.latex(), mathml=expression.mathml()
+    )
 
 
 def _error(finding: Finding) -> PreviewError:

@@ -26,7 +26,8 @@ GENERIC: Final = Vocabulary(
         *(joint_variable(i) for i in JOINTS),
         *(Symbol(f"alpha{i}", "angle") for i in JOINTS),
         *(Symbol(f"{letter}{i}", "length") for letter in "adl" for i in JOINTS),
-    ]
+    ],
+    of_books=True,
 )
 
 

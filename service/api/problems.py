@@ -108,6 +108,9 @@ def _message(detail: Mapping[str, Any], fields: Sequence[str]) -> str:
         return "This field is missing."
     if detail["type"] in ("model_type", "model_attributes_type"):
         return f"{'This' if detail['loc'] else 'The body'} must be a JSON object."
+    if detail["type"] == "too_long" and "ctx" in detail and detail["loc"]:
+        most, here = detail["ctx"]["max_length"], detail["ctx"]["actual_length"]
+        return f"At most {most} {detail['loc'][-1]} may be sent at once; these are {here}."
     message: str = detail["msg"]
     return message if message.endswith((".", "?")) else f"{message}."
 

@@ -4,13 +4,13 @@ from functools import partial
 from http import HTTPStatus
 from typing import Final
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Request, Response
 from pydantic import TypeAdapter
 
 from service.api.kept import Kept
 from service.api.lookup import Catalogue, ExerciseId, exercise_or_404
 from service.api.openapi import answers
-from service.api.problems import ProblemError
+from service.api.tutor import TutorRight, require_tutor
 from service.catalogue import Exercise
 from service.solutions import ModelSolution, solve
 
@@ -21,7 +21,7 @@ def _solved(exercise: Exercise) -> bytes:
     return _SOLUTION.dump_json(solve(exercise), exclude_none=True)
 
 
-def routes(catalogue: Catalogue, *, shown: bool) -> APIRouter:
+def routes(catalogue: Catalogue, is_tutor: TutorRight) -> APIRouter:
     """The route that shows model solutions, or says how to have them shown."""
     router = APIRouter(prefix="/v1/exercises", tags=["solutions"])
     solutions = Kept()
@@ -35,17 +35,9 @@ def routes(catalogue: Catalogue, *, shown: bool) -> APIRouter:
             ModelSolution, "solution-response", HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND
         ),
     )
-    async def show_solution(exercise_id: ExerciseId) -> Response:
+    async def show_solution(request: Request, exercise_id: ExerciseId) -> Response:
         """Show the right answer to each part, each link transform and the pose, for tutors."""
-        if not shown:
-            raise ProblemError(
-                HTTPStatus.FORBIDDEN,
-                "Model solutions are for tutors, and this service does not show them. To have them "
-                "shown to whoever can reach it, start it with DH_GRADER_SOLUTIONS=true; on the "
-                "machine itself, use dh-grader exercises show ID --solution.",
-                "solutions-off",
-                "Model solutions are not shown here",
-            )
+        require_tutor(request, is_tutor)
         exercise = exercise_or_404(catalogue, exercise_id)
         key = (exercise.id, exercise.version)
         content = await solutions.of(key, partial(_solved, exercise))

@@ -29,6 +29,8 @@ _ATTRIBUTES: Final = frozenset({
     "rowspacing", "columnspacing",
 })  # fmt: skip
 _LONGEST: Final = 2_000
+# Of a model solution, which no stranger writes.
+_LONGEST_SOLVED: Final = 20_000
 _LINKS: Final = re.compile(r"(?:https?://|mailto:|#)", re.IGNORECASE)
 # Marks that turn the direction of what follows, so that a text reads as another one.
 _TURNING: Final = re.compile("[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
@@ -43,6 +45,11 @@ def statement_html(statement: str) -> str:
     shown = _TURNING.sub(lambda mark: f"[U+{ord(mark[0]):04X}]", statement)
     html: str = _markdown().render(shown)
     return html
+
+
+def formula_html(latex: str, *, display: bool = False) -> str:
+    """A formula of a model solution as MathML, or as it is written."""
+    return _formula(latex, {"display_mode": display, "longest": _LONGEST_SOLVED})
 
 
 @cache
@@ -78,8 +85,9 @@ def _formula(latex: str, options: Mapping[str, Any]) -> str:
     from latex2mathml.converter import convert
 
     mode = "block" if options.get("display_mode") else "inline"
+    longest = options.get("longest", _LONGEST)
     try:
-        root = ET.fromstring(convert(latex, display=mode)) if len(latex) <= _LONGEST else None
+        root = ET.fromstring(convert(latex, display=mode)) if len(latex) <= longest else None
     except Exception:  # noqa: BLE001 -- the library has no error that all others come from
         root = None
     if root is None or not _plain(root):

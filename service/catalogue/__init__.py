@@ -10,6 +10,7 @@ from service.catalogue.load import (
     is_exercise_id,
     load_catalogue,
     load_exercise,
+    read_exercise,
     shipped_folder,
 )
 from service.catalogue.part import PartSpec, PosePartSpec
@@ -42,6 +43,7 @@ __all__ = [
     "load_catalogue",
     "load_exercise",
     "open_catalogue",
+    "read_exercise",
     "read_regular",
     "shipped_folder",
 ]

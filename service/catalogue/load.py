@@ -1,14 +1,16 @@
 """Reading the folder of exercise files."""
 
 import re
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 from service.catalogue.compile import compile_exercise
 from service.catalogue.exercise import Exercise
 from service.catalogue.fields import IDENTIFIER
 from service.catalogue.refusals import exercise_table
 from service.catalogue.schema import ExerciseSpec
-from service.catalogue.toml_file import CatalogueError, Fault, fault_reason, load_toml
+from service.catalogue.toml_file import CatalogueError, Fault, fault_reason, load_toml, read_toml
 
 ID_ADVICE = "write small letters and digits, with - or _ between them, such as elbow-arm"
 _LONGEST_ID = 60
@@ -72,14 +74,24 @@ def is_exercise_id(name: str) -> bool:
 
 def load_exercise(file: Path) -> Exercise:
     """The exercise of one file; its id is the file's name. Raises CatalogueError."""
+    _require_id(file)
+    return load_toml(file, partial(_compiled, file.stem), exercise_table)
+
+
+def read_exercise(file: Path, text: str) -> Exercise:
+    """The exercise of the text that a file holds, or would hold. Raises CatalogueError."""
+    _require_id(file)
+    return read_toml(file, text, partial(_compiled, file.stem), exercise_table)
+
+
+def _require_id(file: Path) -> None:
     if not is_exercise_id(file.stem):
         reason = f"the name of the file is the exercise's id: {ID_ADVICE}"
         raise CatalogueError([Fault(file, "", reason)])
-    return load_toml(
-        file,
-        lambda content: compile_exercise(file.stem, ExerciseSpec.model_validate(content)),
-        exercise_table,
-    )
+
+
+def _compiled(exercise_id: str, content: dict[str, Any]) -> Exercise:
+    return compile_exercise(exercise_id, ExerciseSpec.model_validate(content))
 
 
 def _folder_reason(error: OSError) -> str:

@@ -48,17 +48,27 @@ def load_toml(file: Path, build: Callable[[dict[str, Any]], Built], table_at: Ta
     ``build`` may raise a ValidationError of pydantic, or a FieldError. ``table_at`` is the table
     that a location of pydantic lies in.
     """
-    text = ""
     try:
-        # As a file opened for text does.
-        text = read_regular(file, _LARGEST).decode().replace("\r\n", "\n")
+        text = read_regular(file, _LARGEST).decode()
+    except (OSError, ValueError) as error:
+        raise CatalogueError([Fault(file, "", fault_reason(error))]) from error
+    return read_toml(file, text, build, table_at)
+
+
+def read_toml(
+    file: Path, text: str, build: Callable[[dict[str, Any]], Built], table_at: TableAt
+) -> Built:
+    """The same of the text that a file holds, or would hold. Raises CatalogueError."""
+    # As a file opened for text does.
+    text = text.replace("\r\n", "\n")
+    try:
         return build(tomllib.loads(text))
     except (ValidationError, FieldError) as error:
         lines = value_lines(text)
         found = refusals(error, table_at)
         faults = [Fault(file, *fault, line_of(fault[0], lines)) for fault in found]
         raise CatalogueError(faults) from error
-    except (OSError, ValueError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         raise CatalogueError([Fault(file, "", fault_reason(error))]) from error
 
 

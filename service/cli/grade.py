@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated, Final
 import typer
 
 from service.cli.interrupts import terminable
-from service.cli.local_grading import GradingTerms, graded
 from service.cli.output import console_of, write
 from service.cli.output_folder import UnusableFolderError, is_for_folder, write_folder
 from service.cli.processes import WorkerLostError, jobs_for, mapped
@@ -23,6 +22,7 @@ from service.formats.shared.graded import GradedSubmission, Visibility
 from service.formats.shared.plain_text import visible
 from service.formats.shared.report_format import Setting, UnusableSettingError
 from service.grading import FeedbackLevel
+from service.local_grading import GradingTerms, graded
 from service.settings import load_settings
 from service.submissions.assignment import (
     Assignment,
@@ -170,6 +170,8 @@ def command(
             f"{output_format} holds one submission, and {len(paths)} files are given: grade them "
             "one by one, or take a format for several."
         )
+    if output is not None:
+        _keep(output, [*paths, *filter(None, [assignment])])
     terms = GradingTerms(
         chosen,
         chosen.pass_mark if pass_mark is None else pass_mark,
@@ -223,6 +225,13 @@ def chosen_assignment(
         return of_one(find(exercise or ""), part)
     except UnknownPartNameError as error:
         give_up(str(error))
+
+
+def _keep(output: Path, read: Iterable[Path]) -> None:
+    """Give up where the output would take the place of a file that is read."""
+    for path in read:
+        if path.is_file() and output.exists() and path.samefile(output):
+            give_up(f"{output}: is read, and would be overwritten; name another --output")
 
 
 def _grading(

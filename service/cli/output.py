@@ -2,6 +2,7 @@
 
 import io
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from tempfile import SpooledTemporaryFile
 from typing import Final
@@ -59,4 +60,6 @@ def _write_file(pieces: Iterable[bytes], output: Path) -> None:
         give_up(f"{output}: cannot be written: {error.strerror}")
     finally:
         if is_replaced:
-            written.unlink(missing_ok=True)
+            # Where it could not be written it is not there, or its folder is none.
+            with suppress(OSError):
+                written.unlink()

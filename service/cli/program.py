@@ -1,5 +1,6 @@
 """The commands put together."""
 
+import os
 import sys
 from importlib import import_module
 from typing import Annotated, Any, Final
@@ -85,10 +86,31 @@ def _options(
     pass
 
 
+def _forget_output() -> None:
+    """Drop what standard output still holds: Python would fail over it again at its end."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    os.close(nowhere)
+
+
+def _open_closed_streams() -> None:
+    """Let what is written to a stream that was closed before the start go nowhere."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115, PTH123
+
+
 def main() -> None:
     """Run the command line of this process."""
+    _open_closed_streams()
     # What a stream cannot show is replaced, not a reason to stop half-way through a report.
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")
-    program(prog_name="dh-grader")
+    try:
+        program(prog_name="dh-grader")
+    except OSError as error:  # of a full disk, or of a name that no file can have
+        from service.cli.terminal import give_up
+
+        _forget_output()
+        give_up(f"{error.filename or 'The output'}: cannot be written: {error.strerror}")

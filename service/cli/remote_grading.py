@@ -6,11 +6,11 @@ from http import HTTPStatus
 from typing import Final
 
 from service.cli.journal import Journal, digest
-from service.cli.local_grading import GradingTerms, graded, unknown_part
 from service.client import GraderClient, GraderClientError, RequestRefusedError
 from service.formats.shared.graded import GradedSubmission
 from service.grading import Report, Submission
 from service.grading.report import rounded_points
+from service.local_grading import GradingTerms, graded, unknown_part
 from service.submissions.assignment import AssignedExercise
 from service.submissions.body import GradeRequest
 from service.submissions.handed_in import HandedIn

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from service.cli.journal import Journal, journal_beside
-from service.cli.local_grading import GradingTerms
 from service.cli.terminal import complain, give_up, installed_exercise
 from service.cli.threads import mapped_in_threads
 from service.formats.shared.graded import GradedSubmission
 from service.formats.shared.plain_text import visible
+from service.local_grading import GradingTerms
 from service.settings import Settings
 from service.submissions.assignment import Assignment
 from service.submissions.handed_in import HandedIn

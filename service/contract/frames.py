@@ -36,6 +36,11 @@ class TableToDraw(BaseModel):
         "exercise, which has its own. Joint i moves by theta_i or d_i, or q_i in either case; "
         "a1, alpha1, d1, theta1, l1 to those of row 12 may stand in the other cells.",
     )
+    formulas: bool = Field(
+        False,
+        description="Give the table as formulas, too: its cells, its equivalent in the other "
+        "convention, and the pose. Only without an exercise.",
+    )
 
 
 class FramesRequest(BaseModel):
@@ -90,6 +95,37 @@ class LostFreedom(BaseModel):
     message: str
 
 
+class PrintedFormula(BaseModel):
+    """A formula, as text, LaTeX and MathML."""
+
+    text: str
+    latex: str
+    mathml: str
+
+
+class ConvertedRow(BaseModel):
+    """A row of a converted table: a, alpha, d and theta.
+
+    Its `label` is its number, "b" for a fixed row before the first joint, "e" for the tool's row.
+    """
+
+    label: str
+    cells: list[PrintedFormula]
+
+
+class TableInFormulas(BaseModel):
+    """The table as formulas; what needs all cells is absent where one has no formula."""
+
+    cells: list[list[PrintedFormula]] = Field(description="Empty for a cell that is not read.")
+    converted: list[ConvertedRow] | None = Field(
+        None, description="Its equivalent in the other convention."
+    )
+    pose: list[list[PrintedFormula]] | None = Field(
+        None,
+        description="The last frame in the base frame, 4×4 by rows. Absent where it is too long.",
+    )
+
+
 class FramesOfTable(BaseModel):
     """The frames of the table.
 
@@ -107,6 +143,7 @@ class FramesOfTable(BaseModel):
         None, description="Those of the whole table at a generic configuration."
     )
     lost_freedoms: list[LostFreedom]
+    formulas: TableInFormulas | None = Field(None, description="Only where they are asked for.")
 
 
 class DrawnConfiguration(BaseModel):

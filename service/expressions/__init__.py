@@ -5,7 +5,7 @@ from service.expressions.evaluation.decimals import Decimals, decimals_of
 from service.expressions.limits import LIMITS, Limits
 from service.expressions.parsing.equation import LeftSide, left_side
 from service.expressions.reader import AngleUnit, Expression, evaluate_all, read
-from service.expressions.reading_work import symbols_in
+from service.expressions.reading_work import reading_cost, symbols_in
 from service.expressions.vocabulary.symbols import Kind, Symbol, Vocabulary, joint_variable
 
 __all__ = [
@@ -25,5 +25,6 @@ __all__ = [
     "joint_variable",
     "left_side",
     "read",
+    "reading_cost",
     "symbols_in",
 ]

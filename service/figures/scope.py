@@ -48,7 +48,7 @@ def free_scope(structure: str) -> DrawingScope:
     symbols = [joint_variable(joint.index, sliding=joint.prismatic) for joint in joints]
     symbols += [symbol for symbol in _parameters() if symbol.name not in moving]
     variables = tuple(_variable(symbol) for symbol in symbols)
-    return DrawingScope(joints, variables, Vocabulary(symbols))
+    return DrawingScope(joints, variables, Vocabulary(symbols, of_books=True))
 
 
 def _parameters() -> Iterator[Symbol]:

@@ -71,8 +71,7 @@ def table_frames(
     ``answer`` is a table as it would be handed in; its cells are read as grading reads them.
     ``numbers`` are those of all symbols. Raises UnreadableAnswerError where there are no rows.
     """
-    reader = Reader(scope.vocabulary, _any_samples(scope), angle_unit, "m")
-    written = read_table(answer, reader)
+    written = read_table(answer, cell_reader(scope, angle_unit))
     count = len(amounts)
     values = {name: np.full(count + _GENERIC, number) for name, number in numbers.items()}
     rng = np.random.default_rng(0)
@@ -96,9 +95,10 @@ def table_frames(
     return TableFrames(reached, symbols, freedoms=freedoms, lost=lost)
 
 
-def _any_samples(scope: DrawingScope) -> Samples:
-    """Samples for a reader whose numbers nobody asks for."""
-    return Samples({variable.name: np.full(SAMPLES, 0.5) for variable in scope.variables})
+def cell_reader(scope: DrawingScope, angle_unit: AngleUnit) -> Reader:
+    """A reader of cells whose numbers at samples nobody asks for."""
+    samples = Samples({variable.name: np.full(SAMPLES, 0.5) for variable in scope.variables})
+    return Reader(scope.vocabulary, samples, angle_unit, "m")
 
 
 def _numbers(written: StudentTable, values: Mapping[str, Numbers], count: int) -> Table:

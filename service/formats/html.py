@@ -16,14 +16,14 @@ from service.formats.shared.plain_text import code_pieces, percent, points, whol
 from service.formats.shared.report_format import ReportFormat, Setting
 from service.grading import CellReport, RowReport, Severity, Verdict
 
-_STYLE: Final = style_sheet(Path(__file__).with_suffix(".css"))
+STYLE: Final = style_sheet(Path(__file__).with_suffix(".css"))
 
 
 def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:
     rest = iter(submissions)
     first = tuple(islice(rest, 2))
     names = [first[0].learner] if len(first) == 1 else []
-    yield opening(" · ".join([*names, *(each.title for each in setting.exercises)]), _STYLE)
+    yield opening(" · ".join([*names, *(each.title for each in setting.exercises)]), STYLE)
     for submission in chain(first, rest):
         yield written(_article(submission)) + b"\n"
     yield CLOSING

@@ -14,7 +14,7 @@ same address or not. An ordinary one that is taken for costly waits for few and 
 import asyncio
 import math
 from collections import deque
-from collections.abc import Awaitable, Callable, Generator
+from collections.abc import Awaitable, Callable, Generator, Iterable
 from functools import partial
 from time import monotonic, thread_time
 from typing import Any, Final, NamedTuple
@@ -24,7 +24,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.api.problems import ProblemError
 from service.api.turns import TURN
-from service.server.costs import CLASSES, Costs, rest
+from service.server.costs import CLASSES, REST, Costs, rest
 from service.server.crowd import client_key
 from service.server.fair_queue import FairQueue, Ticket
 from service.server.limits import HEALTH
@@ -47,7 +47,7 @@ SMALL: Final = 4
 # only now and then.
 _CALM: Final = 10.0
 # The share of the last request in the mean time that a request takes.
-_RECENT: Final = 0.02
+_RECENT: Final = 0.1
 _LONGEST_RETRY: Final = 30
 
 
@@ -113,6 +113,20 @@ class _Class:
         self.number = number
         self.queue = FairQueue()
         self.ready = float("-inf")
+        # Processor time of a whole request, with all its gradings.
+        self.mean = 0.0
+
+    def note_whole(self, seconds: float) -> None:
+        """Note what a request has taken."""
+        self.mean += _RECENT * (seconds - self.mean)
+
+    def note_begun(self, seconds: float) -> None:
+        """Note what a request has taken so far: it may be long until the first is done."""
+        self.note_whole(max(seconds, self.mean))
+
+    def seconds(self, requests: int) -> float:
+        """How long so many requests take, with the rests between them."""
+        return requests * self.mean * (1.0 if self.number == 0 else 1.0 + REST)
 
 
 class _Lane:
@@ -139,7 +153,6 @@ class FairAdmission:
         self._looking = False
         # Of their own each: a thousand refusals must not make a question about health wait.
         self._health, self._refusals = _Lane(), _Lane()
-        self._mean = 0.0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one ASGI connection."""
@@ -178,6 +191,7 @@ class FairAdmission:
             nonlocal charged, place
             self._charge(place, ticket, metered.spent.since(charged))
             charged = metered.spent
+            place.note_begun(charged.work)
             place = self._class(ticket)
             if self._others_first(place):
                 place = await self._turn(ticket, gone)
@@ -189,6 +203,7 @@ class FairAdmission:
             await metered
         finally:
             self._charge(place, ticket, metered.spent.since(charged))
+            place.note_whole(metered.spent.work)
 
     def _class(self, ticket: Ticket) -> _Class:
         """The class of a request that has come."""
@@ -213,21 +228,22 @@ class FairAdmission:
             for each in self._classes[1:]:
                 steps = abs(each.number - number)
                 each.ready = max(each.ready, now + rest(spent.elapsed, steps))
-        self._mean += _RECENT * (seconds - self._mean)
 
     def _refusal(self, ticket: Ticket) -> ProblemError | None:
         """The problem of a request for which there is no place in the queues, or None."""
         queues = [each.queue for each in self._classes]
-        requests, size = map(sum, zip(*(queue.of(ticket.client) for queue in queues), strict=True))
-        if requests >= OF_ONE[0] or size + ticket.size > OF_ONE[1]:
+        requests, sizes = zip(*(queue.of(ticket.client) for queue in queues), strict=True)
+        if sum(requests) >= OF_ONE[0] or sum(sizes) + ticket.size > OF_ONE[1]:
             return too_many(self._seconds(requests))
-        requests = sum(map(len, queues))
-        if requests >= OF_ALL[0] or sum(q.size for q in queues) + ticket.size > OF_ALL[1]:
+        requests = tuple(map(len, queues))
+        if sum(requests) >= OF_ALL[0] or sum(q.size for q in queues) + ticket.size > OF_ALL[1]:
             return too_busy(self._seconds(requests))
         return None
 
-    def _seconds(self, requests: int) -> int:
-        return min(max(1, math.ceil(requests * self._mean)), _LONGEST_RETRY)
+    def _seconds(self, requests: Iterable[int]) -> int:
+        """When to come again, where so many of each class wait."""
+        work = sum(map(_Class.seconds, self._classes, requests))
+        return min(max(1, math.ceil(work)), _LONGEST_RETRY)
 
     async def _turn(self, ticket: Ticket, gone: Callable[[], bool]) -> _Class:
         """Wait until it is this request's turn and there is time; its class then.

@@ -24,7 +24,7 @@ _RECENT_PACE: Final = 0.2
 CLASSES: Final = 4
 # How many times as long as a costly request took the process rests from its class: so the class has
 # a tenth of the process, and few of the others find it busy.
-_REST: Final = 9.0
+REST: Final = 9.0
 # The share of the last request in the expectation: one that is cheap does not hide one that is not.
 _RECENT: Final = 0.5
 # Lengths are alike that differ by less than a fifth.
@@ -72,7 +72,7 @@ class Costs:
 
 def rest(seconds: float, steps: int) -> float:
     """How long to rest, after a costly request, from those so many classes away."""
-    return _REST * seconds * 0.5**steps
+    return REST * seconds * 0.5**steps
 
 
 def _connection(ticket: Ticket) -> Hashable:

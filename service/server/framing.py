@@ -48,6 +48,11 @@ class Framing:
         return len(self._came)
 
     @property
+    def came(self) -> bytes:
+        """What has come and is in no piece yet."""
+        return bytes(self._came)
+
+    @property
     def begun(self) -> bool:
         """Whether anything of a request has come."""
         return self._expected is not _Expected.HEAD or len(self._came) > 0

@@ -3,13 +3,14 @@
 from fastapi import FastAPI
 
 from service.api.application import application
+from service.api.tutor import tutor_right
 from service.attempts.database import UnusableDatabaseError
 from service.attempts.store import AttemptStore
 from service.catalogue import open_catalogue
 from service.server.access_log import set_up_access_log
 from service.server.admission import FairAdmission
 from service.settings import Settings, SettingsError
-from service.web import web_routes
+from service.web import Tutoring, web_routes
 
 
 def installed_app(settings: Settings) -> FastAPI:
@@ -21,6 +22,8 @@ def installed_app(settings: Settings) -> FastAPI:
             store = AttemptStore.open(settings.database.get_secret_value())
         except UnusableDatabaseError as error:
             raise SettingsError(f"DH_GRADER_DATABASE: {error}") from error
+    is_tutor = tutor_right(settings.solutions)
+    tutoring = Tutoring(is_tutor, settings.exercises_dir, settings.editor_dir)
     app = application(
         catalogue,
         settings.cors_origins,
@@ -29,7 +32,7 @@ def installed_app(settings: Settings) -> FastAPI:
         turns=FairAdmission,
         store=store,
         read_attempts=settings.read_attempts,
-        pages=web_routes(catalogue),
+        pages=web_routes(catalogue, tutoring),
     )
     set_up_access_log(addresses=settings.log_addresses)
     return app

@@ -6,7 +6,7 @@ import logging
 import os
 import signal
 import socket
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from types import FrameType
 from typing import Final
 
@@ -29,9 +29,14 @@ _SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
 class Server(uvicorn.Server):
     """A server that ends by a signal: it answers what it has, for ten seconds at most."""
 
-    def __init__(self, config: uvicorn.Config, port: SharedPort | None = None) -> None:
+    def __init__(
+        self,
+        config: uvicorn.Config,
+        port: SharedPort | None = None,
+        origins: Sequence[str] = (),
+    ) -> None:
         super().__init__(config)
-        self.server_state: GuardedState = GuardedState()
+        self.server_state: GuardedState = GuardedState(origins)
         self._port = port
         # The supervisor of this worker, which alone sends signals and must not die before it.
         self._parent = port.supervisor if port else None

@@ -9,6 +9,7 @@ import re
 import socket
 import struct
 import sys
+from collections.abc import Sequence
 from email.utils import formatdate
 from typing import Any, Final
 
@@ -21,6 +22,7 @@ from uvicorn.server import ServerState
 
 from service.api.problems import ProblemError
 from service.server.crowd import Crowd, client_key, room_here
+from service.server.early_cors import leave_to_read, origin_in
 from service.server.framing import Framing
 from service.server.limits import HEALTH, LINGER, MAX_DISCARDED, MAX_UNREAD, PATIENCE
 from service.server.refusals import late, malformed, too_busy
@@ -28,6 +30,7 @@ from service.submissions.strict_json import MAX_BODY_SIZE
 
 # A server may ignore the wish for another protocol (RFC 9110, 7.8). The parser would stop at it.
 _UPGRADE: Final = re.compile(rb"\r\n(?=upgrade:)", re.IGNORECASE)
+_HOST: Final = re.compile(rb"\r\nhost[ \t]*:", re.IGNORECASE)
 # Whether to linger, and for how many seconds: a close is then a reset.
 _AT_ONCE: Final = struct.pack("hh" if sys.platform == "win32" else "ii", 1, 0)
 
@@ -35,9 +38,11 @@ _AT_ONCE: Final = struct.pack("hh" if sys.platform == "win32" else "ii", 1, 0)
 class GuardedState(ServerState):
     """What all connections of a server share."""
 
-    def __init__(self) -> None:
+    def __init__(self, origins: Sequence[str] = ()) -> None:
         super().__init__()
         self.crowd = Crowd(room_here())
+        # Pages of these may read refusals, too.
+        self.origins = origins
 
 
 class _Wire:
@@ -93,6 +98,7 @@ class GuardedProtocol(HttpToolsProtocol):
         self._stopping = False
         self._discarded = 0
         self._unread = 0
+        self._origin = ""
         self.url = b""
         self.address = ""
         self.unfinished = 0
@@ -174,6 +180,12 @@ class GuardedProtocol(HttpToolsProtocol):
         # The parser also takes RTSP and ICE for what may be asked for.
         if head and not piece.partition(b"\r\n")[0].endswith((b" HTTP/1.0", b" HTTP/1.1")):
             raise malformed("The request line does not end with HTTP/1.1.")
+        if head:
+            self._origin = origin_in(piece)
+            hosts = len(_HOST.findall(piece))
+            # RFC 9112, 3.2.
+            if hosts > 1 or not (hosts or piece.partition(b"\r\n")[0].endswith(b"0")):
+                raise malformed("A request names its host once, in a header Host.")
         try:
             self.parser.feed_data(_UPGRADE.sub(b"\r\nignored-", piece) if head else piece)
         except (httptools.HttpParserError, httptools.HttpParserUpgrade) as error:
@@ -240,7 +252,7 @@ class GuardedProtocol(HttpToolsProtocol):
     def on_headers_complete(self) -> None:
         """Begin with the answer."""
         full = self.crowd.full and self._path() not in HEALTH
-        self.app = _no_room if full else self.config.loaded_app
+        self.app = self._no_room if full else self._answered
         super().on_headers_complete()
         # What stands behind the body says nothing to the application, which has the list before.
         self.headers = []
@@ -295,6 +307,8 @@ class GuardedProtocol(HttpToolsProtocol):
         path = "" if self._framing.in_head else self._path()
         answer = problem.response(path)
         date = formatdate(usegmt=True).encode()
+        origin = origin_in(framing.came) if (framing := self._framing).in_head else self._origin
+        answer.headers.update(leave_to_read(self.server_state.origins, origin))
         headers = [(b"date", date), (b"x-content-type-options", b"nosniff"), *answer.raw_headers]
         lines = [f"HTTP/1.1 {problem.status.value} {problem.status.phrase}".encode()]
         lines += [name + b": " + value for name, value in headers]
@@ -368,7 +382,17 @@ class GuardedProtocol(HttpToolsProtocol):
         else:
             self.cycle.keep_alive = False
 
+    async def _answered(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Have the application answer."""
+        try:
+            await self.config.loaded_app(scope, receive, send)
+        except asyncio.CancelledError:
+            # At the end of the process, when all have been hung up on: no failure of the program.
+            if not self._finishing:
+                raise
 
-async def _no_room(scope: Scope, receive: Receive, send: Send) -> None:
-    """Answer while as many connections as there is room for are being answered."""
-    await too_busy(1).response(scope["path"])(scope, receive, send)
+    async def _no_room(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer while as many connections as there is room for are being answered."""
+        answer = too_busy(1).response(scope["path"])
+        answer.headers.update(leave_to_read(self.server_state.origins, self._origin))
+        await answer(scope, receive, send)

@@ -22,7 +22,7 @@ def serve(settings: Settings) -> bool:
     """
     app = installed_app(settings)
     if settings.workers == 1:
-        server = Server(_config(settings, app))
+        server = Server(_config(settings, app), origins=settings.cors_origins)
         server.run()
         return server.started
     config = _config(settings, app)
@@ -56,4 +56,4 @@ def _work(settings: Settings, port: SharedPort) -> None:
     except CatalogueError as error:
         print(error, file=sys.stderr)  # noqa: T201 - the reason why this process ends
         raise SystemExit(1) from error
-    Server(_config(settings, app), port).run()
+    Server(_config(settings, app), port, settings.cors_origins).run()

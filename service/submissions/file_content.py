@@ -123,7 +123,9 @@ def _json_of_no_name(data: bytes, found: str) -> object:
     except UnusableFileError as error:
         known = " ".join((*DATA_ENDINGS, *PASTED_ENDINGS))
         kind = f"of a kind that is not read ({found})" if found else "without an ending"
-        raise UnusableFileError(f"is a file {kind}, and {error}; known are {known}") from error
+        # Of a PDF or a photo nobody expects JSON.
+        reason = f", and {error}" if data.lstrip().startswith(b"{") else ""
+        raise UnusableFileError(f"is a file {kind}{reason}; known are {known}") from error
 
 
 def _recognised(data: bytes) -> FileContent:
@@ -157,8 +159,10 @@ def _toml(data: bytes) -> object:
         raise UnusableFileError(f"is not UTF-8 text: byte {error.start + 1} is wrong") from error
     except RecursionError as error:
         raise UnusableFileError("has tables or lists too deep in each other") from error
-    except ValueError as error:  # of TOML itself, or of a number with thousands of digits
+    except tomllib.TOMLDecodeError as error:
         raise UnusableFileError(f"is not usable TOML: {error}") from error
+    except ValueError as error:
+        raise UnusableFileError("is not usable TOML: a number has thousands of digits") from error
     if nested_deeper(content, MAX_DEPTH):
         raise UnusableFileError("has tables or lists too deep in each other")
     return _as_json(content)

@@ -15,13 +15,16 @@ from typing import Final
 
 FOLDER: Final = Path(__file__).parent / "static"
 _MEDIA_TYPES: Final = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
-# A file names another one in quotes, as beside it.
-_NAMED: Final = re.compile(r'"\./([\w.-]+)"')
+# A file names another one in quotes, as beside it; a module may import one later, when it needs it.
+_NAMED: Final = re.compile(r'(import\()?"\./([\w.-]+)"')
 
 
 @dataclass(frozen=True, slots=True)
 class Asset:
-    """A file as it is served; ``needs`` are the plain names of those that it names itself."""
+    """A file as it is served; ``needs`` are the plain names of those that it names itself.
+
+    Modules that it imports later are not among them.
+    """
 
     name: str
     content: bytes
@@ -60,14 +63,18 @@ def load_assets(folder: Path = FOLDER) -> Assets:
     """The files of a folder. Raises LookupError where one names another that there is not."""
     files = {file.name: file for file in folder.iterdir() if file.suffix in _MEDIA_TYPES}
     texts = {name: file.read_text(encoding="utf-8") for name, file in files.items()}
-    needs = {name: tuple(_NAMED.findall(text)) for name, text in texts.items()}
+    named = {name: _NAMED.findall(text) for name, text in texts.items()}
     assets: dict[str, Asset] = {}
     # Those that are named come first: a name is part of the content that is hashed.
-    for name in TopologicalSorter(needs).static_order():
+    order = {name: [other for _, other in found] for name, found in named.items()}
+    for name in TopologicalSorter(order).static_order():
         if name not in files:
             raise LookupError(f"a static file names {name!r}, which does not exist")
-        content = _NAMED.sub(lambda match: f'"./{assets[match[1]].name}"', texts[name]).encode()
+        content = _NAMED.sub(
+            lambda match: f'{match[1] or ""}"./{assets[match[2]].name}"', texts[name]
+        ).encode()
+        needs = tuple(other for later, other in named[name] if not later)
         stem, suffix = files[name].stem, files[name].suffix
         hashed = f"{stem}-{hashlib.sha256(content).hexdigest()[:12]}{suffix}"
-        assets[name] = Asset(hashed, content, _MEDIA_TYPES[suffix], needs[name])
+        assets[name] = Asset(hashed, content, _MEDIA_TYPES[suffix], needs)
     return Assets(assets)

@@ -12,7 +12,9 @@ from service.formats.shared.plain_text import number
 from service.web.assets import Assets
 
 # The entries of the menu: text and address, from the root.
-_MENU: Final = (("Exercises", ""), ("API", "docs"))
+_MENU: Final = (("Exercises", ""), ("Free play", "play"), ("API", "docs"))
+
+_TUTOR: Final = (("For tutors", "tutor"),)
 
 _KIND_NAMES: Final = {
     "dh_table": "DH table",
@@ -23,7 +25,7 @@ _KIND_NAMES: Final = {
 }
 
 
-def catalogue_page(catalogue: Catalogue, assets: Assets) -> bytes:
+def catalogue_page(catalogue: Catalogue, assets: Assets, *, tutor: bool = False) -> bytes:
     """All exercises, to choose one from."""
     main = element(
         "main",
@@ -46,10 +48,10 @@ def catalogue_page(catalogue: Catalogue, assets: Assets) -> bytes:
         *_groups(catalogue.values()),
         id="main",
     )
-    return _page("DH Grader", main, assets, "", ["page.js"])
+    return page("DH Grader", main, assets, "", ["page.js"], tutor=tutor)
 
 
-def exercise_page(exercise: Exercise, assets: Assets) -> bytes:
+def exercise_page(exercise: Exercise, assets: Assets, *, tutor: bool = False) -> bytes:
     """One exercise: its element, which holds what can be read without a script."""
     inside = element(
         "dh-exercise",
@@ -70,7 +72,24 @@ def exercise_page(exercise: Exercise, assets: Assets) -> bytes:
         linked="",
     )
     main = element("main", inside, id="main", class_="exercise")
-    return _page(f"{exercise.title} · DH Grader", main, assets, "../", ["page.js", "embed.js"])
+    title = f"{exercise.title} · DH Grader"
+    return page(title, main, assets, "../", ["page.js", "embed.js"], tutor=tutor)
+
+
+def play_page(assets: Assets, *, tutor: bool = False) -> bytes:
+    """Any table of any robot."""
+    inside = element(
+        "dh-play",
+        element("h1", "Free play"),
+        element("p", "Write any DH table, see its robot, and move it.", class_="lead"),
+        element(
+            "noscript",
+            element("p", "Scripts are off in this browser; free play needs them.", class_="notice"),
+        ),
+    )
+    main = element("main", inside, id="main", class_="exercise")
+    title = "Free play · DH Grader"
+    return page(title, main, assets, "", ["page.js", "play.js"], tutor=tutor)
 
 
 def _search() -> Element:
@@ -134,8 +153,20 @@ def _part(part: PartSpec) -> Element:
     return element("section", element("h2", part.title), element("p", part.prompt))
 
 
-def _page(title: str, main: Element, assets: Assets, root: str, scripts: Iterable[str]) -> bytes:
-    """A whole page; ``root`` leads from its address to that of the catalogue."""
+def page(
+    title: str,
+    main: Element,
+    assets: Assets,
+    root: str,
+    scripts: Iterable[str],
+    *,
+    styles: Iterable[str] = (),
+    tutor: bool = False,
+) -> bytes:
+    """A whole page; ``root`` leads from its address to that of the catalogue.
+
+    The menu leads a ``tutor`` to more.
+    """
     static = f"{root}static/"
     modules = dict.fromkeys(name for script in scripts for name in assets.modules(script))
     head = element(
@@ -146,21 +177,25 @@ def _page(title: str, main: Element, assets: Assets, root: str, scripts: Iterabl
         element("title", title),
         element("link", rel="icon", href=static + assets.name("icon.svg"), type="image/svg+xml"),
         element("link", rel="stylesheet", href=static + assets.name("tokens.css")),
-        element("link", rel="stylesheet", href=static + assets.name("page.css")),
+        *(
+            element("link", rel="stylesheet", href=static + assets.name(style))
+            for style in ("page.css", *styles)
+        ),
         *(element("link", rel="modulepreload", href=static + name) for name in modules),
         *(element("script", type="module", src=static + assets.name(script)) for script in scripts),
     )
-    body = element("body", *_header(root, assets), main, _footer(root))
+    body = element("body", *_header(root, assets, tutor=tutor), main, _footer(root))
     document = element("html", head, body, lang="en")
     written: bytes = tostring(document, encoding="utf-8", method="html")
     return b"<!doctype html>\n" + written
 
 
-def _header(root: str, assets: Assets) -> Iterable[Element]:
+def _header(root: str, assets: Assets, *, tutor: bool) -> Iterable[Element]:
     yield element("a", "Skip to the content", href="#main", class_="skip")
     icon = element("img", src=f"{root}static/{assets.name('icon.svg')}", alt="", class_="logo")
     links: list[Child] = [
-        element("a", name, href=(root + address) or ".") for name, address in _MENU
+        element("a", name, href=(root + address) or ".")
+        for name, address in (*_MENU, *(_TUTOR if tutor else ()))
     ]
     brand = element("a", icon, "DH Grader", href=root or ".", class_="brand")
     theme = element("div", id="theme", class_="theme")

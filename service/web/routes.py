@@ -3,29 +3,18 @@
 from http import HTTPStatus
 from typing import Final
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from service.api.lookup import Catalogue, exercise_or_404
 from service.api.piecewise import PiecewiseResponse
 from service.api.problems import ProblemError
+from service.api.tutor import tutor_right
 from service.web.assets import Asset, load_assets
-from service.web.pages import catalogue_page, exercise_page
+from service.web.page_headers import PAGE_HEADERS
+from service.web.pages import catalogue_page, exercise_page, play_page
+from service.web.tutor_routes import Tutoring, tutor_routes
 
-# Nothing from another host, no script or style in the page itself, and no text that becomes markup
-# but by the one policy of markup.js.
-_POLICY: Final = (
-    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
-    "base-uri 'none'; form-action 'self'; frame-ancestors 'self'; "
-    "require-trusted-types-for 'script'; trusted-types dh-grader"
-)
-_PAGE_HEADERS: Final = {
-    "Content-Security-Policy": _POLICY,
-    "Cross-Origin-Opener-Policy": "same-origin",
-    "Referrer-Policy": "no-referrer",
-    "Permissions-Policy": "camera=(), geolocation=(), microphone=()",
-    "Cache-Control": "no-cache",
-}
 # Any page may load the element; what it may then ask the service is said by DH_GRADER_CORS_ORIGINS.
 _FILE_HEADERS: Final = {
     "Access-Control-Allow-Origin": "*",
@@ -35,25 +24,41 @@ _FOR_EVER: Final = "public, max-age=31536000, immutable"
 _ENTRY: Final = "embed.js"
 
 
-def web_routes(catalogue: Catalogue) -> APIRouter:
-    """The pages, ``/embed.js`` for other sites, and the static files."""
+def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> APIRouter:
+    """The pages, ``/embed.js`` for other sites, and the static files.
+
+    ``tutoring`` says who sees a tutor's pages, too; without it nobody does.
+    """
     router = APIRouter(include_in_schema=False)
     assets = load_assets()
     files = assets.by_name
+    tutoring = tutoring or Tutoring(tutor_right(solutions=False))
+    router.include_router(tutor_routes(catalogue, assets, tutoring))
 
     @router.get("/")
-    async def home(exercise: str | None = None) -> Response:
+    async def home(request: Request, exercise: str | None = None) -> Response:
         """The catalogue, or where the page of the exercise is that the query names."""
         if exercise is not None:
             known = exercise_or_404(catalogue, exercise)
             return RedirectResponse(f"exercises/{known.id}", HTTPStatus.SEE_OTHER)
-        return HTMLResponse(catalogue_page(catalogue, assets), headers=_PAGE_HEADERS)
+        return HTMLResponse(
+            catalogue_page(catalogue, assets, tutor=tutoring.is_tutor(request)),
+            headers=PAGE_HEADERS,
+        )
 
     @router.get("/exercises/{exercise_id}")
-    async def exercise(exercise_id: str) -> Response:
+    async def exercise(request: Request, exercise_id: str) -> Response:
         """One exercise; its statement and figure are there without a script, too."""
         shown = exercise_or_404(catalogue, exercise_id)
-        return HTMLResponse(exercise_page(shown, assets), headers=_PAGE_HEADERS)
+        return HTMLResponse(
+            exercise_page(shown, assets, tutor=tutoring.is_tutor(request)), headers=PAGE_HEADERS
+        )
+
+    @router.get("/play")
+    async def play(request: Request) -> Response:
+        """Any table of any robot; it is in the browser alone."""
+        shown = play_page(assets, tutor=tutoring.is_tutor(request))
+        return HTMLResponse(shown, headers=PAGE_HEADERS)
 
     @router.get(f"/{_ENTRY}")
     async def embed() -> Response:

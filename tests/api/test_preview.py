@@ -34,7 +34,9 @@ def test_a_text_that_cannot_be_read_says_where_and_what_was_meant(client: httpx.
 def test_without_an_exercise_the_usual_letters_are_known(client: httpx.Client) -> None:
     shown = preview(client, text="a1 cos(q1) + d9 s9 + l2 sin(alpha3)")
     assert shown["symbols"] == ["a1", "alpha3", "d9", "l2", "theta1", "theta9"]
-    assert preview(client, text="zz1")["ok"] is False
+    unknown = preview(client, text="zz1")["error"]["message"]
+    assert unknown.startswith("There is no `zz1` here. There are ")
+    assert "This exercise" in preview(client, text="zz1", exercise="planar-rrr")["error"]["message"]
 
 
 def test_the_unit_decides_what_a_bare_number_is(client: httpx.Client) -> None:

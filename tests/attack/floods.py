@@ -12,12 +12,13 @@ from typing import Any
 from tests.attack.honest import EXERCISE, GRADE
 from tests.benchmarks.server import request
 from tests.server.raw import Service
+from tests.worst.seeds import links_of
 
 HEAD = b"POST /v1/preview HTTP/1.1\r\nHost: x\r\n"
 CHUNKED = HEAD + b"Transfer-Encoding: chunked\r\n\r\n"
 SOURCE = "127.0.0.3"
-# As many costly poses as a body of 256 KiB holds.
-MANY = 32
+# As many of the costliest submissions as a body of 256 KiB holds.
+MANY = 16
 
 Flood = Callable[[Service, ExitStack, float], str]
 
@@ -86,12 +87,9 @@ def dripping(lines: int) -> Flood:
     return flood
 
 
-def costly_pose(number: int) -> dict[str, Any]:
+def costly_answers(number: int) -> dict[str, Any]:
     """Answers that take as much work as a submission may; no two are alike."""
-    cells = [
-        ["//".join(["½"] * 78) + str(16 * number + 4 * i + j) for j in range(4)] for i in range(4)
-    ]
-    return {"answers": {"pose": cells}}
+    return {"answers": {"links": links_of("c12 " * 33, number)}}
 
 
 def _written(body: dict[str, Any]) -> bytes:
@@ -100,13 +98,13 @@ def _written(body: dict[str, Any]) -> bytes:
 
 def one_costly(number: int) -> bytes:
     """One costly submission as it goes over the wire."""
-    return request(GRADE, _written(costly_pose(number)))
+    return request(GRADE, _written(costly_answers(number)))
 
 
 def many_costly(number: int) -> bytes:
     """As many costly submissions as one request may hold."""
     numbers = range(MANY * number, MANY * (number + 1))
-    submissions = [{"exercise": EXERCISE, **costly_pose(i)} for i in numbers]
+    submissions = [{"exercise": EXERCISE, **costly_answers(i)} for i in numbers]
     return request("/v1/grade", _written({"submissions": submissions}))
 
 

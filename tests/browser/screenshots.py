@@ -51,10 +51,33 @@ def report(page: Page, service: str) -> None:
     page.locator(".part").first.evaluate("part => part.scrollIntoView()")
 
 
+def robot_view(page: Page, service: str) -> None:
+    """The robot in 3D, with a student's table that has a slip over it."""
+    exercise(page, service)
+    for i, text in enumerate(ANSWERS[14:22], 14):
+        cells(page).nth(i).fill(text)
+    page.get_by_role("button", name="Move it in 3D").click()
+    page.locator(".slider").first.scroll_into_view_if_needed()
+    expect(page.locator(".robot-view")).to_have_attribute("aria-busy", "false")
+    page.get_by_role("slider", name="theta2").fill("-0.6")
+    expect(page.locator(".robot-view")).to_have_attribute("aria-busy", "false")
+    page.get_by_role("heading", level=1).scroll_into_view_if_needed()
+
+
+def free_play(page: Page, service: str) -> None:
+    """An arm in free play."""
+    page.goto(f"{service}/play")
+    page.get_by_label("Start from a robot").select_option("Elbow arm with a wrist, 6R")
+    expect(page.locator(".slider")).to_have_count(6)
+    expect(page.locator(".robot-view")).to_have_attribute("aria-busy", "false")
+
+
 VIEWS: Final[Mapping[str, Callable[[Page, str], None]]] = {
     "catalogue": home,
     "exercise": exercise,
     "report": report,
+    "robot-view": robot_view,
+    "free-play": free_play,
 }
 
 

@@ -166,7 +166,7 @@ def test_an_interrupted_run_leaves_no_half_of_a_file(
             raise KeyboardInterrupt
         return grade(*arguments)
 
-    monkeypatch.setattr("service.cli.local_grading.grade", interrupted)
+    monkeypatch.setattr("service.local_grading.grade", interrupted)
     result = table_only(run, answer, answer, "--format", "csv", "--output", target)
     assert result.exit_code != 0
     assert len(graded) == 2
@@ -210,11 +210,13 @@ def test_a_format_that_lacks_its_platform_says_so(
 def test_students_are_told_no_more_than_the_exercise_allows(run: Run, save: Save) -> None:
     answer = save({"answers": {"table": HALF}})
     asked = save({"answers": {"table": HALF}, "feedback": "score"}, "score.json")
+    greedy = save({"answers": {"table": HALF}, "feedback": "full"}, "full.json")
     assert "It should be" in table_only(run, answer, "--format", "text").stdout
     for name in ("gradescope", "html", "junit", "markdown", "github", "prairielearn"):
         told = table_only(run, answer, "--format", name).stdout
         assert "row 3, e a" in told.replace("rows", "row")
         assert "It should be" not in told
+        assert "It should be" not in table_only(run, greedy, "--format", name).stdout
         assert (
             "It should be" in table_only(run, answer, "--format", name, "--feedback", "full").stdout
         )
@@ -242,9 +244,26 @@ def test_the_name_of_a_file_is_a_name_and_nothing_else(run: Run, save: Save) -> 
 
 
 def test_an_output_that_cannot_be_written_is_said(run: Run, save: Save, tmp_path: Path) -> None:
-    result = table_only(run, save(RIGHT), "--output", tmp_path / "no" / "report")
-    assert result.exit_code == 2
-    assert "cannot be written" in result.stderr
+    answer = save(RIGHT)
+    for output in (tmp_path / "no" / "report", answer / "report"):
+        result = table_only(run, answer, "--output", output)
+        assert result.exit_code == 2
+        assert result.stderr.count("cannot be written") == len(result.stderr.splitlines()) == 1
+
+
+def test_an_output_takes_the_place_of_nothing_that_is_read(
+    run: Run, save: Save, tmp_path: Path
+) -> None:
+    answer = save(RIGHT)
+    assignment = save(b'title = "1"\n[[exercises]]\nid = "planar-rrr"\n', "homework.toml")
+    other_name = tmp_path / "folder" / ".." / "answer.json"
+    (tmp_path / "folder").mkdir()
+    for output in (answer, other_name, assignment):
+        before = output.read_bytes()
+        result = run("grade", answer, "--assignment", assignment, "--output", output)
+        assert result.exit_code == 2
+        assert "would be overwritten" in result.stderr
+        assert output.read_bytes() == before
 
 
 @pytest.mark.parametrize(
@@ -264,7 +283,7 @@ def test_an_output_that_cannot_be_written_is_said(run: Run, save: Save, tmp_path
         (b"\xff", "a.toml", "not UTF-8"),
         (b"a = " + b"[" * 5000, "a.toml", ""),
         (b"a = " + b"[" * 100 + b"]" * 100, "a.toml", "deep"),
-        (b"a = " + b"9" * 5000, "a.toml", "not usable TOML"),
+        (b"a = " + b"9" * 5000, "a.toml", "not usable TOML: a number has thousands of digits\n"),
     ],
 )
 def test_an_unusable_file_says_why(

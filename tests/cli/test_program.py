@@ -110,3 +110,30 @@ def test_an_old_terminal_gets_the_whole_report_in_its_own_letters(answer: Path) 
     assert result.stdout.isascii()
     assert b"?.json" in result.stdout
     assert b"+ correct   x incorrect" in result.stdout
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+@pytest.mark.parametrize("arguments", [("exercises", "list"), ("--help",)])
+def test_an_output_that_is_full_is_told_in_one_line(arguments: tuple[str, ...]) -> None:
+    with Path("/dev/full").open("wb") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "service", *arguments],
+            cwd=ROOT,
+            stdout=full,
+            stderr=subprocess.PIPE,
+            check=False,
+        )
+    assert done.stderr.decode().splitlines() == [
+        "The output: cannot be written: No space left on device"
+    ]
+    assert done.returncode == 2
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs a POSIX shell")
+def test_closed_streams_cost_no_report(answer: Path, tmp_path: Path) -> None:
+    output = tmp_path / "points.csv"
+    command = f'"$@" --exercise planar-rrr --format csv --output {output} >&- 2>&-'
+    grade = (sys.executable, "-m", "service", "grade", str(answer))
+    done = subprocess.run(["sh", "-c", command, "sh", *grade], cwd=ROOT, check=False)
+    assert done.returncode == 1
+    assert output.read_text(encoding="utf-8").count("\n") == 2

@@ -13,6 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Final
 
+from service.api.preview import GENERIC
 from service.catalogue import Exercise, load_catalogue, shipped_folder
 from service.expressions import LIMITS, AngleUnit, ExpressionError, Vocabulary, read
 from service.grading import FeedbackLevel, Submission, grade
@@ -250,6 +251,8 @@ def all_said() -> Iterator[Said]:
     """All that the examples draw."""
     catalogue = {**load_catalogue(shipped_folder()), **_made()}
     yield from said_of_formulas(formulas())
+    # A preview for no exercise reads in the names of books.
+    yield from said_of_formulas(["g0"], GENERIC)
     yield from said_of_pasted(pasted_texts(), catalogue["planar-rr"])
     yield from said_of_answers(answers(catalogue), catalogue)
 

@@ -9,8 +9,17 @@ import numpy as np
 import pytest
 import sympy
 
-from service.expressions import LIMITS, Expression, Symbol, Vocabulary, joint_variable, read
+from service.expressions import (
+    LIMITS,
+    Expression,
+    Symbol,
+    Vocabulary,
+    joint_variable,
+    read,
+    reading_cost,
+)
 from service.expressions.parsing.degrees import in_degrees
+from service.grading.work_budget import MAX_SYMBOLS
 
 JOINTS = [sympy.Symbol(f"theta{i}") for i in range(1, 8)]
 LENGTHS = [sympy.Symbol(f"L{i}") for i in range(7)]
@@ -54,6 +63,12 @@ def _entries() -> Iterator[sympy.Expr]:
     for entry in (pose[0, 0], pose[0, 3], pose[1, 3], pose[2, 3]):
         yield entry
         yield sympy.expand(entry)
+
+
+@pytest.mark.parametrize("printer", PRINTERS)
+def test_a_whole_pose_is_read(printer: str) -> None:
+    texts = [PRINTERS[printer](sympy.expand(entry)) for entry in _pose()]
+    assert 8_000 < sum(map(reading_cost, texts)) < MAX_SYMBOLS
 
 
 @pytest.mark.parametrize("printer", PRINTERS)

@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from service.expressions import ExpressionError, read, symbols_in
+from service.expressions import ExpressionError, read, reading_cost, symbols_in
 from tests.expressions.corpus_files import ROBOT
 from tests.expressions.fuzzing import outcome
 from tests.guards import STALL
@@ -24,6 +24,25 @@ from tests.guards import STALL
 )
 def test_names_numbers_and_signs_are_counted(text: str, symbols: int) -> None:
     assert symbols_in(text) == symbols
+
+
+@pytest.mark.parametrize(
+    ("text", "cost"),
+    [
+        # As measured: the processor time, in that of an opening brace of LaTeX.
+        (r"\frac{1}{2}", 18),
+        ("pi ", 6),
+        ("√2 ", 7),
+        ("sind(30)", 17),
+        ("sin(q1)", 10),
+        ("c12 ", 6),
+        ("½", 10),
+        (r"\cos\left(\theta_{1}\right)", 12),
+    ],
+)
+def test_costly_symbols_of_long_texts_count_several_times(text: str, cost: int) -> None:
+    assert reading_cost(text) == symbols_in(text)
+    assert reading_cost(text * 80) / 80 == pytest.approx(cost, abs=1.8)
 
 
 def test_a_repair_tries_texts_of_so_many_symbols_and_no_more() -> None:

@@ -1,9 +1,29 @@
-"""`python -m tests.server.impatient`: the service with little patience, so that tests need none."""
+"""`python -m tests.server.impatient`: the service with little patience, so that tests need none.
+
+`GET /hanging` there never comes to an answer.
+"""
+
+import asyncio
+
+from fastapi import FastAPI
 
 from service.cli import main
-from service.server import crowd, process, protocol
+from service.server import crowd, process, protocol, start
+from service.server.installed import installed_app
+from service.settings import Settings
 
 PATIENCE = 1.0
+
+
+async def _hanging() -> None:
+    await asyncio.sleep(600)
+
+
+def _with_hanging(settings: Settings) -> FastAPI:
+    app = installed_app(settings)
+    app.add_api_route("/hanging", _hanging)
+    return app
+
 
 if __name__ == "__main__":
     for module, name, seconds in (
@@ -13,4 +33,5 @@ if __name__ == "__main__":
         (process, "GRACE", PATIENCE / 2),
     ):
         vars(module)[name] = seconds
+    vars(start)["installed_app"] = _with_hanging
     main()

@@ -149,10 +149,20 @@ def test_costly_requests_wait_for_many_small_ones() -> None:
     run(story())
 
 
-def test_whoever_owes_waits_until_others_are_heard_even_where_nobody_waits() -> None:
+def test_whoever_owes_waits_until_others_are_heard_even_where_nobody_waits(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    now = 0.0
+    monkeypatch.setattr(admission, "thread_time", lambda: now)
+
+    def work(scope: Any) -> None:
+        nonlocal now
+        now += 0.02 if scope["client"][0] == "attacker" else 0.0
+
     async def story() -> None:
-        inner = Application(lambda scope: busy(0.02 if scope["client"][0] == "attacker" else 0.0))
-        app = FairAdmission(inner)
+        inner = Application(work)
+        # So that 20 ms are costly, on whatever machine.
+        app = FairAdmission(inner, lambda: 0.0001)
         await asyncio.gather(*begin(app, Client("attacker")))
         await passes(5)
         await asyncio.gather(*begin(app, Client("attacker"), Client("honest")))
@@ -223,6 +233,34 @@ def test_beyond_its_queue_a_client_is_told_to_come_again() -> None:
         assert headers[b"content-type"] == b"application/problem+json"
         assert 1 <= int(headers[b"retry-after"]) <= 30
         assert json.loads(refused[1]["body"])["status"] == 429
+
+    run(story())
+
+
+@pytest.mark.parametrize(("gradings", "seconds"), [(1, 1), (10, 4), (500, 30)])
+def test_whoever_waits_for_more_work_is_told_to_come_again_later(
+    monkeypatch: pytest.MonkeyPatch, gradings: int, seconds: int
+) -> None:
+    """A grading takes 3 ms, and 128 requests wait."""
+    now = 0.0
+    monkeypatch.setattr(admission, "thread_time", lambda: now)
+
+    async def app(scope: Any, _receive: Any, send: Any) -> None:
+        nonlocal now
+        for i in range(gradings):
+            if i:
+                await give_way(Request(scope))
+            now += 0.003
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+
+    async def story() -> None:
+        fair = FairAdmission(app, lambda: 1.0)
+        for port in range(50):
+            await asyncio.gather(*begin(fair, Client("many", port)))
+        many = [Client("many", port) for port in range(OF_ONE[0] + 11)]
+        await asyncio.gather(*begin(fair, *many))
+        refused = [client.answer[0]["headers"] for client in many if client.status == 429]
+        assert {int(dict(headers)[b"retry-after"]) for headers in refused} == {seconds}
 
     run(story())
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from service.server.limits import MAX_CONNECTIONS
+from tests.attack.floods import many_costly
 from tests.guards import ANSWER
 from tests.server.raw import HEALTH, Service, answers, preview, received, service
 
@@ -128,6 +129,19 @@ def test_answers_are_whole_when_it_ends_in_the_midst_of_them(tmp_path: Path) -> 
             found = [answer.status for line in lines[1:] for answer in answers(line)]
         assert set(found) == {200}
         assert len(found) < 19 * pipelined
+
+
+def test_answers_that_the_end_cuts_short_are_no_failures(tmp_path: Path) -> None:
+    hanging = b"GET /hanging HTTP/1.1\r\nHost: x\r\n\r\n"
+    with service(tmp_path, module=IMPATIENT) as running:
+        with ExitStack() as stack:
+            sent = [hanging, *(many_costly(i) for i in range(4))]
+            lines = [stack.enter_context(running.connect(each)) for each in sent]
+            until(lambda: not running.ask(HEALTH)[0].status - 200)
+            assert running.end() == 0
+            assert [received(line) for line in lines].count(b"")
+        # The fixture finds a traceback in the log, if there is one.
+        assert "Exception" not in running.log
 
 
 def connections(process: int) -> int:

@@ -10,13 +10,14 @@ import pytest
 from tests.server.impatient import PATIENCE
 from tests.server.raw import HEALTH, HOST, TEXT, Service, answers, preview, received, service
 
+COURSE = "https://course.example.edu"
 CHUNKED = b"POST /v1/preview HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n"
 
 
 @pytest.fixture(scope="module")
 def impatient(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     folder = tmp_path_factory.mktemp("server")
-    with service(folder, module="tests.server.impatient") as running:
+    with service(folder, module="tests.server.impatient", DH_GRADER_CORS_ORIGINS=COURSE) as running:
         yield running
         assert running.end() == 0
 
@@ -37,6 +38,8 @@ def impatient(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
         (b"SOURCE / ICE/1.0\r\n\r\n", 400),
         (b"GET / HTTP/1.1\r\nno colon\r\n\r\n", 400),
         (b"GET /healthz HTTP/1.1\n\n", 400),
+        (b"GET /healthz HTTP/1.1\r\nHosts: x\r\n\r\n", 400),
+        (b"GET /healthz HTTP/1.1\r\n" + HOST + b"HOST: y\r\n\r\n", 400),
         (b"GET /\xff HTTP/1.1\r\n\r\n", 400),
         (b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", 400),
         (b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", 400),
@@ -60,6 +63,8 @@ def test_what_may_not_be_sent_is_a_problem(impatient: Service, sent: bytes, stat
     assert answer.headers["x-content-type-options"] == "nosniff"
     assert "date" in answer.headers
     assert "server" not in answer.headers
+    # A page may read it, though nothing may have come but half of the address.
+    assert answer.headers["access-control-allow-origin"] == COURSE
     problem = answer.json()
     assert problem["status"] == status
     assert {"type", "title", "detail", "instance"} <= problem.keys()

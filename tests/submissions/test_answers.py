@@ -80,7 +80,7 @@ def test_parts_that_are_not_set_are_left_out(tmp_path: Path) -> None:
     [
         ({"x.csv": CSV}, "name the file after it, one of table, pose"),
         ({"x.csv": CSV, "y.csv": CSV}, "there are x.csv, y.csv; name it as planar-rrr/table.csv"),
-        ({"x.pdf": b"%PDF"}, "a kind that is not read (.pdf)"),
+        ({"x.pdf": b"%PDF"}, "a kind that is not read (.pdf); known are .json"),
         ({"x.docx": b"PK\x03\x04\0"}, "a kind that is not read (.docx)"),
         ({"table.csv": b"\xff\xfa"}, "not UTF-8"),
         ({"table.csv": b"a\0b"}, "zero bytes"),

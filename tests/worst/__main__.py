@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 from tests.worst.bodies import KNOWN
-from tests.worst.entry_points import FILE, GRADE, PREVIEW, Target, forget
+from tests.worst.entry_points import ENTRIES, Target, forget
 from tests.worst.exercises import exercises
 from tests.worst.search import Found, Search
 from tests.worst.seeds import attacks, cells
@@ -40,7 +40,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.worst", description=__doc__)
     parser.add_argument("--minutes", type=float, default=10)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--entry", default="", choices=("", GRADE, PREVIEW, FILE))
+    parser.add_argument("--entry", default="", choices=("", *ENTRIES))
     parser.add_argument("--exercise", default="", help="only exercises whose id begins so")
     parser.add_argument("--most", type=int, default=5, help="bodies of each entry point")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write the bodies here")
@@ -55,7 +55,7 @@ def main() -> int:
     search.evolve((*attacks(attacked, options.seed), *known), until, options.entry)
     worst = 0.0
     sys.stdout.write(f"{search.tried} bodies, seed {options.seed}\n")
-    for entry in (GRADE, PREVIEW, FILE):
+    for entry in ENTRIES:
         for i, found in enumerate(search.costliest(entry, options.most)):
             again = search.measured(found.attack, 3)
             worst = max(worst, again.ratio)

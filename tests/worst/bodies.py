@@ -4,7 +4,16 @@ from collections.abc import Mapping
 from typing import Final
 
 from tests.worst.entry_points import FILE, GRADE, PREVIEW, Attack
-from tests.worst.seeds import LONG_TABLE, grid, halves, padded
+from tests.worst.seeds import (
+    HALVES,
+    LONG_TABLE,
+    frames_of,
+    grid,
+    halves,
+    links_of,
+    padded,
+    previews_of,
+)
 
 ARM: Final = "stanford-arm"
 
@@ -30,6 +39,11 @@ KNOWN: Final[Mapping[str, Attack]] = {
     "links and a pose of brackets": _graded(links="(" * 2_400, pose="[" * 2_400),
     "many cells that each nearly repair": _graded(table={"rows": _REPAIRS}),
     "constants to be computed": _graded(pose=[["sind(30)" * 100 + f"+{i}"] * 4 for i in range(4)]),
+    "links of sines and cosines": _graded(links=links_of("c12 " * 33)),
+    "links of sines in degrees": _graded(links=links_of("sind(30)" * 25)),
+    "links of fractions": _graded(links=links_of(r"\frac{1}{2}" * 18)),
+    "links of constants": _graded(links=links_of("pi " * 90)),
+    "links of roots": _graded(links=links_of("√2 " * 65)),
     "runs of letters": _graded(pose=[["sin" * 26 + f" x{i}"] * 4 for i in range(4)]),
     "unread cells": _graded(table={"rows": LONG_TABLE}),
     "unread cells in another unit": Attack(
@@ -52,6 +66,10 @@ KNOWN: Final[Mapping[str, Attack]] = {
     ),
     "a long formula": _previewed("+".join(["(2q1c12q2)"] * 180), "pose"),
     "a formula of halves": _previewed("½" * 8_000, "pose"),
+    "many previews": previews_of(ARM, "links", "c12 " * 16),
+    "many previews of halves": previews_of(ARM, "links", HALVES),
+    "frames of long cells": frames_of(ARM, 6, "sin(30)" * 60),
+    "frames of halves": frames_of(ARM, 6, halves(0)),
     "unknown parts": Attack(GRADE, ARM, _UNKNOWN),
     "unknown fields": Attack(GRADE, ARM, {**_UNKNOWN["answers"], "answers": {}}),
     "unknown parts in a file": Attack(FILE, ARM, _UNKNOWN),

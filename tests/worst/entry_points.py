@@ -18,20 +18,23 @@ from rich.console import Console
 
 from service.api.application import application
 from service.catalogue import Exercise
-from service.cli.local_grading import GradingTerms, graded
 from service.expressions import reader, reading_work
 from service.expressions.evaluation import decimals
 from service.expressions.parsing import words
 from service.formats import report_format
 from service.formats.shared.report_format import Setting
+from service.local_grading import GradingTerms, graded
 from service.submissions.assignment import of_one
 from service.submissions.handed_in import all_handed_in
 from tests.benchmarks.floors import stanford_pose
 
 GRADE, PREVIEW, FILE = "grade", "preview", "file"
+PREVIEWS, FRAMES = "many-previews", "frames"
+ENTRIES = (GRADE, PREVIEW, PREVIEWS, FRAMES, FILE)
+_PATHS = {PREVIEW: "/v1/preview", PREVIEWS: "/v1/previews", FRAMES: "/v1/frames"}
 _CACHES = (
     reader._remembered, reader._remembered_long, reader._parsed, reading_work._remembered,
-    words.split, decimals.decimals_of,
+    reading_work._weighed, words.split, decimals.decimals_of,
 )  # fmt: skip
 
 
@@ -105,7 +108,7 @@ class Target:
             path = Path(self._folder.name) / "submission.json"
             path.write_bytes(content)
             return lambda: self._file(path, attack.exercise)
-        url = "/v1/preview" if attack.entry == PREVIEW else f"/v1/exercises/{attack.exercise}/grade"
+        url = _PATHS.get(attack.entry, f"/v1/exercises/{attack.exercise}/grade")
         return lambda: self._loop.run_until_complete(self._posted(url, content))
 
     async def _posted(self, url: str, content: bytes) -> int:

@@ -66,7 +66,7 @@ class Search:
         for attack in first:
             if time.monotonic() > until:
                 return
-            if attack.entry.startswith(entry):
+            if entry in ("", attack.entry):
                 self.tried_out(attack)
         while time.monotonic() < until:
             place = self._place()

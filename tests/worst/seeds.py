@@ -6,7 +6,7 @@ from typing import Any
 
 from service.catalogue import Exercise
 from tests.expressions.fuzzing import hostile, seeds
-from tests.worst.entry_points import FILE, GRADE, PREVIEW, Attack
+from tests.worst.entry_points import FILE, FRAMES, GRADE, PREVIEW, PREVIEWS, Attack
 
 KEYS = ("a", "alpha", "d", "theta")
 HALVES = "½" * 78
@@ -27,6 +27,28 @@ def padded(rows: int, size: int = 16_000, pad: str = "$") -> str:
     """A pasted matrix of four columns, with much behind it that means nothing."""
     lines = [", ".join(f"c{(i + j) % 3 + 1}" for j in range(4)) for i in range(rows)]
     return "\n".join(lines) + "\n" + pad * (size - sum(map(len, lines)) - rows)
+
+
+def links_of(text: str, number: int = 0, links: int = 6) -> list[list[list[str]]]:
+    """Link transforms in which each entry is this text; ``number`` makes others of them."""
+    return [
+        [[f"{text}+{1000 * number + 16 * k + 4 * i + j}" for j in range(4)] for i in range(4)]
+        for k in range(links)
+    ]
+
+
+def previews_of(exercise: str, part: str, text: str) -> Attack:
+    """As many entries to preview as one request may have."""
+    entries = [{"text": f"{text}+{i}", "quantity": "length"} for i in range(192)]
+    return Attack(PREVIEWS, exercise, {"exercise": exercise, "part": part, "entries": entries})
+
+
+def frames_of(exercise: str, joints: int, text: str) -> Attack:
+    """A table of long cells and the mechanism, in as many pictures as one request may have."""
+    rows = [dict.fromkeys(KEYS[:3], f"{text}+{i}") | {"theta": f"q{i + 1}"} for i in range(joints)]
+    values = [[0.1 * k + 0.01 * i for i in range(joints)] for k in range(30)]
+    body = {"exercise": exercise, "table": {"rows": rows}, "joints": values}
+    return Attack(FRAMES, exercise, body)
 
 
 def garbage_table(rows: int, choose: random.Random) -> list[list[str]]:
@@ -87,7 +109,12 @@ def attacks(exercises: Mapping[str, Exercise], seed: int) -> Iterator[Attack]:
                 if isinstance(answer, str):
                     body = {"text": answer, "exercise": name, "part": answered}
                     yield Attack(PREVIEW, name, body)
+        if exercise.reference is not None:
+            yield frames_of(name, len(exercise.joints), "sin(30)" * 60)
+            yield frames_of(name, len(exercise.joints), halves(0))
         for part in exercise.parts:
+            for text in ("c12 " * 16, "sind(30)" * 8, HALVES):
+                yield previews_of(name, part.id, text)
             for runs in (1, 6):
                 text = "\n".join(map(", ".join, grid(8, 4, runs)))
                 body = {"text": text, "exercise": name, "part": part.id}

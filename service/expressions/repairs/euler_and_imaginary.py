@@ -2,7 +2,7 @@
 
 import re
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, absent, answers, error
 
 _REASONS = {
     "e": "Write a power of Euler's number as exp(x).",
@@ -18,7 +18,7 @@ def repair(failure: Failure) -> Repair:
     reason = _REASONS.get(failure.details["run"])
     if reason is None:
         return None
-    message = f"This exercise has no {quoted(failure.written)}. {reason}"
+    message = f"{absent(failure)} {reason}"
     (start, end), suggestion = failure.span, None
     power = _POWER.match(failure.source, end) if failure.details["run"] == "e" else None
     if power is not None:

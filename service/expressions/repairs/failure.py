@@ -97,11 +97,20 @@ def error(
     return ExpressionError(code, message, span or failure.span, suggestion)
 
 
+def absent(failure: Failure) -> str:
+    """The sentence that the name in the text is not declared."""
+    name = quoted(failure.written)
+    if failure.vocabulary.of_books:
+        return f"There is no {name} here."
+    return f"This exercise has no {name}."
+
+
 def position(span: Span) -> str:
     """The first character of ``span``, counted from 1."""
     return f"character {span[0] + 1}"
 
 
 __all__ = [
-    "Failure", "Repair", "RepairRule", "answers", "error", "position", "quoted", "refusal",
+    "Failure", "Repair", "RepairRule", "absent", "answers", "error", "position", "quoted",
+    "refusal",
 ]  # fmt: skip

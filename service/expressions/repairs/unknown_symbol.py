@@ -5,7 +5,7 @@ from typing import Final
 
 from service.expressions.characters import greek
 from service.expressions.parsing.words import Piece, split
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, absent, answers, error
 from service.expressions.repairs.nearest_name import nearest
 from service.expressions.vocabulary.symbols import Kind, Symbol, Vocabulary, normal_form
 
@@ -21,7 +21,7 @@ _LISTED: Final = 8
 def repair(failure: Failure) -> Repair:
     """Offer the nearest declared name, or list those that may be meant."""
     run, vocabulary = failure.details["run"], failure.vocabulary
-    message = f"This exercise has no {quoted(failure.written)}."
+    message = absent(failure)
     if (product := _product(run, vocabulary)) is not None:
         message += f" For a product, write {product}."
         return error(failure, "unknown_symbol", message)
@@ -46,18 +46,19 @@ def _written(piece: Piece, run: str) -> str:
 def _listed(name: str, vocabulary: Vocabulary) -> str:
     """A sentence on the names with the same letter, or else of the same kind, or else on all."""
     siblings = _siblings(name, vocabulary)
+    has, its = ("There are", "The") if vocabulary.of_books else ("It has", "Its")
     if name in _OF_JOINTS:
         siblings = [symbol for symbol in vocabulary.symbols if symbol.joint is not None]
     if siblings:
-        return f" It has {_joined(siblings)}."
+        return f" {has} {_joined(siblings)}."
     kind = _kind(name)
     named = [symbol for symbol in vocabulary.symbols if symbol.kind == kind]
     constants = [symbol for symbol in named if symbol.joint is None]
     if constants:
-        return f" Its {kind}s are {_joined(constants)}."
+        return f" {its} {kind}s are {_joined(constants)}."
     if kind is not None and not named:
-        return f" It has no {kind}s."
-    return f" It has {_joined(list(vocabulary.symbols))}." if vocabulary.symbols else ""
+        return f" {has} no {kind}s."
+    return f" {has} {_joined(list(vocabulary.symbols))}." if vocabulary.symbols else ""
 
 
 def _siblings(name: str, vocabulary: Vocabulary) -> list[Symbol]:

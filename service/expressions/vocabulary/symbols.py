@@ -59,16 +59,20 @@ def _shared(symbols: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
 class Vocabulary:
     """The declared symbols, looked up by any of their names. Immutable, equal by content.
 
+    They are an exercise's, or those ``of_books``: then messages speak of no exercise.
+
     Raises ValueError where two symbols have one name, two joint variables have one index, or a name
     cannot be written in an expression.
     """
 
     __slots__ = (
-        "_hash", "_shared", "by_name", "joints", "longest", "sliding", "symbols", "turning",
+        "_hash", "_shared", "by_name", "joints", "longest", "of_books", "sliding", "symbols",
+        "turning",
     )  # fmt: skip
 
-    def __init__(self, symbols: Sequence[Symbol]) -> None:
+    def __init__(self, symbols: Sequence[Symbol], *, of_books: bool = False) -> None:
         self.symbols: Final = tuple(symbols)
+        self.of_books: Final = of_books
         self.by_name: Final[dict[str, Symbol]] = {}
         self.turning: Final[dict[int, Symbol]] = {}
         self.sliding: Final[dict[int, Symbol]] = {}
@@ -76,7 +80,7 @@ class Vocabulary:
             self._declare(symbol)
         self.joints: Final = sorted(self.turning | self.sliding)
         self.longest: Final = max(map(len, (*self.by_name, *RESERVED)))
-        self._hash: Final = hash(self.symbols)
+        self._hash: Final = hash((self.symbols, of_books))
         # One tuple for all equal vocabularies, so that they need not be compared symbol by symbol:
         # many exercises declare the same symbols, and each word of a text is remembered by them.
         self._shared: Final = _shared(self.symbols)
@@ -101,7 +105,8 @@ class Vocabulary:
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Vocabulary) and (
-            self._shared is other._shared or self.symbols == other.symbols
+            self.of_books == other.of_books
+            and (self._shared is other._shared or self.symbols == other.symbols)
         )
 
     def __hash__(self) -> int:

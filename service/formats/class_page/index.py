@@ -20,12 +20,12 @@ from service.formats.shared.plain_text import percent
 from service.grading import Verdict
 
 INDEX: Final = "index.html"
-_STYLE: Final = style_sheet(Path(__file__).with_name("index.css"))
+STYLE: Final = style_sheet(Path(__file__).with_name("index.css"))
 
 
 def index(overview: Overview) -> Iterator[bytes]:
     """The index piece by piece."""
-    yield opening(f"Class overview · {_title(overview)}", _STYLE)
+    yield opening(f"Class overview · {_title(overview)}", STYLE)
     yield b"<main>\n"
     yield written(_head(overview)) + b"\n"
     for each in _sections(overview):

@@ -31,11 +31,14 @@ def success(overview: Overview) -> Element:
         ),
         _legend(),
     ]
+    several = len(overview.exercises) > 1
     for exercise in overview.exercises.values():
-        if len(overview.exercises) > 1:
+        if several:
             content.append(element("h3", exercise.title))
         found = ((part, parts.get((exercise.id, part.id))) for part in exercise.parts)
-        content += [_card(part, counted) for part, counted in found if counted]
+        content += [
+            _card(part, counted, "h4" if several else "h3") for part, counted in found if counted
+        ]
     return section("success", "Success", *content)
 
 
@@ -48,11 +51,11 @@ def _legend() -> Element:
     return element("ul", *entries, class_="legend", aria_label="Colours of shares")
 
 
-def _card(part: AnsweredPart, counted: PartSuccess) -> Element:
+def _card(part: AnsweredPart, counted: PartSuccess, heading: str) -> Element:
     share = counted.share
     told = "nobody answered" if share.value is None else f"{whole_percent(share.value)} right"
     badge = element("span", told, class_=f"badge {_band(share)}")
-    header = element("header", element("h4", part.title), badge)
+    header = element("header", element(heading, part.title), badge)
     card = element("section", header, class_="card", aria_label=part.title)
     card.append(element("p", _in_words(part, counted), class_="quiet inside"))
     if counted.rows:

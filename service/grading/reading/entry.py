@@ -18,13 +18,13 @@ from service.expressions import (
     Vocabulary,
     evaluate_all,
     read,
-    symbols_in,
+    reading_cost,
 )
 from service.grading.feedback import Finding, reading_error, reading_note
 from service.grading.reading.absent_variables import with_absent_variables
 from service.grading.report import Verdict
 from service.grading.samples import SAMPLES, Samples
-from service.grading.work_budget import MAX_SYMBOLS, WorkBudget
+from service.grading.work_budget import WorkBudget
 from service.kinematics.transforms import Numbers
 
 # Textbooks mark the joint variable so in every table: six notes on it would hide the others.
@@ -92,7 +92,7 @@ class Reader:
             if not raw.strip():
                 return MISSING
             if budget.symbols >= 0 and len(raw) <= LIMITS.characters:
-                symbols = symbols_in(raw)
+                symbols = reading_cost(raw)
         elif raw is None:
             return MISSING
         elif isinstance(raw, bool) or not isinstance(raw, int | float):
@@ -162,8 +162,7 @@ def _bounds(quantities: tuple[Kind, ...]) -> Numbers:
 
 _TOO_MUCH = reading_error(
     "too_long",
-    f"The answers are too long: they have more than {MAX_SYMBOLS:,} names, numbers and "
-    "signs together.",
+    "The answers are too long. This place and all after it are not read.",
 )
 
 MISSING = Entry(

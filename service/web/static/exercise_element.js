@@ -44,6 +44,7 @@ export class DhExercise extends HTMLElement {
 
   disconnectedCallback() {
     removeEventListener("online", this.onOnline);
+    this.#closeView();
     this.#loading += 1;
   }
 
@@ -111,6 +112,7 @@ export class DhExercise extends HTMLElement {
 
   /** The answers have changed: keep them. */
   edited() {
+    this.view?.changed();
     clearTimeout(this.#timers.save);
     this.#timers.save = setTimeout(() => this.#save(), SAVED_AFTER);
     this.#showTotal(null);
@@ -130,6 +132,7 @@ export class DhExercise extends HTMLElement {
 
   #restore(answers) {
     this.unit.value = answers.unit;
+    this.view?.changed();
     return this.#parts.flatMap((part) => {
       const state = Object.hasOwn(answers.parts, part.part.id) ? answers.parts[part.part.id] : null;
       return part.restore(state ?? { cells: [], choice: "" });
@@ -139,6 +142,7 @@ export class DhExercise extends HTMLElement {
   // The exercise on the page.
 
   #show(exercise) {
+    this.#closeView();
     this.exercise = exercise;
     this.history = new History();
     this.previewer = new Previewer(this.service, () => this.context(), (error) => this.failed(error));
@@ -169,10 +173,70 @@ export class DhExercise extends HTMLElement {
     return h("section", region, header, this.#statement(), this.#symbols(level + 1));
   }
 
+  // The robot in 3D, loaded when it is asked for.
+
+  #viewButton() {
+    this.opener = h("button", { type: "button", class: "quiet-button", "aria-expanded": "false", onclick: () => this.#toggleView() }, "Move it in 3D");
+    return this.opener;
+  }
+
+  async #toggleView() {
+    if (this.view) return this.#closeView();
+    const turn = this.#loading;
+    this.opener.setAttribute("aria-busy", "true");
+    try {
+      const { RobotView } = await import("./robot_view.js");
+      if (turn === this.#loading && !this.view) this.#openView(new RobotView(this.#viewHost()));
+    } catch {
+      this.announce((this.saved.textContent = "The 3D view could not be loaded"));
+    }
+    return this.opener.removeAttribute("aria-busy");
+  }
+
+  #viewHost() {
+    return {
+      service: this.service,
+      body: () => ({ exercise: this.exercise.id, angle_unit: this.unit.value, ...this.#tableToDraw() }),
+      descriptions: Object.fromEntries(this.exercise.symbols.map(({ name, description }) => [name, description])),
+      instead: this.figure.cloneNode(true),
+      announce: (text) => this.announce(text),
+    };
+  }
+
+  #openView(view) {
+    this.view = view;
+    this.figure.hidden = true;
+    this.figure.after(view.element);
+    this.main.classList.add("with-view");
+    this.opener.textContent = "Back to the drawing";
+    this.opener.setAttribute("aria-expanded", "true");
+    view.open();
+  }
+
+  #closeView() {
+    if (!this.view) return;
+    this.view.close();
+    this.view = null;
+    this.figure.hidden = false;
+    this.main.classList.remove("with-view");
+    this.opener.textContent = "Move it in 3D";
+    this.opener.setAttribute("aria-expanded", "false");
+  }
+
+  /** The table that the student filled in, if there is one: the last one that was changed. */
+  #tableToDraw() {
+    const tables = this.#parts.filter(({ part, isEmpty }) => part.kind === "dh_table" && !isEmpty);
+    const [table] = tables.sort((one, other) => other.changedAt - one.changedAt);
+    if (!table) return {};
+    const { rows, convention = table.part.shape.convention } = table.answer;
+    return { table: { rows, convention: convention === "either" ? "standard" : convention } };
+  }
+
   #statement() {
     const { statement, statement_html: markup } = this.exercise;
     const text = markup ? html(markup) : statement.trim().split(/\n\n+/).map((each) => h("p", {}, visible(each)));
-    return h("div", { class: "statement" }, this.#figure(), ...text);
+    this.figure = this.#figure();
+    return h("div", { class: "statement" }, this.figure, this.figure && this.#viewButton(), ...text);
   }
 
   #figure() {

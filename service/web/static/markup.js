@@ -45,7 +45,25 @@ export function mathml(text) {
   return root?.namespaceURI === MATHML && root.localName === "math" ? copied(root) : null;
 }
 
+/** A page that the service wrote, to be shown where a policy lets no script run. */
+export function documentOf(text) {
+  return parsed(text, "text/html");
+}
+
 /** The statement of an exercise as nodes. */
 export function html(text) {
   return [...parsed(text, "text/html").body.childNodes].map(copied).filter(Boolean);
+}
+
+/** A matrix of formulas, each the text of a `<math>` element. */
+export function matrix(rows) {
+  const make = (tag, ...children) => {
+    const element = document.createElementNS(MATHML, tag);
+    element.append(...children);
+    return element;
+  };
+  const entry = (text) => make("mtd", ...(mathml(text)?.childNodes ?? []));
+  const table = make("mtable", ...rows.map((row) => make("mtr", ...row.map(entry))));
+  // Its brackets are drawn by the style sheet: not every system has a font whose brackets grow.
+  return make("math", table);
 }

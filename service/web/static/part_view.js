@@ -12,6 +12,7 @@ const BETWEEN_CELLS = /[\n\t;|&,[]|\\\\/;
 const HELP = "Arrow keys and Enter move between cells. Paste a whole table or matrix into one cell.";
 
 export class PartView {
+  changedAt = 0;
   #current = null;
   #quiet = false;
 
@@ -101,6 +102,7 @@ export class PartView {
   }
 
   changed(cell) {
+    this.changedAt = performance.now();
     cell.row.outdated();
     this.outdated();
     this.host.previewer.ask(cell);

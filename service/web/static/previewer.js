@@ -1,7 +1,8 @@
 // What the student types, shown as it is understood: asked for in batches, one request at a time.
 
-// After so many milliseconds without a key the entry is sent.
-const PAUSE = 30;
+// What changes in so many milliseconds is sent together: a pasted table. Keys come more slowly, and
+// while an answer is on its way the next ones wait for it.
+const PAUSE = 5;
 const BATCH = 100;
 const REMEMBERED = 1000;
 // Where the service cannot be reached, the next try waits so many milliseconds.

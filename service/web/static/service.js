@@ -38,6 +38,10 @@ export class Service {
     return this.#ask(`v1/exercises/${encodeURIComponent(id)}/grade`, body);
   }
 
+  frames(body) {
+    return this.#ask("v1/frames", body);
+  }
+
   async #ask(path, body) {
     const options = { credentials: "omit", signal: AbortSignal.timeout(PATIENCE) };
     if (body !== undefined) {

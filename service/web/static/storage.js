@@ -33,21 +33,31 @@ export class Store {
 
 /** The answers as a fragment. */
 export function fragment(answers) {
-  const bytes = new TextEncoder().encode(JSON.stringify(answers));
+  return NAME + packed(answers);
+}
+
+/** A value as letters that may stand in an address. */
+export function packed(value) {
+  const bytes = new TextEncoder().encode(JSON.stringify(value));
   const text = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
-  return NAME + text.replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+  return text.replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+}
+
+/** The value that was packed; null for any other text. */
+export function unpacked(letters) {
+  if (letters.length > LONGEST) return null;
+  try {
+    const text = atob(letters.replaceAll("-", "+").replaceAll("_", "/"));
+    const bytes = Uint8Array.from(text, (character) => character.charCodeAt(0));
+    return JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(bytes));
+  } catch {
+    return null;
+  }
 }
 
 /** The answers in a fragment, or null. */
 export function answersIn(hash) {
-  if (!hash.startsWith(NAME) || hash.length > LONGEST) return null;
-  try {
-    const text = atob(hash.slice(NAME.length).replaceAll("-", "+").replaceAll("_", "/"));
-    const bytes = Uint8Array.from(text, (character) => character.charCodeAt(0));
-    return checked(JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(bytes)));
-  } catch {
-    return null;
-  }
+  return hash.startsWith(NAME) ? checked(unpacked(hash.slice(NAME.length))) : null;
 }
 
 /** Answers of the right shape, whatever was stored or linked: `{unit, parts: {id: {cells, choice}}}`. */

@@ -1,0 +1,200 @@
+"""The pose that a table reaches, multiplied out as text: sums of products of sines and cosines.
+
+The chain is X_0 Z_1 X_1 Z_2 …. Turns about one axis, or about parallel ones, add up before a sine
+is taken of them, so that an arm with parallel axes gives the formulas of a textbook. Each entry is
+a sum of terms, and their number is bounded: nothing is searched or simplified afterwards.
+"""
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from service.expressions import Expression, evaluate_all
+from service.kinematics.chain import Row
+
+# Of all entries together. A wrist with an arm of two links has about a hundred.
+_MOST_TERMS: Final = 160
+_SAME: Final = 1e-9
+_LARGEST_FACTOR: Final = 9
+_QUARTER: Final = np.pi / 2
+
+# The coefficient of each product of factors; the factors are texts, in order.
+Terms = dict[tuple[str, ...], int]
+
+
+class LongPoseError(ValueError):
+    """The pose has more terms than anybody would read."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Angle:
+    """A sum of angles, each a text with its factor, and quarter turns."""
+
+    parts: tuple[tuple[str, int], ...] = ()
+    quarters: int = 0
+
+    def plus(self, other: "_Angle") -> "_Angle":
+        total = dict(self.parts)
+        for text, factor in other.parts:
+            total[text] = total.get(text, 0) + factor
+        kept = tuple((text, factor) for text, factor in total.items() if factor)
+        return _Angle(kept, self.quarters + other.quarters)
+
+    def reversed(self) -> "_Angle":
+        return _Angle(tuple((text, -factor) for text, factor in self.parts), -self.quarters)
+
+    def cosine_and_sine(self) -> tuple[Terms, Terms]:
+        """Those of the whole angle: a quarter turn makes a sine of a cosine."""
+        cosine, sine = _number(1), _number(0)
+        if self.parts:
+            sign = 1 if self.parts[0][1] > 0 else -1
+            text = _sum_text([(text, sign * factor) for text, factor in self.parts])
+            cosine, sine = {(f"cos({text})",): 1}, {(f"sin({text})",): sign}
+        for _ in range(self.quarters % 4):
+            cosine, sine = _times(sine, -1), cosine
+        return cosine, sine
+
+
+def _sum_text(parts: Sequence[tuple[str, int]]) -> str:
+    """A sum as text; the first factor is positive."""
+    ordered = [
+        f"{'-' if factor < 0 else '+'}{'' if abs(factor) == 1 else f'{abs(factor)}*'}{text}"
+        for text, factor in parts
+    ]
+    return "".join(ordered).removeprefix("+")
+
+
+def _angle(cell: Expression) -> _Angle:
+    """The angle in a cell; what is no sum of symbols and quarter turns stays one text."""
+    names = sorted(cell.symbols)
+    # At 0, at 1 for each symbol alone, and where it would be seen that it is no sum.
+    points = np.vstack([np.zeros(len(names)), np.eye(len(names)), 0.37 + np.arange(len(names))])
+    [found] = evaluate_all([cell], dict(zip(names, points.T, strict=True)), {})
+    values = np.broadcast_to(np.asarray(found, dtype=np.float64), len(points))
+    whole = _Angle(((_bracketed(cell.text()), 1),))
+    if not np.isfinite(values).all():
+        return whole
+    quarters, factors = values[0] / _QUARTER, values[1:-1] - values[0]
+    rest = values[-1] - values[0] - points[-1] @ factors
+    exact = [quarters - round(quarters), rest, *(factors - np.round(factors))]
+    if np.abs(exact).max() > _SAME or np.abs(factors).max(initial=0) > _LARGEST_FACTOR:
+        return whole
+    parts = tuple((name, round(factor)) for name, factor in zip(names, factors, strict=True))
+    return _Angle(tuple(part for part in parts if part[1]), round(quarters))
+
+
+def _length(cell: Expression) -> Terms:
+    """The length in a cell as one factor."""
+    text = cell.text()
+    if text == "0":
+        return {}
+    if text.startswith("-") and not re.search("[+-]", text[1:]):
+        return {(text[1:],): -1}
+    return {(_bracketed(text),): 1}
+
+
+def _bracketed(text: str) -> str:
+    return f"({text})" if re.search("[+/-]", text) else text
+
+
+def _number(value: int) -> Terms:
+    return {(): value} if value else {}
+
+
+def _times(terms: Terms, factor: int) -> Terms:
+    return {product: factor * count for product, count in terms.items()}
+
+
+def _product(one: Terms, other: Terms) -> Terms:
+    if len(one) * len(other) > _MOST_TERMS:
+        raise LongPoseError
+    total = Terms()
+    for left, m in one.items():
+        for right, n in other.items():
+            total = _plus(total, {left + right: m * n})
+    return total
+
+
+def _plus(one: Terms, other: Terms) -> Terms:
+    total = dict(one)
+    for product, count in other.items():
+        total[product] = total.get(product, 0) + count
+    return {product: count for product, count in total.items() if count}
+
+
+class _Pose:
+    """The rotation's columns and the position so far, and a turn about z that is still to come."""
+
+    def __init__(self) -> None:
+        self.columns = [[_number(int(i == j)) for i in range(3)] for j in range(3)]
+        self.position = [Terms() for _ in range(3)]
+        self.turn = _Angle()
+
+    def along(self, column: Sequence[Terms], length: Terms) -> None:
+        if length:
+            self.position = [
+                _plus(at, _product(length, each))
+                for at, each in zip(self.position, column, strict=True)
+            ]
+
+    def about(self, angle: _Angle, first: int, second: int) -> None:
+        """Turn two columns towards each other."""
+        cosine, sine = angle.cosine_and_sine()
+        pairs = list(zip(self.columns[first], self.columns[second], strict=True))
+        self.columns[first] = [_plus(_product(u, cosine), _product(v, sine)) for u, v in pairs]
+        self.columns[second] = [
+            _plus(_product(v, cosine), _times(_product(u, sine), -1)) for u, v in pairs
+        ]
+        if sum(len(terms) for column in self.columns for terms in column) > _MOST_TERMS:
+            raise LongPoseError
+
+    def turn_now(self) -> None:
+        self.about(self.turn, 0, 1)
+        self.turn = _Angle()
+
+    def x_axis(self) -> list[Terms]:
+        """The direction of x after the turn that is still to come."""
+        cosine, sine = self.turn.cosine_and_sine()
+        return [
+            _plus(_product(u, cosine), _product(v, sine))
+            for u, v in zip(self.columns[0], self.columns[1], strict=True)
+        ]
+
+    def twist(self, angle: _Angle) -> None:
+        if angle.parts or angle.quarters % 2:
+            self.turn_now()
+            self.about(angle, 1, 2)
+        elif angle.quarters % 4:
+            # A half turn about x: what turns about z afterwards turns the other way round.
+            self.columns[1:] = [[_times(terms, -1) for terms in each] for each in self.columns[1:]]
+            self.turn = self.turn.reversed()
+
+
+def pose_texts(modified: Iterable[Row[Expression]]) -> list[list[str]]:
+    """The entries ``(4, 4)`` of the product of a modified table's rows, as texts to be read.
+
+    Raises LongPoseError.
+    """
+    pose = _Pose()
+    for a, alpha, d, theta in modified:
+        length = _length(a)
+        if length:
+            pose.along(pose.x_axis(), length)
+        pose.twist(_angle(alpha))
+        pose.along(pose.columns[2], _length(d))
+        pose.turn = pose.turn.plus(_angle(theta))
+    pose.turn_now()
+    columns = [*pose.columns, pose.position]
+    if sum(len(terms) for column in columns for terms in column) > _MOST_TERMS:
+        raise LongPoseError
+    rows = [[_text(column[i]) for column in columns] for i in range(3)]
+    return [*rows, ["0", "0", "0", "1"]]
+
+
+def _text(terms: Terms) -> str:
+    """A sum of products as text."""
+    ordered = [("*".join(product) or "1", count) for product, count in terms.items()]
+    return _sum_text(ordered) or "0"

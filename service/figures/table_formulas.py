@@ -1,0 +1,90 @@
+"""A table as formulas: its cells, its equivalent in the other convention, and its pose."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from service.expressions import AngleUnit, Expression, ExpressionError, read
+from service.figures.pose_terms import LongPoseError, pose_texts
+from service.figures.scope import DrawingScope
+from service.figures.table_frames import cell_reader
+from service.grading.reading.table import read_table
+from service.kinematics.chain import ALPHA, A, Row, modified_rows, standard_rows
+from service.kinematics.dh import Convention
+
+_ZERO_TEXT = "0"
+
+
+@dataclass(frozen=True, slots=True)
+class RowInFormulas:
+    """A row of a table; its label is its number, "b" before the first axis or "e" for the tool."""
+
+    label: str
+    cells: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TableFormulas:
+    """What a table says as formulas.
+
+    ``cells`` has None for one that is not read. Without such a cell there are the rows that say
+    the same in the other convention, and the entries ``(4, 4)`` of the pose of the last frame in
+    the base frame, unless they would be too long to be of use.
+    """
+
+    cells: tuple[tuple[Expression | None, ...], ...]
+    converted: tuple[RowInFormulas, ...] = ()
+    pose: tuple[tuple[Expression, ...], ...] = ()
+
+
+def table_formulas(
+    answer: object, convention: Convention, scope: DrawingScope, angle_unit: AngleUnit = "radians"
+) -> TableFormulas:
+    """The formulas of a table; its cells are read as those of ``table_frames``.
+
+    Raises UnreadableAnswerError where there are no rows.
+    """
+    written = read_table(answer, cell_reader(scope, angle_unit))
+    cells = tuple(tuple(row.expressions) for row in written.rows)
+    rows = [(a, alpha, d, theta) for a, alpha, d, theta in cells if a and alpha and d and theta]
+    if len(rows) < len(cells):
+        return TableFormulas(cells)
+    zero = read(_ZERO_TEXT, scope.vocabulary)
+    return TableFormulas(
+        cells, _converted(rows, convention, zero), _pose(rows, convention, zero, scope)
+    )
+
+
+def _converted(
+    rows: Sequence[Row[Expression]], convention: Convention, zero: Expression
+) -> tuple[RowInFormulas, ...]:
+    """The rows in the other convention; a fixed row more where a and α have no other place."""
+    count = len(rows)
+    if convention is Convention.STANDARD:
+        found = modified_rows(rows, zero)
+        labels = [*map(str, range(1, count + 1)), "e"]
+        # The last row is the tool's; without a tool it says nothing.
+        kept = found if _has_x(found[-1]) else found[:-1]
+    else:
+        found = standard_rows(rows, zero)
+        labels = [*map(str, range(1, count + 1))]
+        kept = found
+        if _has_x(rows[0]):
+            labels = ["b", *labels]
+            kept = [(*rows[0][:2], zero, zero), *found]
+    return tuple(RowInFormulas(label, row) for label, row in zip(labels, kept, strict=False))
+
+
+def _has_x(row: Row[Expression]) -> bool:
+    return any(row[i].text() != _ZERO_TEXT for i in (A, ALPHA))
+
+
+def _pose(
+    rows: Sequence[Row[Expression]], convention: Convention, zero: Expression, scope: DrawingScope
+) -> tuple[tuple[Expression, ...], ...]:
+    modified = rows if convention is Convention.MODIFIED else modified_rows(rows, zero)
+    try:
+        return tuple(
+            tuple(read(text, scope.vocabulary) for text in row) for row in pose_texts(modified)
+        )
+    except (LongPoseError, ExpressionError):
+        return ()

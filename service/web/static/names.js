@@ -1,0 +1,10 @@
+// The names of symbols as they are printed: theta1 is θ with the index 1.
+
+import { h } from "./dom.js";
+
+const GREEK = { alpha: "α", beta: "β", gamma: "γ", theta: "θ", phi: "φ", psi: "ψ" };
+
+export function symbolName(name) {
+  const [, letters, index] = name.match(/^(.*?)_?(\d*)$/s);
+  return h("span", {}, h("i", {}, GREEK[letters] ?? letters), index ? h("sub", {}, index) : null);
+}

@@ -1,0 +1,87 @@
+"""The routes of a tutor's pages: solutions, the editor, the report on a class."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from http import HTTPStatus
+from pathlib import Path
+
+from fastapi import APIRouter, Depends, Request
+from starlette.responses import HTMLResponse, Response
+
+from service.api.kept import Kept
+from service.api.lookup import Catalogue, exercise_or_404
+from service.api.piecewise import PiecewiseResponse
+from service.api.problems import ProblemError
+from service.api.tutor import TutorRight, require_tutor
+from service.catalogue import Exercise, Robot
+from service.web.assets import Assets
+from service.web.bounded_work import BoundedWork
+from service.web.class_routes import class_routes
+from service.web.editor_routes import editor_routes
+from service.web.exercise_folder import ExerciseFolder
+from service.web.page_headers import NO_STORE, PRIVATE_HEADERS
+from service.web.tutor_pages import solution_page, tutor_page
+
+
+@dataclass(frozen=True, slots=True)
+class Tutoring:
+    """Who is a tutor here, the folders of exercise files, and the one that may be written to."""
+
+    is_tutor: TutorRight
+    folders: Sequence[Path] = field(default=())
+    editor_dir: Path | None = None
+
+
+def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
+    """The pages and the routes that they ask; each asks for the tutor's right first."""
+
+    def require(request: Request) -> None:
+        require_tutor(request, tutoring.is_tutor)
+
+    router = APIRouter(
+        prefix="/tutor", include_in_schema=False, dependencies=[Depends(require, scope="function")]
+    )
+    work = BoundedWork()
+    folder = ExerciseFolder(tutoring.folders, tutoring.editor_dir)
+    router.include_router(_solution_routes(catalogue, assets))
+    router.include_router(editor_routes(catalogue, assets, folder, work))
+    router.include_router(class_routes(catalogue, assets, work))
+
+    @router.get("")
+    async def home() -> Response:
+        """What there is for tutors."""
+        return HTMLResponse(tutor_page(catalogue, assets), headers=PRIVATE_HEADERS)
+
+    return router
+
+
+def _solution_routes(catalogue: Catalogue, assets: Assets) -> APIRouter:
+    router = APIRouter()
+    solutions, figures = Kept(), Kept()
+
+    @router.get("/solutions/{exercise_id}")
+    async def solution(exercise_id: str) -> Response:
+        """The model solution of an exercise."""
+        exercise = exercise_or_404(catalogue, exercise_id)
+        key = (exercise.id, exercise.version, exercise.title)
+        content = await solutions.of(key, partial(solution_page, exercise, assets))
+        return PiecewiseResponse(content, headers=PRIVATE_HEADERS, media_type="text/html")
+
+    @router.get("/solutions/{exercise_id}/frames.svg")
+    async def frames(exercise_id: str) -> Response:
+        """The robot with the frames of the reference's table."""
+        exercise = exercise_or_404(catalogue, exercise_id)
+        if not isinstance(exercise.reference, Robot):
+            raise ProblemError(HTTPStatus.NOT_FOUND, "The exercise has no frames to draw.")
+        key = (exercise.id, exercise.version, exercise.title, exercise.view)
+        content = await figures.of(key, partial(_frames, exercise))
+        return Response(content, headers=NO_STORE, media_type="image/svg+xml")
+
+    return router
+
+
+def _frames(exercise: Exercise) -> bytes:
+    from service.figures.figure import reference_figure
+
+    return reference_figure(exercise).encode()

@@ -1,0 +1,72 @@
+"""Who is taken for a tutor: a student must never be, by whatever way the request comes."""
+
+import asyncio
+
+import httpx
+import pytest
+from fastapi import FastAPI, Request
+
+from service.api.tutor import tutor_right
+
+PROGRAM = {"host": "127.0.0.1:8000"}
+
+
+def answered(
+    solutions: bool | None,
+    headers: dict[str, str],
+    *,
+    client: str = "127.0.0.1",
+    server: str = "127.0.0.1",
+) -> bool:
+    """Whether the request has the right, with these ends of its connection."""
+    app = FastAPI()
+    right = tutor_right(solutions)
+
+    @app.get("/")
+    def asked(request: Request) -> bool:
+        return right(request)
+
+    async def ask() -> bool:
+        transport = httpx.ASGITransport(app, client=(client, 40000))
+        host = f"[{server}]" if ":" in server else server
+        async with httpx.AsyncClient(transport=transport, base_url=f"http://{host}:8000") as asking:
+            return bool((await asking.get("/", headers=headers)).json())
+
+    return asyncio.run(ask())
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1:8000", "localhost:8000", "[::1]:8000", "LOCALHOST"])
+def test_whoever_sits_at_the_machine_is_one(host: str) -> None:
+    assert answered(None, {"host": host})
+    assert answered(None, {"host": host, "origin": f"http://{host}"})
+    assert answered(None, {"host": host}, client="::1", server="::1")
+
+
+@pytest.mark.parametrize(
+    ("headers", "ends"),
+    [
+        ({"host": "10.0.0.7:8000"}, {"client": "10.0.0.9", "server": "10.0.0.7"}),
+        (PROGRAM, {"client": "10.0.0.9"}),  # a proxy that the server believes
+        (PROGRAM, {"server": "10.0.0.7"}),  # from the machine to a port that all can reach
+        ({"host": "grader.example.edu"}, {}),  # nginx as docs/deployment.md has it, or rebinding
+        ({"host": "localhost.example.edu"}, {}),
+        ({"host": "[::1"}, {}),
+        ({"host": ""}, {}),
+        ({**PROGRAM, "x-forwarded-for": "127.0.0.1"}, {}),
+        ({**PROGRAM, "forwarded": "for=127.0.0.1"}, {}),
+        ({**PROGRAM, "via": "1.1 proxy"}, {}),
+        ({**PROGRAM, "origin": "https://course.example.edu"}, {}),
+        ({**PROGRAM, "origin": "http://127.0.0.1:9000"}, {}),
+        ({**PROGRAM, "origin": "null"}, {}),
+    ],
+)
+def test_nobody_else_is(headers: dict[str, str], ends: dict[str, str]) -> None:
+    assert not answered(None, headers, **ends)
+
+
+def test_the_setting_decides_where_it_is_set() -> None:
+    far = {"client": "10.0.0.9", "server": "10.0.0.7"}
+    assert answered(True, {"host": "grader.example.edu"}, **far)
+    assert not answered(False, PROGRAM)
+    # A page elsewhere never asks with a tutor's browser.
+    assert not answered(True, {**PROGRAM, "origin": "https://course.example.edu"})

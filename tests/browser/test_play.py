@@ -1,0 +1,106 @@
+"""Free play: any table, its robot in 3D, its pose and its equivalent."""
+
+from collections.abc import Callable
+
+from playwright.sync_api import Locator, Page, expect
+
+from tests.browser.conftest import Visit
+from tests.browser.test_pages import violations
+from tests.browser.test_robot_view import picture
+
+Opening = Callable[..., Visit]
+
+# Pictures in a second of dragging, and of a page that changes one number, which is the floor here;
+# last the milliseconds of script for one picture.
+DRAG = """async (slider) => {
+  const pictures = async (change) => {
+    const from = performance.now();
+    let count = 0, script = 0;
+    for (let now = from; now < from + 1000; now = performance.now(), count++) {
+      change(Math.sin((now - from) / 300));
+      script += performance.now() - now;
+      await new Promise((done) => requestAnimationFrame(done));
+    }
+    return [count, script / count];
+  };
+  const output = slider.parentElement.querySelector("output");
+  const [floor] = await pictures((value) => (output.textContent = value));
+  const [count, script] = await pictures((value) => {
+    slider.value = value;
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+  });
+  return [count, floor, script];
+}"""
+
+
+def entries(page: Page) -> list[float]:
+    texts = page.locator(".numeric [role=cell]").all_inner_texts()
+    return [float(text.replace("−", "-")) for text in texts]
+
+
+def cell(page: Page, row: int, column: int) -> Locator:
+    return page.locator(".entry input").nth(4 * row - 4 + column)
+
+
+def test_a_seven_joint_arm_is_played_with(
+    visit: Opening, service: str, axe: str, figure: Callable[[str], None]
+) -> None:
+    size = {"width": 640, "height": 480}
+    opened = visit(
+        bypass_csp=True, permissions=["clipboard-read", "clipboard-write"], viewport=size
+    )
+    page = opened.page
+    page.add_init_script(axe)
+    page.goto(f"{service}/play")
+    page.get_by_label("Start from a robot").select_option("Redundant arm, 7R")
+    expect(page.locator(".slider")).to_have_count(7)
+    home = picture(page)
+    # Stretched out upwards: 0.34 + 0.4 + 0.4 + 0.15.
+    assert entries(page) == [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1.29, 0, 0, 0, 1]
+    expect(page.get_by_text("6 degrees of freedom")).to_be_visible()
+    slider = page.get_by_role("slider", name="theta4: joint 4 turns")
+    slider.press("End")
+    assert picture(page) != home
+    assert entries(page)[11] < 1
+    drawn, floor, script = slider.evaluate(DRAG)
+    figure(
+        f"seven joints: {drawn} pictures a second, {floor} of a page alone, {script:.1f} ms each"
+    )
+    # At 30 pictures a second there are 33 ms for one, and the browser needs most of them.
+    assert script < 33
+    assert drawn > floor / 6
+
+    # Its equivalent is the same robot: the pose stays.
+    slider.press("Home")
+    picture(page)
+    pose = entries(page)
+    page.get_by_role("button", name="Use this table").click()
+    expect(page.get_by_label("Convention")).to_have_value("modified")
+    picture(page)
+    assert entries(page) == pose
+    assert violations(page, "") == []
+    page.set_viewport_size({"width": 320, "height": 700})
+    assert page.evaluate("document.documentElement.scrollWidth") <= 320
+
+    # Two rows that turn about one line, written by hand, and shared.
+    page.get_by_label("Start from a robot").select_option("Planar arm, RR")
+    page.get_by_role("button", name="Remove row 1").click()
+    page.get_by_role("button", name="Add a row").click()
+    expect(cell(page, 1, 3)).to_have_value("theta1")
+    cell(page, 1, 0).fill("0")
+    cell(page, 2, 2).fill("l1 +")
+    page.get_by_role("button", name="Write l1").click()
+    expect(page.locator(".told")).to_have_text("Joints 1 and 2 turn about one and the same line.")
+    page.get_by_label("Joint of row 2").select_option("P")
+    expect(cell(page, 2, 3)).to_have_value("0")
+    cell(page, 2, 2).fill("d2")
+    expect(page.get_by_text("2 degrees of freedom")).to_be_visible()
+    page.get_by_role("button", name="Copy LaTeX").click()
+    latex = page.evaluate("navigator.clipboard.readText()")
+    assert r"\cos\left(\theta_{1}\right) & -\sin\left(\theta_{1}\right) & 0 & 0" in latex
+    page.get_by_role("button", name="Copy link").click()
+    link = page.evaluate("navigator.clipboard.readText()")
+    friend = visit()
+    friend.page.goto(link)
+    expect(cell(friend.page, 2, 2)).to_have_value("d2")
+    assert [url for url in friend.requests if "robot=" in url.partition("#")[0]] == []

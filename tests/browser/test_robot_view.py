@@ -1,0 +1,119 @@
+"""The robot in 3D: moved by its joints, with a student's table over it, and without WebGL."""
+
+import os
+from collections.abc import Callable
+from math import cos, sin
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.browser.chromium import find_chromium
+from tests.browser.conftest import Visit
+from tests.browser.steps import cells, open_exercise
+from tests.browser.test_pages import violations
+
+Opening = Callable[..., Visit]
+
+TABLE = ["l2", "0", "l1", "q1", "l3", "pi", "0", "q2", "0", "0", "l4", "q3", "0", "0", "q4", "0"]
+
+
+def open_view(page: Page) -> None:
+    page.get_by_role("button", name="Move it in 3D").click()
+    expect(page.locator(".slider")).not_to_have_count(0)
+
+
+def picture(page: Page) -> bytes:
+    """The pixels of the stage, when all that was asked for has been drawn."""
+    expect(page.locator(".robot-view")).to_have_attribute("aria-busy", "false")
+    page.evaluate("() => new Promise((done) => requestAnimationFrame(() => setTimeout(done, 50)))")
+    return page.locator(".stage canvas").screenshot()
+
+
+def tool(page: Page) -> str:
+    return page.locator(".pose-numbers code").first.inner_text()
+
+
+def test_a_joint_moves_the_robot_and_the_student_s_table(
+    visit: Opening, service: str, axe: str
+) -> None:
+    opened = visit(bypass_csp=True, viewport={"width": 1280, "height": 900})
+    page = opened.page
+    page.add_init_script(axe)
+    open_exercise(page, service, "rrrp")
+    assert [url for url in opened.requests if "three" in url or "robot_view" in url] == []
+    open_view(page)
+    assert [url for url in opened.requests if "three-0" in url]
+    expect(page.get_by_role("group", name="Frames shown").get_by_role("checkbox")).to_have_count(0)
+    alone = picture(page)
+
+    # The table appears over it as it is written, as far as it has numbers.
+    for i, text in enumerate(TABLE[:6]):
+        cells(page).nth(i).fill(text)
+    expect(page.locator(".told")).to_contain_text("The frames end before it.")
+    for i, text in enumerate(TABLE):
+        cells(page).nth(i).fill(text)
+    expect(page.get_by_role("checkbox", name="Show frame 4")).to_be_checked()
+    expect(page.locator(".told")).to_be_hidden()
+    home, at_home = picture(page), tool(page)
+    assert home != alone
+
+    # Both follow the slider, by keyboard as by mouse; the numbers are those of the service.
+    slider = page.get_by_role("slider", name="q1: joint 1 turns")
+    slider.press("End")
+    expect(page.locator(".slider output").first).not_to_have_text("0°")
+    assert picture(page) != home
+    robot, table = page.locator(".pose-numbers code").all_inner_texts()
+    x, y, z = map(float, at_home.split())
+    angle = float(slider.input_value())
+    turned = [x * cos(angle) - y * sin(angle), x * sin(angle) + y * cos(angle), z]
+    assert list(map(float, robot.split())) == pytest.approx(turned, abs=0.002)
+    assert table.split()[:2] == robot.split()[:2]
+    # A slip in the table leads its frames away from the robot.
+    cells(page).nth(4).fill("2 l3")
+    astray = page.locator(".pose-numbers code").last
+    expect(astray).not_to_have_text(table)
+    moved = picture(page)
+    assert tool(page) == robot
+    page.get_by_role("checkbox", name="Show frame 1").uncheck()
+    assert picture(page) != moved
+    page.get_by_role("checkbox", name="Side by side").check()
+    page.get_by_role("button", name="View from higher").click()
+    page.locator(".stage canvas").focus()
+    page.keyboard.press("ArrowRight")
+
+    page.get_by_role("button", name="Home configuration").click()
+    expect(page.locator(".slider output").first).to_have_text("0°")
+    expect(page.locator(".pose-numbers code").first).to_have_text(at_home)
+    page.get_by_text("Lengths and other symbols").click()
+    page.get_by_role("spinbutton", name="l1").fill("3")
+    expect(page.locator(".pose-numbers code").first).not_to_have_text(at_home)
+    page.set_viewport_size({"width": 320, "height": 700})
+    assert violations(page, "") == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= 320
+    page.get_by_role("button", name="Back to the drawing").click()
+    expect(page.locator(".stage")).to_have_count(0)
+
+
+def test_without_webgl_there_is_the_drawing(browser: Browser, service: str) -> None:
+    found = find_chromium()
+    assert found is not None
+    options = ["--no-sandbox", "--disable-gpu", "--disable-3d-apis"]
+    other = browser.browser_type.launch(
+        executable_path=found.program, args=options, env={**os.environ, **found.environment}
+    )
+    page = other.new_page(reduced_motion="reduce")
+    complaints: list[str] = []
+    page.on("console", lambda line: complaints.append(line.text))
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    loaded: list[str] = []
+    page.on("request", lambda request: loaded.append(request.url))
+    open_exercise(page, service, "rrrp")
+    open_view(page)
+    expect(page.locator(".stage")).to_contain_text("This browser has no WebGL")
+    expect(page.locator(".stage").get_by_role("img", name="Drawing of the robot")).to_be_visible()
+    before = tool(page)
+    page.get_by_role("slider", name="q1: joint 1 turns").press("End")
+    expect(page.locator(".pose-numbers code").first).not_to_have_text(before)
+    assert [url for url in loaded if "three-0" in url] == []
+    assert complaints == []
+    other.close()

@@ -1,0 +1,74 @@
+"""A table as formulas: they have the numbers of the table itself, whatever is in it."""
+
+from collections.abc import Iterable
+
+import numpy as np
+import pytest
+
+from service.expressions import Expression, evaluate_all
+from service.figures.scope import free_scope
+from service.figures.table_formulas import TableFormulas, table_formulas
+from service.kinematics.chain import Table, pose
+from service.kinematics.dh import Convention
+
+TABLES = {
+    "planar": ("RR", [["a1", "0", "0", "theta1"], ["a2", "0", "0", "theta2"]]),
+    "scara": (
+        "RRP",
+        [["a1", "0", "d1", "q1"], ["-a2", "pi", "0", "q2 + pi/2"], ["0", "0", "q3", "0"]],
+    ),
+    "spherical": (
+        "RRP",
+        [["0", "-90°", "0.4", "q1"], ["0", "pi/2", "d2", "q2"], ["l3", "pi/6", "q3", "-pi/2"]],
+    ),
+    "strange": ("RP", [["a1+l1", "alpha1", "0", "2 q1 - pi"], ["0", "pi/2", "q2/2", "sin(a2)"]]),
+    "wrist": (
+        "RRR",
+        [["0", "-pi/2", "0", "q1"], ["0", "pi/2", "0", "q2"], ["0", "0", "d6", "-q3"]],
+    ),
+}
+
+
+def found(name: str, convention: Convention) -> TableFormulas:
+    structure, rows = TABLES[name]
+    return table_formulas(rows, convention, free_scope(structure))
+
+
+@pytest.mark.parametrize("convention", Convention)
+@pytest.mark.parametrize("name", TABLES)
+def test_formulas_have_the_numbers_of_the_table(name: str, convention: Convention) -> None:
+    formulas = found(name, convention)
+    rng = np.random.default_rng(5)
+    variables = free_scope(TABLES[name][0]).variables
+    values = {variable.name: rng.uniform(-2, 2, 6) for variable in variables}
+
+    def table(rows: Iterable[Iterable[Expression | None]]) -> Table:
+        cells = [cell for row in rows for cell in row]
+        numbers = [np.broadcast_to(each, 6) for each in evaluate_all(cells, values, {})]
+        return np.array(numbers).reshape(-1, 4, 6)
+
+    reached = pose(table(formulas.cells), convention)
+    other = pose(table([row.cells for row in formulas.converted]), convention.other)
+    assert other == pytest.approx(reached)
+    assert np.moveaxis(table(formulas.pose), -1, 0) == pytest.approx(reached)
+
+
+def test_parallel_axes_give_the_formulas_of_a_textbook() -> None:
+    texts = [[cell.text() for cell in row] for row in found("planar", Convention.STANDARD).pose]
+    assert texts[0] == [
+        "cos(theta1 + theta2)",
+        "-sin(theta1 + theta2)",
+        "0",
+        "a1*cos(theta1) + a2*cos(theta1 + theta2)",
+    ]
+
+
+def test_what_is_unread_or_too_long_is_left_out() -> None:
+    half = table_formulas([["a1", "0", "", "q1"]], Convention.STANDARD, free_scope("R"))
+    assert [cell and cell.text() for cell in half.cells[0]] == ["a1", "0", None, "theta1"]
+    assert not half.converted
+    assert not half.pose
+    rows = [[f"a{i}", f"alpha{i}", f"d{i}", f"q{i}"] for i in range(1, 11)]
+    long = table_formulas(rows, Convention.STANDARD, free_scope("R" * 10))
+    assert len(long.converted) == 11
+    assert not long.pose
