@@ -85,6 +85,7 @@ clients: $(dev) ## lint the OpenAPI document and use clients that are generated 
 
 wheel: $(dev) ## install the built wheel with pip and pipx on every Python that is there (network)
 	$(python) -m tests.installed
+	$(python) -m pytest -m campaign tests/installed
 
 slips: $(dev) ## spoil the poses of all robots by each single slip of the table: is it named?
 	$(python) -m tests.pose_slips --show

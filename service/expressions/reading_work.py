@@ -21,12 +21,14 @@ _EXTRA: Final = {r"\frac": 9, r"\dfrac": 9, r"\tfrac": 9, r"\sqrt": 5, "√": 5,
 # A function of degrees becomes two operations. A name of one or two letters is all of a factor.
 _OF_DEGREES: Final = re.compile(r"(?:sin|cos|tan)d")
 _SHORT_NAME: Final = re.compile(r"(?<![A-Za-z\\])[A-Za-z]{1,2}(?![A-Za-z0-9_])")
+# Each becomes a leaf of the tree; ``numpy`` before a function is one name, however long.
+_NAME_OR_NUMBER: Final = re.compile(r"(?<![A-Za-z\\])[A-Za-z]+|[0-9][0-9.]*")
 # ½ is a quotient in brackets.
 _FRACTION: Final = re.compile("[¼-¾⅐-⅞↉]")
 _EXTRA_OF_FRACTION: Final = 3
 # c12 is the cosine of a sum.
 _SHORTHAND: Final = re.compile(r"(?<![A-Za-z\\])[cs]\d{2}")
-_EXTRA_OF_DEGREES, _EXTRA_OF_SHORT_NAME, _EXTRA_OF_SHORTHAND = 10, 4, 2
+_EXTRA_OF_DEGREES, _EXTRA_OF_SHORT_NAME, _EXTRA_OF_SHORTHAND = 10, 4, 3
 # Shorter texts are not worth the second look: the largest answers have 300 of them.
 _WORTH_IT: Final = 40
 
@@ -52,7 +54,8 @@ def _weigh(text: str) -> int:
     if len(text) <= _WORTH_IT:
         return found
     for symbol, times in Counter(_SYMBOL.findall(text)).items():
-        found += times * (1 if symbol[0].isalnum() else _EXTRA.get(symbol, 0))
+        found += times * _EXTRA.get(symbol, 0)
+    found += len(_NAME_OR_NUMBER.findall(text))
     found += _EXTRA_OF_DEGREES * len(_OF_DEGREES.findall(text))
     found += _EXTRA_OF_SHORTHAND * len(_SHORTHAND.findall(text))
     if not text.isascii():

@@ -108,7 +108,7 @@ def test_an_interrupt_ends_it_at_once_and_leaves_nothing(
         _, stderr = process.communicate(timeout=ANSWER)
     finally:
         process.kill()
-    assert process.returncode == 128 + number
+    assert process.returncode == 128 + number, stderr
     assert b"Traceback" not in stderr
     assert [file.name for file in tmp_path.iterdir()] == ["out.csv"]
     assert output.read_text(encoding="utf-8") == "from yesterday"

@@ -35,7 +35,7 @@ def test_names_numbers_and_signs_are_counted(text: str, symbols: int) -> None:
         ("√2 ", 7),
         ("sind(30)", 17),
         ("sin(q1)", 10),
-        ("c12 ", 6),
+        ("c12 ", 7),
         ("½", 10),
         (r"\cos\left(\theta_{1}\right)", 12),
     ],

@@ -19,6 +19,10 @@ SCHEMAS = ROOT / "tests" / "formats" / "schemas"
 POINTS = {"right": 16.0, "wrong": 12.894737, "unreadable": 0.0, "missing": 0.0, "hostile": 8.0}
 
 
+# A process starts for each submission, so the suite tries two of each bundle.
+ALL = pytest.param(tuple(SORTS), id="all", marks=pytest.mark.campaign)
+
+
 def bundle(programs: Path, folder: Path, platform: str, *options: str) -> Path:
     """The bundle that the installed program writes."""
     file = folder / f"{platform}.zip"
@@ -35,7 +39,10 @@ def valid(file: Path, platform: str) -> dict[str, Any]:
     return result
 
 
-def test_gradescope_gets_a_valid_result(programs: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("sorts", [("wrong", "hostile"), ALL])
+def test_gradescope_gets_a_valid_result(
+    sorts: tuple[str, ...], programs: Path, tmp_path: Path
+) -> None:
     place = tmp_path / "autograder"
     unpack(bundle(programs, tmp_path, "gradescope"), place / "source")
     # What the script would download is borrowed.
@@ -43,11 +50,11 @@ def test_gradescope_gets_a_valid_result(programs: Path, tmp_path: Path) -> None:
     checked(place / "source" / "setup.sh", cwd=tmp_path, PYTHON=os.fspath(venv / "python"))
     shutil.copy(place / "source" / "run_autograder", place)
     submission, results = place / "submission", place / "results"
-    for sort, hand_in in SORTS.items():
+    for sort in sorts:
         for folder in (submission, results):
             shutil.rmtree(folder, ignore_errors=True)
             folder.mkdir()
-        hand_in(submission)
+        SORTS[sort](submission)
         done = run(place / "run_autograder", cwd=place)
         assert done.returncode == 0, done.stderr
         result = valid(results / "results.json", "gradescope")
@@ -57,17 +64,20 @@ def test_gradescope_gets_a_valid_result(programs: Path, tmp_path: Path) -> None:
         assert_nothing_ran(place, text, done.stdout, done.stderr)
 
 
-def test_prairielearn_gets_a_valid_result(programs: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("sorts", [("unreadable", "hostile"), ALL])
+def test_prairielearn_gets_a_valid_result(
+    sorts: tuple[str, ...], programs: Path, tmp_path: Path
+) -> None:
     options = ("--image", "course/grader")
     unpack(bundle(programs, tmp_path, "prairielearn", *options), tmp_path)
     check_question(tmp_path / "question", tmp_path / "image")
     # In the image the program is on the path.
     path = f"{programs}{os.pathsep}{os.environ['PATH']}"
-    for sort, hand_in in SORTS.items():
+    for sort in sorts:
         grade = tmp_path / sort / "grade"
         shutil.copytree(tmp_path / "question" / "tests", grade / "tests")
         (grade / "student").mkdir()
-        hand_in(grade / "student")
+        SORTS[sort](grade / "student")
         done = run(tmp_path / "image" / "grade-submission", grade, cwd=grade.parent, PATH=path)
         assert done.returncode == 0, done.stderr
         result = valid(grade / "results" / "results.json", "prairielearn")

@@ -64,6 +64,7 @@ def test_a_submission_gets_the_same_points_from_wheel_and_http(
         assert graded["report"][figure] == over_http[figure]
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("python", other_pythons())
 def test_every_other_python_installs_and_starts_it(
     python: str, wheel: Path, tmp_path: Path
