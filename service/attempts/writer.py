@@ -11,16 +11,14 @@ from typing import Any, Final, TypeVar
 from sqlalchemy import Connection, Engine
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
-from service.attempts.database import StoreDownError, reason
+from service.attempts.database import is_deadlock, reason
+from service.attempts.errors import StoreDownError
 
 R = TypeVar("R")
 
 # So many share a transaction at the most, and so many wait before others are turned away.
 _TOGETHER: Final = 64
 _WAITING: Final = 4096
-# What PostgreSQL says where two transactions of several attempts each wait for one another: those
-# of one attempt each do not.
-_DEADLOCK: Final = "40P01"
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +105,8 @@ class AttemptWriter:
 
 def is_lost(error: Exception) -> bool:
     """Whether the database itself failed, so that another try at once would fail as well."""
-    if getattr(getattr(error, "orig", None), "sqlstate", None) == _DEADLOCK:
+    # Two transactions of several attempts each may wait for one another; those of one each do not.
+    if is_deadlock(error):
         return False
     return isinstance(error, SQLAlchemyError) and (
         not isinstance(error, DBAPIError)

@@ -5,7 +5,9 @@ from itertools import count
 import pytest
 from sqlalchemy import event
 
-from service.attempts.reading import AttemptFilter, BadCursorError, ListedAttempt, history, page
+from service.attempts.attempt import AttemptFilter, ListedAttempt
+from service.attempts.errors import BadCursorError
+from service.attempts.reading import history, page
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
 from tests.attempts.recorded import LAZY, NO_TWIST, NOON, RIGHT, recorded
