@@ -1,3 +1,4 @@
+import multiprocessing
 import shutil
 from collections.abc import Iterator
 from itertools import count
@@ -19,6 +20,14 @@ def server() -> Iterator[Any]:
     with postgresql_server() as running:
         open_database(new_database(running, TEMPLATE)).dispose()
         yield running
+
+
+@pytest.fixture(scope="session")
+def killable() -> Any:
+    """Makes processes that begin at once; one of its own imports what they need, for all."""
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["service.attempts.regrading", "service.attempts.store"])
+    return context.Process
 
 
 @pytest.fixture(scope="session")

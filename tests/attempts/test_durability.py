@@ -1,5 +1,6 @@
 """An acknowledged attempt survives the death of the process that took it, and is recorded once."""
 
+import asyncio
 import os
 import random
 import signal
@@ -7,17 +8,25 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Sequence
-from contextlib import ExitStack
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack, suppress
+from dataclasses import replace
+from itertools import count
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
 from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
 from sqlalchemy import select
 
 from service.attempts.database import open_database
+from service.attempts.store import AttemptStore
 from service.attempts.tables import attempts
+from service.catalogue import Exercise
 from tests.api.serving import ROOT, announced_port
+from tests.attempts.recorded import RIGHT, new_attempt
 from tests.guards import ANSWER
 
 CLIENTS = 4
@@ -65,8 +74,11 @@ class Acknowledged:
                 (self.ids[key],) = told
 
 
-def killed_at_random(url: str, folder: Path, seed: int, replicas: int) -> None:
-    """Kill one replica and then the others; all that was acknowledged must be there, once."""
+def killed_at_random(url: str, folder: Path, seed: int, replicas: int, most: float) -> None:
+    """Kill one replica and then the others; all that was acknowledged must be there, once.
+
+    Each lives up to ``most`` seconds after the first answers, or after the death of another.
+    """
     dice = random.Random(seed)
     environment = os.environ | {"NO_COLOR": "1", "DH_GRADER_DATABASE": url}
     command = [sys.executable, "-m", "service", "serve", "--port", "0"]
@@ -87,29 +99,67 @@ def killed_at_random(url: str, folder: Path, seed: int, replicas: int) -> None:
             seen = len(clients.ids)
             while len(clients.ids) == seen and process.poll() is None:
                 time.sleep(0.01)
-            time.sleep(dice.uniform(0.1, 0.8))
+            time.sleep(dice.uniform(0.1, most))
             process.send_signal(signal.SIGKILL)
         clients.join()
+    assert_recorded_once(url, clients.ids)
+
+
+def assert_recorded_once(url: str, acknowledged: Mapping[str, str]) -> None:
+    """The database has all of these keys with these ids, and few besides."""
     engine = open_database(url)
     with engine.connect() as connection:
         rows = connection.execute(select(attempts.c.idempotency_key, attempts.c.id)).all()
     engine.dispose()
     recorded = {row.idempotency_key: row.id for row in rows}
-    assert clients.ids
-    assert {key: recorded.get(key) for key in clients.ids} == clients.ids
+    assert acknowledged
+    assert {key: recorded.get(key) for key in acknowledged} == acknowledged
     assert len(rows) == len(recorded)
     # At most the request that each client had under way was recorded without being acknowledged.
-    assert len(recorded) - len(clients.ids) <= CLIENTS
+    assert len(recorded) - len(acknowledged) <= CLIENTS
 
 
-def test_what_was_acknowledged_is_in_the_file_once(sqlite_url: str, tmp_path: Path) -> None:
-    killed_at_random(sqlite_url, tmp_path, 1, 1)
+def _record(url: str, exercise: Exercise, told: Connection) -> None:
+    """Records attempts by several at once, and tells of each that is acknowledged, for ever."""
+    new, outcome = new_attempt(exercise, "ada", RIGHT, None)
+    store = AttemptStore.open(url)
+    store.start()
+
+    async def client(number: int) -> None:
+        for i in count():
+            written = await store.record(replace(new, idempotency_key=f"{number}.{i}"), outcome)
+            assert written is not None
+            told.send((written.idempotency_key, written.id))
+
+    async def clients() -> None:
+        await asyncio.gather(*map(client, range(CLIENTS)))
+
+    asyncio.run(clients())
+
+
+def test_what_was_acknowledged_is_in_the_file_once(
+    sqlite_url: str, catalogue: Mapping[str, Exercise], killable: Any
+) -> None:
+    told, telling = Pipe(duplex=False)
+    process = killable(target=_record, args=(sqlite_url, catalogue["scara"], telling))
+    process.start()
+    telling.close()
+    acknowledged: dict[str, str] = {}
+    # The end may come in the midst of a message.
+    with suppress(EOFError, OSError):
+        while True:
+            key, attempt = told.recv()
+            acknowledged[key] = attempt
+            if len(acknowledged) == 150:
+                process.kill()
+    process.join()
+    assert_recorded_once(sqlite_url, acknowledged)
 
 
 def test_what_one_of_two_replicas_acknowledged_is_there_once(
     postgresql_url: str, tmp_path: Path
 ) -> None:
-    killed_at_random(postgresql_url, tmp_path, 1, 2)
+    killed_at_random(postgresql_url, tmp_path, 1, 2, 0.2)
 
 
 @pytest.mark.campaign
@@ -120,4 +170,4 @@ def test_what_one_of_two_replicas_acknowledged_is_there_once(
 def test_every_one_of_many_runs(
     request: pytest.FixtureRequest, tmp_path: Path, kind: str, replicas: int, seed: int
 ) -> None:
-    killed_at_random(request.getfixturevalue(f"{kind}_url"), tmp_path, seed, replicas)
+    killed_at_random(request.getfixturevalue(f"{kind}_url"), tmp_path, seed, replicas, 0.8)

@@ -4,6 +4,7 @@ import asyncio
 import sqlite3
 import time
 from collections.abc import Mapping
+from typing import Any
 
 import pytest
 from sqlalchemy import event
@@ -11,7 +12,6 @@ from sqlalchemy import event
 from service.attempts.errors import StoreDownError
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
-from tests.attempts.databases import new_database, postgresql_server
 from tests.attempts.recorded import RIGHT, new_attempt
 
 
@@ -65,16 +65,18 @@ def test_a_full_disk_is_told_and_costs_nothing_that_was_recorded(
     store.close()
 
 
-def test_a_server_that_is_started_again_is_used_again(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_server_that_is_started_again_is_used_again(
+    postgresql_url: str, server: Any, catalogue: Mapping[str, Exercise]
+) -> None:
     scara = catalogue["scara"]
-    # One of its own: others use that of the session.
-    with postgresql_server() as server:
-        store = AttemptStore.open(new_database(server, "attempts"))
-        store.start()
-        assert record(store, scara, 1)
-        server.stop()
+    store = AttemptStore.open(postgresql_url)
+    store.start()
+    assert record(store, scara, 1)
+    server.stop()
+    try:
         with pytest.raises(StoreDownError):
             record(store, scara, 2)
+    finally:
         server.start()
-        assert record(store, scara, 2)
-        store.close()
+    assert record(store, scara, 2)
+    store.close()
