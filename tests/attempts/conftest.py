@@ -26,7 +26,9 @@ def server() -> Iterator[Any]:
 def killable() -> Any:
     """Makes processes that begin at once; one of its own imports what they need, for all."""
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["service.attempts.regrading", "service.attempts.store"])
+    context.set_forkserver_preload(
+        ["service.attempts.regrading", "service.attempts.store", "service.server.start"]
+    )
     return context.Process
 
 

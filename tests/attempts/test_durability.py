@@ -3,29 +3,30 @@
 import asyncio
 import os
 import random
-import signal
-import subprocess
-import sys
+import re
 import threading
 import time
 from collections.abc import Mapping, Sequence
-from contextlib import ExitStack, suppress
+from contextlib import suppress
 from dataclasses import replace
 from itertools import count
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
+from pydantic import SecretStr
 from sqlalchemy import select
 
 from service.attempts.database import open_database
 from service.attempts.store import AttemptStore
 from service.attempts.tables import attempts
 from service.catalogue import Exercise
-from tests.api.serving import ROOT, announced_port
+from service.server.start import serve
+from service.settings import Settings
 from tests.attempts.recorded import RIGHT, new_attempt
 from tests.guards import ANSWER
 
@@ -74,34 +75,46 @@ class Acknowledged:
                 (self.ids[key],) = told
 
 
-def killed_at_random(url: str, folder: Path, seed: int, replicas: int, most: float) -> None:
+def _serve(url: str, log: Path) -> None:
+    """What ``dh-grader serve`` does, with its log in a file."""
+    output = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+    os.dup2(output, 1)
+    os.dup2(output, 2)
+    serve(Settings(port=0, database=SecretStr(url)))
+
+
+def _port(process: BaseProcess, log: Path) -> int:
+    """Where the server listens, as soon as it says so."""
+    while True:
+        alive = process.is_alive()
+        text = log.read_text(encoding="utf-8") if log.exists() else ""
+        if found := re.search(r"running on http://127\.0\.0\.1:(\d+)", text):
+            return int(found[1])
+        assert alive, text
+        time.sleep(0.02)
+
+
+def killed_at_random(
+    url: str, folder: Path, killable: Any, replicas: int, seed: int, most: float
+) -> None:
     """Kill one replica and then the others; all that was acknowledged must be there, once.
 
     Each lives up to ``most`` seconds after the first answers, or after the death of another.
     """
     dice = random.Random(seed)
-    environment = os.environ | {"NO_COLOR": "1", "DH_GRADER_DATABASE": url}
-    command = [sys.executable, "-m", "service", "serve", "--port", "0"]
     logs = [folder / f"log{i}" for i in range(replicas)]
-    with ExitStack() as stack:
-        processes = []
-        for log in logs:
-            output = stack.enter_context(log.open("wb"))
-            process = subprocess.Popen(
-                command, cwd=ROOT, stdout=output, stderr=output, env=environment
-            )
-            stack.enter_context(process)
-            stack.callback(process.kill)
-            processes.append(process)
-        clients = Acknowledged(list(map(announced_port, processes, logs)))
-        clients.start()
-        for process in processes:
-            seen = len(clients.ids)
-            while len(clients.ids) == seen and process.poll() is None:
-                time.sleep(0.01)
-            time.sleep(dice.uniform(0.1, most))
-            process.send_signal(signal.SIGKILL)
-        clients.join()
+    processes = [killable(target=_serve, args=(url, log), daemon=True) for log in logs]
+    for process in processes:
+        process.start()
+    clients = Acknowledged(list(map(_port, processes, logs)))
+    clients.start()
+    for process in processes:
+        seen = len(clients.ids)
+        while len(clients.ids) == seen and process.is_alive():
+            time.sleep(0.01)
+        time.sleep(dice.uniform(0.1, most))
+        process.kill()
+    clients.join()
     assert_recorded_once(url, clients.ids)
 
 
@@ -157,9 +170,9 @@ def test_what_was_acknowledged_is_in_the_file_once(
 
 
 def test_what_one_of_two_replicas_acknowledged_is_there_once(
-    postgresql_url: str, tmp_path: Path
+    postgresql_url: str, tmp_path: Path, killable: Any
 ) -> None:
-    killed_at_random(postgresql_url, tmp_path, 1, 2, 0.2)
+    killed_at_random(postgresql_url, tmp_path, killable, 2, 1, 0.2)
 
 
 @pytest.mark.campaign
@@ -168,6 +181,12 @@ def test_what_one_of_two_replicas_acknowledged_is_there_once(
     ("kind", "replicas"), [("sqlite", 1), ("sqlite", 2), ("postgresql", 1), ("postgresql", 2)]
 )
 def test_every_one_of_many_runs(
-    request: pytest.FixtureRequest, tmp_path: Path, kind: str, replicas: int, seed: int
+    request: pytest.FixtureRequest,
+    tmp_path: Path,
+    killable: Any,
+    kind: str,
+    replicas: int,
+    seed: int,
 ) -> None:
-    killed_at_random(request.getfixturevalue(f"{kind}_url"), tmp_path, seed, replicas, 0.8)
+    url = request.getfixturevalue(f"{kind}_url")
+    killed_at_random(url, tmp_path, killable, replicas, seed, 0.8)
