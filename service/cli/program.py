@@ -17,6 +17,7 @@ COMMANDS: Final = {
     "assignments": "Several exercises that are set together.",
     "grade": "Grade submissions: JSON, TOML, or the pasted answer to one part (csv, md, tex, m, "
     "py, …).",
+    "attempts": "Recorded attempts: read, export, regrade, forget.",
     "bundle": "Write the zip file that a grading platform takes.",
 }
 
