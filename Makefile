@@ -24,22 +24,25 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test browser screenshots coverage lint format bench fuzz attack worst campaign policies prints slips clients wheel image lock clean
+.PHONY: help install run test thorough browser screenshots coverage lint format bench fuzz attack worst campaign policies prints slips durability attempts clients wheel image lock clean
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
 
 install: $(dev) ## create .venv with everything for work on the project
 
 run: $(runtime) ## start the service on http://127.0.0.1:8000 (HOST=, PORT=)
 	$(python) -m service serve --host "$(HOST)" --port "$(PORT)"
 
-# Each core has a worker; one that has finished takes over tests of another.
+# A worker that has finished takes over tests of another.
 pytest := $(python) -m pytest -n auto --dist worksteal
 
 test: lint ## lint, type-check and test on every core
 	-@$(python) -m tests.browser.chromium
 	$(pytest)
+
+thorough: $(dev) ## the same tests, and all of which the suite has a sample (half an hour)
+	$(pytest) -m "campaign or not campaign" --ignore tests/installed
 
 browser: $(dev) ## say which Chromium the browser tests use; fetch one from npm where there is none
 	$(python) -m tests.browser.chromium
@@ -89,6 +92,13 @@ wheel: $(dev) ## install the built wheel with pip and pipx on every Python that 
 
 slips: $(dev) ## spoil the poses of all robots by each single slip of the table: is it named?
 	$(python) -m tests.pose_slips --show
+
+durability: $(dev) ## kill the service while it records attempts, 20 times on each database
+	$(python) -m pytest -m campaign tests/attempts/test_durability.py
+
+attempts: $(dev) ## measure a store of COUNT= attempts; regrade as many by four processes, two being killed
+	$(python) -m tests.attempts.campaign --count "$(COUNT)"
+	$(python) -m tests.attempts.shared_regrade --count "$(COUNT)"
 
 prints: $(dev) ## hand in the model solution of every exercise as each program prints it
 	$(python) -m tests.solutions.prints

@@ -39,6 +39,16 @@ class Settings(BaseSettings):
         description="Whether a change to an exercise file counts without a restart. A file that is "
         "broken by it keeps its last good version, and the log says what is wrong.",
     )
+    database: SecretStr | None = Field(
+        None,
+        description="Where attempts are recorded: the path of an SQLite file, or the URL of a "
+        "PostgreSQL database (postgresql://user:password@host/name). Without it nothing is.",
+    )
+    read_attempts: bool | None = Field(
+        None,
+        description="Whether recorded attempts and their statistics are shown to whoever can reach "
+        "the service; by default to whoever asks from this machine itself, without a proxy.",
+    )
     solutions: bool | None = Field(
         None,
         description="Whether model solutions and the tutor's pages are shown, to whoever can reach "

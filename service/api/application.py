@@ -3,13 +3,24 @@
 import gc
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fastapi import APIRouter, FastAPI
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp
 
-from service.api import exercises, figures, frames, grading, health, preview, problems, reference
+from service.api import (
+    attempts,
+    exercises,
+    figures,
+    frames,
+    grading,
+    health,
+    preview,
+    problems,
+    recorded,
+    reference,
+)
 from service.api import solutions as model_solutions
 from service.api.boundary import BoundaryMiddleware
 from service.api.compression import PackedGets
@@ -20,12 +31,14 @@ from service.catalogue import FeedbackLevel
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.version import VERSION
 
+if TYPE_CHECKING:  # it loads the drivers of databases
+    from service.attempts.store import AttemptStore
+
 # What stands around an application.
 Layer = Callable[[ASGIApp], ASGIApp]
 
 
-@asynccontextmanager
-async def _freeze_gc(_: FastAPI) -> AsyncIterator[None]:
+def _freeze_gc() -> None:
     """Exempt the program's own objects from the garbage collector's rounds.
 
     A body of many small lists sets off full rounds; over the program itself, too, they took twice
@@ -33,15 +46,17 @@ async def _freeze_gc(_: FastAPI) -> AsyncIterator[None]:
     """
     gc.collect()
     gc.freeze()
-    yield
 
 
 class _Api(FastAPI):
     """FastAPI with its outermost layers outside the framework's own error pages and limit."""
 
-    def __init__(self, cors_origins: tuple[str, ...], turns: Layer | None) -> None:
+    def __init__(
+        self, cors_origins: tuple[str, ...], turns: Layer | None, store: "AttemptStore | None"
+    ) -> None:
         self._cors_origins = cors_origins
         self._turns = turns
+        self._store = store
         super().__init__(
             **HEADING,
             version=VERSION,
@@ -49,8 +64,17 @@ class _Api(FastAPI):
             redoc_url=None,
             redirect_slashes=False,
             max_body_size=MAX_BODY_SIZE,
-            lifespan=_freeze_gc,
+            lifespan=self._lifespan,
         )
+
+    @asynccontextmanager
+    async def _lifespan(self, _: FastAPI) -> AsyncIterator[None]:
+        if self._store is not None:
+            self._store.start()
+        _freeze_gc()
+        yield
+        if self._store is not None:
+            self._store.close()
 
     def build_middleware_stack(self) -> ASGIApp:
         """The framework's layers, packed answers, the turns between clients, the boundary.
@@ -66,7 +90,7 @@ class _Api(FastAPI):
                 app,
                 allow_origins=self._cors_origins,
                 allow_methods=["GET", "POST"],
-                allow_headers=["Content-Type"],
+                allow_headers=["Content-Type", "Idempotency-Key"],
                 expose_headers=["Retry-After"],
             )
         return app
@@ -85,6 +109,8 @@ def application(
     solutions: bool | None = False,
     feedback: FeedbackLevel = FeedbackLevel.FULL,
     turns: Layer | None = None,
+    store: "AttemptStore | None" = None,
+    read_attempts: bool | None = False,
     pages: APIRouter | None = None,
 ) -> FastAPI:
     """The HTTP service for these exercises; pages of ``cors_origins`` may call it.
@@ -92,17 +118,21 @@ def application(
     With ``solutions`` it shows the model solutions to whoever asks; None means whoever asks from
     this machine. Reports tell no more than
     ``feedback``, nor than their exercise allows. ``turns`` decides who comes next, ``pages`` are
-    the web pages of the service itself.
+    the web pages of the service itself. Attempts are recorded in ``store``; without one none are.
+    With ``read_attempts`` they are shown to whoever asks; None means whoever asks from this
+    machine.
     """
-    app = _Api(cors_origins, turns)
+    app = _Api(cors_origins, turns, store)
     problems.install(app)
     for router in (
         exercises.routes(catalogue, feedback),
         grading.routes(catalogue, feedback),
+        attempts.routes(catalogue, feedback, store),
+        recorded.routes(catalogue, store, tutor_right(read_attempts)),
         preview.routes(catalogue),
         figures.routes(catalogue),
         frames.routes(catalogue),
-        health.routes(catalogue),
+        health.routes(catalogue, store),
         model_solutions.routes(catalogue, tutor_right(solutions)),
     ):
         app.include_router(router, responses=other_failures())

@@ -19,13 +19,19 @@ EXAMPLES = Path(__file__).parent / "examples"
 
 _REFUSALS = {
     HTTPStatus.BAD_REQUEST: "The body is not JSON.",
-    HTTPStatus.FORBIDDEN: "Model solutions are not shown here.",
+    HTTPStatus.FORBIDDEN: "It is not allowed: the detail says why.",
     HTTPStatus.NOT_FOUND: "There is no such exercise.",
     HTTPStatus.REQUEST_ENTITY_TOO_LARGE: "The body is larger than 256 KiB.",
     HTTPStatus.UNSUPPORTED_MEDIA_TYPE: "The body is not JSON and does not claim to be.",
     HTTPStatus.UNPROCESSABLE_ENTITY: "The body has not the right shape, or names an unknown part.",
+    HTTPStatus.SERVICE_UNAVAILABLE: "The database cannot be reached; nothing was recorded.",
 }
-_REFUSED_BODIES = _REFUSALS.keys() - {HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND}
+_REFUSED_BODIES: Final = (
+    HTTPStatus.BAD_REQUEST,
+    HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
+    HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
+    HTTPStatus.UNPROCESSABLE_ENTITY,
+)
 
 # How the document is headed, as options of FastAPI.
 HEADING: Final[Mapping[str, Any]] = {
@@ -51,6 +57,7 @@ message of a code that your program does not know. A field that says nothing is 
             "description": "The catalogue, and all that a student sees of an exercise before "
             "answering. Never an answer.",
         },
+        {"name": "attempts", "description": "Attempts that are recorded, where a database is set."},
         {
             "name": "drawing",
             "description": "Numbers to draw with, so that no page needs a kinematics of its own.",
@@ -74,7 +81,13 @@ def example(name: str) -> Any:
 _REF_TEMPLATE: Final = "#/components/schemas/{model}"
 
 
-def posting(body: type[BaseModel], model: type, name: str, *further: HTTPStatus) -> dict[str, Any]:
+def posting(
+    body: type[BaseModel],
+    model: type,
+    name: str,
+    *further: HTTPStatus,
+    success: HTTPStatus = HTTPStatus.OK,
+) -> dict[str, Any]:
     """Body and responses of a route that reads its body by ``body_as``, as options of the route.
 
     ``name`` begins the names of its two examples; ``further`` are refusals beside those of a body.
@@ -82,14 +95,17 @@ def posting(body: type[BaseModel], model: type, name: str, *further: HTTPStatus)
     schema = body.model_json_schema(ref_template=_REF_TEMPLATE)
     content = {"schema": schema, "example": example(f"{name}-request")}
     request = {"required": True, "content": {"application/json": content}}
-    responses = answers(model, f"{name}-response", *sorted([*_REFUSED_BODIES, *further]))
+    refused = sorted([*_REFUSED_BODIES, *further])
+    responses = answers(model, f"{name}-response", *refused, success=success)
     return {"openapi_extra": {"requestBody": request}, "responses": responses}
 
 
-def answers(model: type, name: str, *statuses: HTTPStatus) -> dict[int | str, dict[str, Any]]:
-    """The OpenAPI response 200 with its schema and example, and those for the refusals."""
-    success = {"model": model, "content": {"application/json": {"example": example(name)}}}
-    return {200: success, **refusals(*statuses)}
+def answers(
+    model: type, name: str, *statuses: HTTPStatus, success: HTTPStatus = HTTPStatus.OK
+) -> dict[int | str, dict[str, Any]]:
+    """The OpenAPI response of success with its schema and example, and those for the refusals."""
+    answer = {"model": model, "content": {"application/json": {"example": example(name)}}}
+    return {int(success): answer, **refusals(*statuses)}
 
 
 def refusals(*statuses: HTTPStatus) -> dict[int | str, dict[str, Any]]:

@@ -60,6 +60,17 @@ def too_large() -> ProblemError:
     )
 
 
+def store_down(detail: str) -> ProblemError:
+    """The database of the attempts cannot be reached; grading goes on without it."""
+    return ProblemError(
+        HTTPStatus.SERVICE_UNAVAILABLE,
+        detail,
+        "store-down",
+        "The database cannot be reached now",
+        headers={"Retry-After": "5"},
+    )
+
+
 def failed() -> ProblemError:
     """A failure of the program itself."""
     return ProblemError(

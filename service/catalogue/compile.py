@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from service.catalogue.exercise import Exercise
+from service.catalogue.feedback_level import FeedbackLevel
 from service.catalogue.fields import Four
 from service.catalogue.formulas import (
     EXACT,
@@ -40,9 +41,8 @@ DEFAULT_RANGES: dict[Kind, tuple[float, float]] = {
     "length": (0.2, 1.0),
     "number": (0.5, 2.0),
 }
-
-
-_NOT_GRADED = {"checks", "feedback", "view"}
+# The fields of a file that change no grading.
+_NOT_GRADING = {"checks", "feedback", "attempts", "view"}
 
 
 def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
@@ -71,7 +71,8 @@ def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
         parts=tuple(spec.parts),
         length_scale=_length_scale(variables, reference),
         checks=tuple(spec.checks),
-        feedback=spec.feedback,
+        feedback_by_attempt=_levels(spec.feedback),
+        attempts=spec.attempts,
         view=spec.view,
     )
 
@@ -120,14 +121,19 @@ def _length_scale(variables: tuple[Variable, ...], reference: Reference | None) 
     return float(max(lengths, default=1.0))
 
 
+def _levels(feedback: FeedbackLevel | list[FeedbackLevel]) -> tuple[FeedbackLevel, ...]:
+    return tuple(feedback) if isinstance(feedback, list) else (feedback,)
+
+
 def _version(spec: ExerciseSpec) -> str:
     """A digest of the file's content; comments, layout and checks do not change it.
 
-    Nor do ``feedback`` and ``view``: they change what is told and shown, not the grading.
+    Nor do ``feedback``, ``attempts`` and ``view``: they change when there is a grading and what is
+    told and shown of it, not the grading.
     What the file leaves to the default is left out, so that a new field of the schema does not
     give every exercise a new version.
     """
-    written = spec.model_dump(mode="json", exclude_defaults=True, exclude=_NOT_GRADED)
+    written = spec.model_dump(mode="json", exclude_defaults=True, exclude=_NOT_GRADING)
     content = json.dumps(written, sort_keys=True)
     return hashlib.blake2b(content.encode(), digest_size=6).hexdigest()
 

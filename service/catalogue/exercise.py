@@ -2,7 +2,9 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Final
 
+from service.catalogue.attempts import AttemptsSpec
 from service.catalogue.feedback_level import FeedbackLevel
 from service.catalogue.formulas import FormulaField, FormulaGrid, fields_of
 from service.catalogue.part import PartSpec
@@ -12,13 +14,16 @@ from service.catalogue.screw_robot import Reference
 from service.catalogue.variables import Variable
 from service.expressions import Vocabulary
 
+_ANY_TIME: Final = AttemptsSpec()
+
 
 @dataclass(frozen=True, slots=True)
 class Exercise:
     """One exercise of the catalogue.
 
-    ``version`` changes with anything in its file but its checks, its ``view`` and ``feedback``, the
-    most that a student is told.
+    ``version`` changes with anything in its file that changes a grading: not with its checks and
+    its ``view``, nor with ``feedback_by_attempt``, the most that a student is told at each attempt
+    (at later ones as at the last of them), nor with the rules for ``attempts``.
     ``reference`` is the robot, None where there is none; ``formulas`` holds the answers that the
     file gives, by the part's id. ``length_scale`` is the longest length, the scale of small
     differences. ``view`` is where the author has its figure seen from.
@@ -36,8 +41,18 @@ class Exercise:
     parts: tuple[PartSpec, ...]
     length_scale: float
     checks: tuple[CheckSpec, ...] = ()
-    feedback: FeedbackLevel = FeedbackLevel.HINTS
+    feedback_by_attempt: tuple[FeedbackLevel, ...] = (FeedbackLevel.HINTS,)
+    attempts: AttemptsSpec = _ANY_TIME
     view: ViewSpec | None = None
+
+    @property
+    def feedback(self) -> FeedbackLevel:
+        """The most that a student is told at the first attempt, and where none is recorded."""
+        return self.feedback_by_attempt[0]
+
+    def feedback_at(self, ordinal: int) -> FeedbackLevel:
+        """The most that a student is told at this attempt, counted from 1."""
+        return self.feedback_by_attempt[min(ordinal, len(self.feedback_by_attempt)) - 1]
 
     @property
     def robot(self) -> Robot:

@@ -12,6 +12,7 @@ from pydantic import (
     model_validator,
 )
 
+from service.catalogue.attempts import AttemptsSpec
 from service.catalogue.feedback_level import FeedbackLevel
 from service.catalogue.fields import Formula, Four, Homogeneous, Screw, StrictModel, Text, advice
 from service.catalogue.parts import SPECS, AnyPartSpec
@@ -179,10 +180,16 @@ class ExerciseSpec(StrictModel):
     """The reference robot; without one every part holds its answer."""
     symbols: dict[Text, SymbolSpec] = Field({})
     """The letters that may stand in an answer, by their names."""
-    feedback: FeedbackLevel = FeedbackLevel.HINTS
+    feedback: FeedbackLevel | Annotated[list[FeedbackLevel], Field(min_length=1)] = (
+        FeedbackLevel.HINTS
+    )
     """The most that a student is told: "full" (hints and corrections), "hints" (what to look at,
     never the value), "verdicts" (right and wrong, and what could not be read) or "score" (bare
-    marks, and what could not be read)."""
+    marks, and what could not be read). Where attempts are recorded it may be a list, one level for
+    each attempt, the last one for all later ones; whoever grades without recording gets the
+    first."""
+    attempts: AttemptsSpec = AttemptsSpec()
+    """How often and until when recorded attempts are taken: a table ``[attempts]``."""
     view: ViewSpec | None = None
     """Where the figure of the robot is seen from."""
     parts: Annotated[list[AnyPartSpec], Field(min_length=1)]

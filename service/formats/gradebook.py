@@ -12,11 +12,9 @@ from service.formats.shared.part_results import PartResult, part_results
 from service.formats.shared.plain_text import points
 from service.formats.shared.report_format import ReportFormat, Setting
 
-_HEAD: Final = ("Identifier", "Grade", "Maximum Grade", "Feedback comments")
-
 
 def _pieces(submissions: Iterable[GradedSubmission], _: Setting) -> Iterator[bytes]:
-    yield spreadsheet.line(_HEAD)
+    yield spreadsheet.line(spreadsheet.GRADEBOOK_HEAD)
     for submission in submissions:
         yield spreadsheet.line(_cells(submission))
 

@@ -20,10 +20,10 @@ class Share:
     correct: int = 0
     answered: int = 0
 
-    def add(self, verdict: Verdict) -> None:
-        """Count an answer; a missing one is none."""
-        self.answered += verdict is not Verdict.MISSING
-        self.correct += verdict is Verdict.CORRECT
+    def add(self, verdict: Verdict, times: int = 1) -> None:
+        """Count an answer, or as many with the same verdict; a missing one is none."""
+        self.answered += times * (verdict is not Verdict.MISSING)
+        self.correct += times * (verdict is Verdict.CORRECT)
 
     @property
     def value(self) -> float | None:

@@ -118,7 +118,7 @@ def test_the_least_of_what_is_asked_and_allowed_is_told(
     exercise: str, service: str, asked: str | None, told: str,
     catalogue: Mapping[str, Exercise], client_of: Callable[[FastAPI], httpx.Client],
 ) -> None:  # fmt: skip
-    allowed = replace(catalogue["planar-rrr"], feedback=FeedbackLevel(exercise))
+    allowed = replace(catalogue["planar-rrr"], feedback_by_attempt=(FeedbackLevel(exercise),))
     app = application({"planar-rrr": allowed}, feedback=FeedbackLevel(service))
     with client_of(app) as client:
         ceiling = client.get("/v1/exercises/planar-rrr").json()["feedback"]

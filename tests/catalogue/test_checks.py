@@ -93,7 +93,7 @@ def test_checks_do_not_change_the_version(tmp_path: Path) -> None:
     assert load_exercise(write(tmp_path, VALID + CHECK)).version == before
 
 
-KEYS = "title, source, statement, robot, symbols, feedback, view, parts, checks"
+KEYS = "title, source, statement, robot, symbols, feedback, attempts, view, parts, checks"
 # What is changed, and the whole of what is said after the file's name; * stands for anything.
 SAID: dict[tuple[str, str], list[str]] = {
     ("source =", "sauce ="): [

@@ -16,6 +16,7 @@ from typing import Any, Final
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from service.catalogue.attempts import AttemptsSpec
 from service.catalogue.part import PartSpec, PosePartSpec
 from service.catalogue.parts import SPECS
 from service.catalogue.refusals import table_in
@@ -52,6 +53,9 @@ _EXAMPLES: Final = {
     "PartSpec.id": '"table"',
     "PosePartSpec.start": "2",
     "PosePartSpec.to": "3",
+    "AttemptsSpec.limit": "3",
+    "AttemptsSpec.due": "2026-12-18T23:59:59+01:00",
+    "AttemptsSpec.closes": "2026-12-20T23:59:59+01:00",
     "ExpectSpec.points": "5.5",
     "ExpectSpec.codes": '["sign"]',
     "ExpectSpec.follow_through": "true",
@@ -98,6 +102,7 @@ def page() -> str:
         _section("## `[robot]` with a table", RobotSpec),
         _section("## `[robot]` with screw axes", ScrewRobotSpec),
         _section("## `[symbols]`", SymbolSpec),
+        _section("## `[attempts]`", AttemptsSpec),
         _section("## `[view]`", ViewSpec),
         _section("## `[[parts]]`", PartSpec, _PARTS),
         _section(f"### {', '.join(f'`{kind}`' for kind in poses)}", PosePartSpec, _POSES),
@@ -170,7 +175,8 @@ def _markdown(text: str) -> str:
 
 
 def _default(value: object) -> str:
-    return "none" if value is None or value in ([], {}) else f"`{_toml(value)}`"
+    is_empty = value is None or value in ([], {}) or isinstance(value, BaseModel)
+    return "none" if is_empty else f"`{_toml(value)}`"
 
 
 _SIMPLE: Final = {
@@ -194,6 +200,8 @@ def _type(schema: Schema, defs: Mapping[str, Schema], ending: str = "") -> str:
             names = [_type(form, defs, ending) for form in forms if form != _NULL]
             # A formula may be given as a number.
             return _either(names).replace(f"text{ending} or number{ending}", f"formula{ending}")
+        case {"format": "date-time"}:
+            return f"date{ending} and time{ending} with a time zone"
         case {"type": "array", "prefixItems": [first, *more]}:
             return f"list{ending} of {len(more) + 1} {_type(first, defs, 's')}"
         case {"type": "array", "items": entry}:

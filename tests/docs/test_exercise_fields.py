@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from service.catalogue.attempts import AttemptsSpec
 from service.catalogue.part import PartSpec
 from service.catalogue.parts import SPECS
 from service.catalogue.schema import (
@@ -21,6 +22,7 @@ from tests.docs.exercise_fields import page
 FILE = Path(__file__).parents[2] / "docs" / "exercise-fields.md"
 MODELS = (
     ExerciseSpec,
+    AttemptsSpec,
     RobotSpec,
     ScrewRobotSpec,
     SymbolSpec,

@@ -10,6 +10,9 @@ from service.formats.shared.plain_text import visible
 # A cell that begins so is run as a formula by one spreadsheet or another (OWASP, "CSV Injection").
 _FORMULA_SIGNS: Final = ("=", "+", "-", "@", "＝", "＋", "－", "＠")
 
+# The headings of a list of grades, as Moodle names them.
+GRADEBOOK_HEAD: Final = ("Identifier", "Grade", "Maximum Grade", "Feedback comments")
+
 
 def line(cells: Iterable[str | float | None]) -> bytes:
     """One line. Texts are visible ones, those that look like formulas behind an apostrophe."""

@@ -1,0 +1,182 @@
+"""The route that records attempts."""
+
+import hashlib
+import json
+from datetime import UTC, datetime
+from http import HTTPStatus
+from typing import TYPE_CHECKING, Annotated, Final
+
+from fastapi import APIRouter, Header, Request, Response
+
+from service.api.bodies import body_as
+from service.api.lookup import Catalogue, ExerciseId, exercise_or_404, require_parts
+from service.api.openapi import posting
+from service.api.problems import ProblemError, store_down
+from service.attempts.attempt import NewAttempt, RecordedAttempt
+from service.attempts.errors import StoreDownError
+from service.attempts.graded import graded_attempt
+from service.attempts.policy import AttemptRefusedError, Ruling, ruling
+from service.catalogue import Exercise, FeedbackLevel, least
+from service.contract.attempts import Attempt, AttemptRequest, AttemptResponse
+from service.formats.json import rendered
+from service.grading import Report
+
+if TYPE_CHECKING:  # it loads the drivers of databases
+    from service.attempts.store import AttemptStore
+
+# So often an attempt is graded anew because another of the same learner came first.
+_TRIES: Final = 5
+
+IdempotencyKey = Annotated[
+    str | None,
+    Header(
+        alias="Idempotency-Key",
+        min_length=1,
+        max_length=255,
+        description="A text of your own for this attempt. A request that is sent again with the "
+        "same key is answered like the first, and nothing is recorded twice.",
+    ),
+]
+
+
+def routes(
+    catalogue: Catalogue, feedback: FeedbackLevel, store: "AttemptStore | None"
+) -> APIRouter:
+    """The routes that record; no report tells more than ``feedback``."""
+    router = APIRouter(prefix="/v1", tags=["attempts"])
+
+    @router.post(
+        "/exercises/{exercise_id}/attempts",
+        operation_id="recordAttempt",
+        summary="Grade a submission and record it",
+        response_description="The attempt and its report. It is recorded durably.",
+        status_code=HTTPStatus.CREATED,
+        **posting(
+            AttemptRequest,
+            AttemptResponse,
+            "attempt",
+            HTTPStatus.FORBIDDEN,
+            HTTPStatus.NOT_FOUND,
+            HTTPStatus.SERVICE_UNAVAILABLE,
+            success=HTTPStatus.CREATED,
+        ),
+    )
+    async def record_attempt(
+        exercise_id: ExerciseId, request: Request, idempotency_key: IdempotencyKey = None
+    ) -> Response:
+        """Grade answers and record them with their report, once for each idempotency key.
+
+        Attempts are counted and limited as the exercise says; one in which nothing could be read
+        does not count. What is answered with 201 is not lost, whatever happens to the service.
+        """
+        if store is None:
+            raise not_recorded()
+        exercise = exercise_or_404(catalogue, exercise_id)
+        body = await body_as(AttemptRequest, request)
+        require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
+        attempting = _Attempting(exercise, body, feedback, store, "", idempotency_key)
+        try:
+            recorded = await attempting.recorded()
+        except StoreDownError as error:
+            detail = "The attempt was not recorded. Send it again, with the same Idempotency-Key."
+            raise store_down(detail) from error
+        except AttemptRefusedError as error:
+            raise ProblemError(
+                HTTPStatus.FORBIDDEN, str(error), error.name, "The attempt is not taken"
+            ) from error
+        return Response(_answer(recorded), HTTPStatus.CREATED, media_type="application/json")
+
+    return router
+
+
+def not_recorded() -> ProblemError:
+    """The service has no database."""
+    return ProblemError(
+        HTTPStatus.NOT_FOUND,
+        "No attempts are recorded here: the service has no database.",
+        "attempts-not-recorded",
+        "Attempts are not recorded here",
+    )
+
+
+class _Attempting:
+    """One request for an attempt, graded and recorded."""
+
+    def __init__(
+        self,
+        exercise: Exercise,
+        body: AttemptRequest,
+        ceiling: FeedbackLevel,
+        store: "AttemptStore",
+        owner: str,
+        idempotency_key: str | None,
+    ) -> None:
+        self._exercise = exercise
+        self._body = body
+        self._ceiling = ceiling
+        self._store = store
+        self._owner = owner
+        self._key = idempotency_key
+        content = {"exercise": exercise.id, **body.model_dump(mode="json", exclude_unset=True)}
+        self._request_digest = _digest(content)
+
+    async def recorded(self) -> RecordedAttempt:
+        """The attempt of this request. Raises StoreDownError, AttemptRefusedError, ProblemError."""
+        for _ in range(_TRIES):
+            standing = await self._store.standing(
+                self._exercise.id, self._body.learner, self._owner, self._key
+            )
+            if standing.earlier is not None:
+                return self._same(standing.earlier)
+            now = datetime.now(UTC)
+            taken = ruling(self._exercise.attempts, standing.counted, now)
+            most = least(self._exercise.feedback_at(taken.ordinal), self._ceiling)
+            report, outcome = graded_attempt(self._exercise, self._body, most)
+            new = self._new(taken, now, report)
+            written = await self._store.record(new, outcome)
+            if written is not None:
+                return written
+        raise StoreDownError("other attempts of the same learner came first each time")
+
+    def _same(self, earlier: RecordedAttempt) -> RecordedAttempt:
+        if earlier.request_digest != self._request_digest:
+            raise ProblemError(
+                HTTPStatus.UNPROCESSABLE_ENTITY,
+                "Another attempt was recorded under this Idempotency-Key. Take a new key for each "
+                "attempt.",
+                "idempotency-key-reused",
+                "The idempotency key belongs to another attempt",
+            )
+        return earlier
+
+    def _new(self, taken: Ruling, now: datetime, report: Report) -> NewAttempt:
+        body = self._body.model_dump(mode="json", exclude={"learner"}, exclude_unset=True)
+        return NewAttempt(
+            exercise=self._exercise.id,
+            learner=self._body.learner,
+            ordinal=taken.ordinal if report.gradable else None,
+            at=now,
+            is_late=taken.is_late,
+            worth=taken.worth,
+            submission=json.dumps(body),
+            answers_digest=_digest(self._body.answers),
+            report=rendered(report).decode(),
+            version=report.version,
+            grader=report.grader,
+            points=round(report.points * taken.worth, 6),
+            max_points=report.max_points,
+            owner=self._owner,
+            idempotency_key=self._key,
+            request_digest=self._request_digest,
+        )
+
+
+def _answer(recorded: RecordedAttempt) -> bytes:
+    """The attempt and its report as JSON; the report as it was written, byte by byte."""
+    attempt = Attempt.model_validate(recorded, from_attributes=True)
+    told = attempt.model_dump_json(exclude_none=True)
+    return f'{{"attempt":{told},"report":{recorded.report}}}'.encode()
+
+
+def _digest(content: object) -> str:
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

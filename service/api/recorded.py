@@ -1,0 +1,191 @@
+"""The routes by which tutors read what is recorded."""
+
+import json
+from collections.abc import Awaitable, Callable
+from datetime import UTC, datetime
+from http import HTTPStatus
+from typing import TYPE_CHECKING, Annotated, Any, Final, TypeVar
+
+from fastapi import APIRouter, Path, Query, Request, Response
+from pydantic import AfterValidator, AwareDatetime, BaseModel, StringConstraints
+
+from service.api.attempts import not_recorded
+from service.api.lookup import Catalogue, ExerciseId, exercise_or_404
+from service.api.openapi import refusals
+from service.api.problems import ProblemError, invalid, store_down
+from service.api.tutor import TutorRight
+from service.attempts.attempt import MOST_ON_A_PAGE, AttemptFilter
+from service.attempts.errors import BadCursorError, StoreDownError
+from service.contract.attempts import (
+    AttemptDetail,
+    AttemptList,
+    AttemptOverride,
+    AttemptSummary,
+    Learner,
+)
+from service.contract.statistics import ExerciseStatistics
+
+if TYPE_CHECKING:  # they load the drivers of databases
+    from sqlalchemy import Row
+
+    from service.attempts.reading import AttemptHistory
+    from service.attempts.store import AttemptStore
+
+R = TypeVar("R")
+
+
+def _in_utc(moment: datetime) -> datetime:
+    try:
+        return moment.astimezone(UTC)
+    except OverflowError as error:
+        raise ValueError("is no moment of the calendar in UTC") from error
+
+
+Moment = Annotated[AwareDatetime, AfterValidator(_in_utc)]
+Since = Annotated[
+    Moment | None,
+    Query(description="The first moment, with its time zone: 2026-10-01T08:00:00Z."),
+]
+Until = Annotated[Moment | None, Query(description="The moment before which all are.")]
+Name = Annotated[str, StringConstraints(max_length=100, pattern=r"^[^\x00-\x1f\x7f]+$")]
+
+_REFUSED: Final = refusals(
+    HTTPStatus.FORBIDDEN,
+    HTTPStatus.NOT_FOUND,
+    HTTPStatus.UNPROCESSABLE_ENTITY,
+    HTTPStatus.SERVICE_UNAVAILABLE,
+)
+
+
+def routes(catalogue: Catalogue, store: "AttemptStore | None", is_tutor: TutorRight) -> APIRouter:
+    """The routes that read what is recorded, for those with a tutor's right."""
+    router = APIRouter(prefix="/v1", tags=["attempts"])
+
+    async def read(request: Request, ask: Callable[["AttemptStore"], Awaitable[R]]) -> R:
+        _require_right(request, is_tutor)
+        if store is None:
+            raise not_recorded()
+        try:
+            return await ask(store)
+        except StoreDownError as error:
+            raise store_down("The database does not answer; nothing could be read.") from error
+
+    @router.get(
+        "/attempts",
+        operation_id="listAttempts",
+        summary="List recorded attempts",
+        response_model=AttemptList,
+        response_description="A page of attempts.",
+        responses=_REFUSED,
+    )
+    async def list_attempts(
+        request: Request,
+        exercise: Annotated[Name | None, Query(description="The id of an exercise.")] = None,
+        learner: Annotated[Learner | None, Query(description="Whose attempts.")] = None,
+        since: Since = None,
+        until: Until = None,
+        counted: Annotated[
+            bool | None, Query(description="Only those that count, or that do not.")
+        ] = None,
+        cursor: Annotated[
+            str | None, Query(max_length=40, description="The `next` of the page before.")
+        ] = None,
+        limit: Annotated[
+            int, Query(ge=1, le=MOST_ON_A_PAGE, description="The most on a page.")
+        ] = 50,
+    ) -> Response:
+        """List recorded attempts for tutors, the newest first, without answers and reports."""
+        wanted = AttemptFilter(exercise, learner, since, until, counted)
+        try:
+            shown, following = await read(request, lambda store: store.page(wanted, cursor, limit))
+        except BadCursorError as error:
+            detail = {"type": "cursor", "loc": ("cursor",), "msg": "This is no cursor of a page."}
+            raise invalid([detail]) from error
+        attempts = [AttemptSummary.model_validate(each, from_attributes=True) for each in shown]
+        return _sent(AttemptList(attempts=attempts, next=following))
+
+    @router.get(
+        "/attempts/{attempt_id}",
+        operation_id="getAttempt",
+        summary="Show a recorded attempt",
+        response_model=AttemptDetail,
+        response_description="The attempt with its answers and reports.",
+        responses=_REFUSED,
+    )
+    async def show_attempt(
+        request: Request, attempt_id: Annotated[str, Path(description="The id of an attempt.")]
+    ) -> Response:
+        """Show a recorded attempt for tutors: answers, report, earlier reports and overrides."""
+        found = await read(request, lambda store: store.history(attempt_id))
+        if found is None:
+            raise ProblemError(
+                HTTPStatus.NOT_FOUND,
+                "No attempt with this id is recorded here.",
+                "unknown-attempt",
+                "There is no such attempt",
+            )
+        return _json(json.dumps(_detail(found)).encode())
+
+    @router.get(
+        "/exercises/{exercise_id}/statistics",
+        operation_id="getStatistics",
+        summary="Show the statistics of an exercise",
+        response_model=ExerciseStatistics,
+        response_description="The recorded attempts in counts.",
+        responses=_REFUSED,
+    )
+    async def show_statistics(
+        request: Request, exercise_id: ExerciseId, since: Since = None, until: Until = None
+    ) -> Response:
+        """Count recorded attempts for tutors: who is right where, which mistakes are common."""
+        exercise = exercise_or_404(catalogue, exercise_id)
+        wanted = AttemptFilter(exercise=exercise.id, since=since, until=until)
+        figures = await read(request, lambda store: store.statistics(wanted))
+        return _sent(figures)
+
+    return router
+
+
+def _require_right(request: Request, is_tutor: TutorRight) -> None:
+    if not is_tutor(request):
+        raise ProblemError(
+            HTTPStatus.FORBIDDEN,
+            "Recorded attempts are for tutors, and this service does not show them. Ask from the "
+            "machine itself, use dh-grader attempts there, or have them shown to whoever can reach "
+            "the service: DH_GRADER_READ_ATTEMPTS=true.",
+            "attempts-not-shown",
+            "Recorded attempts are not shown here",
+        )
+
+
+def _sent(model: BaseModel) -> Response:
+    return _json(model.model_dump_json(exclude_none=True).encode())
+
+
+def _json(content: bytes) -> Response:
+    return Response(content, HTTPStatus.OK, {"Cache-Control": "no-store"}, "application/json")
+
+
+def _detail(found: "AttemptHistory") -> dict[str, Any]:
+    attempt = AttemptSummary.model_validate(found.attempt, from_attributes=True)
+    return {
+        "attempt": attempt.model_dump(mode="json", exclude_none=True),
+        "submission": json.loads(found.submission),
+        "report": json.loads(found.report),
+        "overrides": [
+            AttemptOverride.model_validate(row, from_attributes=True).model_dump(
+                mode="json", exclude_none=True
+            )
+            for row in found.overrides
+        ],
+        "earlier_reports": [_earlier(row) for row in found.earlier],
+    }
+
+
+def _earlier(row: "Row[Any]") -> dict[str, Any]:
+    named = ("version", "grader", "points", "max_points")
+    return {
+        "replaced_at": row.replaced_at.isoformat(),
+        **{name: getattr(row, name) for name in named},
+        "report": json.loads(row.report),
+    }

@@ -1,0 +1,136 @@
+"""The database of the attempts: opened by its URL, brought to the newest tables, kept durable."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Final, TypeVar
+
+from alembic import command
+from alembic.config import Config
+from alembic.util import CommandError
+from sqlalchemy import Connection, Engine, create_engine, event, make_url, text
+from sqlalchemy.exc import ArgumentError, SQLAlchemyError
+
+from service.attempts.errors import UnusableDatabaseError
+
+R = TypeVar("R")
+
+_MIGRATIONS: Final = Path(__file__).parent / "migrations"
+# So long a statement waits for another process that is writing (seconds).
+_LOCK_WAIT: Final = 5.0
+# Only one of several processes that start together changes the tables of a PostgreSQL database.
+_MIGRATION_LOCK: Final = 0x6468_6772
+# PostgreSQL, appendix A, "deadlock_detected"; so often a transaction is tried then.
+_TRIES: Final = 5
+_DEADLOCK: Final = "40P01"
+
+
+def open_database(url: str) -> Engine:
+    """The database at the URL, with the newest tables.
+
+    ``url`` is that of SQLAlchemy (postgresql://…, sqlite:///…) or the path of an SQLite file.
+    Raises UnusableDatabaseError.
+    """
+    engine = _engine(url)
+    try:
+        with engine.connect() as connection:
+            _migrate(connection)
+    except SQLAlchemyError as error:
+        raise UnusableDatabaseError(f"{safe_url(engine)}: {reason(error)}") from error
+    except CommandError as error:
+        newer = "its tables are those of a newer version of the program"
+        raise UnusableDatabaseError(f"{safe_url(engine)}: {newer}") from error
+    return engine
+
+
+def _engine(url: str) -> Engine:
+    try:
+        parsed = make_url(url if "://" in url else f"sqlite:///{url}")
+    except ArgumentError as error:
+        # The URL may hold a password: it is not repeated.
+        raise UnusableDatabaseError("is no URL of a database and no path of a file") from error
+    match parsed.get_backend_name():
+        case "sqlite":
+            engine = create_engine(parsed, connect_args={"timeout": _LOCK_WAIT})
+            event.listen(engine, "connect", _set_up_sqlite)
+            event.listen(engine, "begin", _begin_sqlite)
+            return engine
+        case "postgresql":
+            # The server gives up the locks of a client whose machine is gone after a minute.
+            options = (
+                f"-c lock_timeout={_LOCK_WAIT:.0f}s -c statement_timeout=60s "
+                "-c tcp_keepalives_idle=30 -c tcp_keepalives_interval=10 -c tcp_keepalives_count=3"
+            )
+            return create_engine(
+                parsed.set(drivername="postgresql+psycopg"),
+                pool_pre_ping=True,
+                connect_args={"connect_timeout": 3, "options": options},
+            )
+        case other:
+            raise UnusableDatabaseError(f"{other} is not supported; use SQLite or PostgreSQL")
+
+
+def _set_up_sqlite(connection: Any, _: object) -> None:
+    # Transactions begin where SQLAlchemy says so (below) and not where Python's driver guesses.
+    connection.isolation_level = None
+    cursor = connection.cursor()
+    for setting in ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON"):
+        cursor.execute(f"PRAGMA {setting}")
+    cursor.close()
+
+
+def _begin_sqlite(connection: Connection) -> None:
+    # A transaction that reads first and then writes would fail at once beside another writer.
+    writes = connection.get_execution_options().get("writes", False)
+    connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
+
+
+def _migrate(connection: Connection) -> None:
+    """Bring the tables to the newest form; an empty database gets them all."""
+    connection = connection.execution_options(writes=True)
+    with connection.begin():
+        without_time_limit(connection)
+        if connection.dialect.name == "postgresql":
+            lock = text("SELECT pg_advisory_xact_lock(:key)")
+            connection.execute(lock, {"key": _MIGRATION_LOCK})
+        config = Config()
+        config.set_main_option("script_location", str(_MIGRATIONS).replace("%", "%%"))
+        config.attributes["connection"] = connection
+        command.upgrade(config, "head")
+
+
+def without_time_limit(connection: Connection) -> None:
+    """Let this transaction take as long as it needs: it is at every row of a large table."""
+    if connection.dialect.name == "postgresql":
+        for limit in ("lock_timeout", "statement_timeout"):
+            connection.exec_driver_sql(f"SET LOCAL {limit} = 0")
+
+
+def in_transaction(engine: Engine, work: Callable[[Connection], R]) -> R:
+    """The result of ``work``, committed; it is done anew where others were in its way."""
+    tries = 0
+    while True:
+        try:
+            with engine.connect() as connection:
+                connection = connection.execution_options(writes=True)
+                with connection.begin():
+                    return work(connection)
+        except SQLAlchemyError as error:
+            tries += 1
+            if tries == _TRIES or not is_deadlock(error):
+                raise
+
+
+def is_deadlock(error: Exception) -> bool:
+    """Whether PostgreSQL ended this transaction for another, so that it should be tried again."""
+    return getattr(getattr(error, "orig", None), "sqlstate", None) == _DEADLOCK
+
+
+def safe_url(engine: Engine) -> str:
+    """The URL without its password."""
+    return engine.url.render_as_string(hide_password=True)
+
+
+def reason(error: SQLAlchemyError) -> str:
+    """What the database's driver says, in one line."""
+    said = str(getattr(error, "orig", None) or error)
+    return " ".join(said.split())[:300]

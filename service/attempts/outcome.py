@@ -1,0 +1,45 @@
+"""The outcome of a report: verdicts and codes by their places, without what was written."""
+
+import hashlib
+import json
+from dataclasses import dataclass
+from functools import cached_property
+
+from service.grading import Report
+from service.grading.report import PartReport
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Verdicts and codes of one report.
+
+    ``content`` is JSON: for each part its verdict, the verdicts of its cells by "row/cell", and the
+    codes of all its messages, once each.
+    """
+
+    exercise: str
+    content: str
+
+    @cached_property
+    def digest(self) -> str:
+        """What equal outcomes have in common."""
+        return hashlib.sha256(self.content.encode()).hexdigest()
+
+
+def outcome_of(report: Report) -> Outcome:
+    """The outcome of a report that has its rows (feedback level above ``score``)."""
+    content = {part.part: _part(part) for part in report.parts}
+    return Outcome(report.exercise, json.dumps(content, separators=(",", ":")))
+
+
+def _part(part: PartReport) -> dict[str, object]:
+    cells = {
+        f"{row.label}/{cell.label}": str(cell.verdict) for row in part.rows for cell in row.cells
+    }
+    messages = [
+        *part.feedback,
+        *(message for row in part.rows for message in row.feedback),
+        *(message for row in part.rows for cell in row.cells for message in cell.feedback),
+    ]
+    codes = sorted({message.code for message in messages if message.severity != "info"})
+    return {"verdict": str(part.verdict), "cells": cells, "codes": codes}

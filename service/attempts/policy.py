@@ -1,0 +1,49 @@
+"""Whether an attempt is taken now, as which of its learner, and for which share of its points."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from service.catalogue.attempts import AttemptsSpec
+
+
+class AttemptRefusedError(Exception):
+    """No attempt is taken; the text says why, in words for the learner, ``name`` for programs."""
+
+    def __init__(self, name: str, message: str) -> None:
+        self.name = name
+        super().__init__(message)
+
+
+@dataclass(frozen=True, slots=True)
+class Ruling:
+    """An attempt that is taken: ``ordinal`` counts the learner's attempts from 1.
+
+    ``worth`` is the share of its points that it earns.
+    """
+
+    ordinal: int
+    is_late: bool
+    worth: float
+
+
+def ruling(rules: AttemptsSpec, counted: int, now: datetime) -> Ruling:
+    """The ruling on a learner's next attempt, who has ``counted`` already.
+
+    Raises AttemptRefusedError.
+    """
+    if rules.opens is not None and now < rules.opens:
+        raise AttemptRefusedError("not-open", f"This exercise opens on {_told(rules.opens)}.")
+    is_late = rules.due is not None and now > rules.due
+    end = rules.closes or rules.due
+    if end is not None and now > end:
+        raise AttemptRefusedError("closed", f"This exercise was closed on {_told(end)}.")
+    if rules.limit is not None and counted >= rules.limit:
+        attempts = "attempt is" if rules.limit == 1 else f"{rules.limit} attempts are"
+        raise AttemptRefusedError(
+            "no-attempts-left", f"No attempt is left: the {attempts} used up."
+        )
+    return Ruling(counted + 1, is_late, rules.late_worth if is_late else 1.0)
+
+
+def _told(moment: datetime) -> str:
+    return moment.strftime("%Y-%m-%d at %H:%M %Z").rstrip()

@@ -1,0 +1,84 @@
+"""Recording an attempt: exactly once, and under the next number of its learner."""
+
+import secrets
+from collections.abc import Iterable
+from typing import Any, Final
+
+from sqlalchemy import Connection, Table, bindparam, func, select
+from sqlalchemy.dialects import postgresql, sqlite
+
+from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
+from service.attempts.outcome import Outcome
+from service.attempts.tables import attempts, outcomes
+
+# The statements are built once: that takes longer than they do.
+_WRITTEN: Final = tuple(NewAttempt.__dataclass_fields__)
+_EARLIER: Final = select(
+    *(attempts.c[name] for name in RecordedAttempt.__dataclass_fields__)
+).where(
+    attempts.c.owner == bindparam("owner"),
+    attempts.c.idempotency_key == bindparam("idempotency_key"),
+)
+_COUNTED: Final = select(func.max(attempts.c.ordinal)).where(
+    attempts.c.exercise == bindparam("exercise"), attempts.c.learner == bindparam("learner")
+)
+_OUTCOME: Final = select(outcomes.c.id).where(
+    outcomes.c.exercise == bindparam("exercise"), outcomes.c.digest == bindparam("digest")
+)
+
+
+def insert_or_ignore(table: Table) -> dict[str, postgresql.Insert | sqlite.Insert]:
+    """INSERT that leaves out what another row stands in the way of, by the kind of the database."""
+    return {
+        "postgresql": postgresql.insert(table).on_conflict_do_nothing(),
+        "sqlite": sqlite.insert(table).on_conflict_do_nothing(),
+    }
+
+
+_NEW_OUTCOME: Final = insert_or_ignore(outcomes)
+_NEW_ATTEMPT: Final = {
+    kind: statement.returning(attempts.c.number)
+    for kind, statement in insert_or_ignore(attempts).items()
+}
+
+
+def standing(
+    connection: Connection, exercise: str, learner: str, owner: str, idempotency_key: str | None
+) -> Standing:
+    """How a learner stands at an exercise, and what a request with this key has recorded."""
+    earlier = None
+    if idempotency_key is not None:
+        which = {"owner": owner, "idempotency_key": idempotency_key}
+        found = connection.execute(_EARLIER, which).one_or_none()
+        earlier = RecordedAttempt(**found._mapping) if found else None
+    counted = connection.scalar(_COUNTED, {"exercise": exercise, "learner": learner})
+    return Standing(counted or 0, earlier)
+
+
+def record(connection: Connection, new: NewAttempt, outcome: Outcome) -> RecordedAttempt | None:
+    """Write the attempt; None where another took its ordinal or its key in the meantime."""
+    values: dict[str, Any] = {name: getattr(new, name) for name in _WRITTEN}
+    values["id"] = secrets.token_hex(16)
+    number = connection.scalar(
+        _NEW_ATTEMPT[connection.dialect.name],
+        values | {"outcome": _outcome_id(connection, outcome)},
+    )
+    return None if number is None else RecordedAttempt(**values, number=number)
+
+
+def outcome_ids(connection: Connection, wanted: Iterable[Outcome]) -> dict[Outcome, int]:
+    """The rows of outcomes, written where they are new."""
+    # Always in one order: two workers that wait for each other's outcomes would wait for ever.
+    ordered = sorted(set(wanted), key=lambda each: (each.exercise, each.digest))
+    return {each: _outcome_id(connection, each) for each in ordered}
+
+
+def _outcome_id(connection: Connection, outcome: Outcome) -> int:
+    key = {"exercise": outcome.exercise, "digest": outcome.digest}
+    found = connection.scalar(_OUTCOME, key)
+    if found is None:
+        new = key | {"content": outcome.content}
+        connection.execute(_NEW_OUTCOME[connection.dialect.name], new)
+        found = connection.scalar(_OUTCOME, key)
+    assert found is not None
+    return int(found)

@@ -1,0 +1,117 @@
+"""The store of attempts: what a route of the service asks of it."""
+
+import asyncio
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Final, TypeVar
+
+from sqlalchemy import Connection, Engine, text
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.attempts.attempt import (
+    AttemptFilter,
+    ListedAttempt,
+    NewAttempt,
+    RecordedAttempt,
+    Standing,
+)
+from service.attempts.database import open_database, reason
+from service.attempts.errors import StoreDownError
+from service.attempts.outcome import Outcome
+from service.attempts.reading import AttemptHistory, history, page
+from service.attempts.recording import record, standing
+from service.attempts.statistics import exercise_statistics
+from service.attempts.writer import AttemptWriter
+from service.contract.statistics import ExerciseStatistics
+
+R = TypeVar("R")
+
+_ALIVE: Final = text("SELECT 1")
+# So many tutors read at once; others wait.
+_READERS: Final = 2
+
+
+class AttemptStore:
+    """The recorded attempts of one database.
+
+    Every method raises StoreDownError where the database fails; what it was to write is then not
+    written.
+    """
+
+    def __init__(self, engine: Engine) -> None:
+        self.engine = engine
+        self._writer: AttemptWriter | None = None
+        self._readers: ThreadPoolExecutor | None = None
+
+    @classmethod
+    def open(cls, url: str) -> "AttemptStore":
+        """The store at a URL or in an SQLite file. Raises UnusableDatabaseError."""
+        engine = open_database(url)
+        # No connection may be carried into processes that are started later.
+        engine.dispose()
+        return cls(engine)
+
+    def start(self) -> None:
+        """Begin to take attempts, in the process that serves."""
+        self._writer = AttemptWriter(self.engine)
+        self._readers = ThreadPoolExecutor(_READERS, "attempts-read")
+
+    def close(self) -> None:
+        """Write what waits, and end."""
+        if self._writer is not None:
+            self._writer.close()
+            self._writer = None
+        if self._readers is not None:
+            self._readers.shutdown()
+            self._readers = None
+        self.engine.dispose()
+
+    async def standing(
+        self, exercise: str, learner: str, owner: str, idempotency_key: str | None
+    ) -> Standing:
+        """How a learner stands at an exercise, and what a request with this key has recorded."""
+        return await self._running.run(
+            lambda connection: standing(connection, exercise, learner, owner, idempotency_key)
+        )
+
+    async def record(self, new: NewAttempt, outcome: Outcome) -> RecordedAttempt | None:
+        """Write the attempt, durably; None where another took its ordinal or its key."""
+        return await self._running.run(lambda connection: record(connection, new, outcome))
+
+    async def check(self) -> None:
+        """Make sure that the database answers."""
+        await self._running.run(lambda connection: connection.execute(_ALIVE))
+
+    async def page(
+        self, wanted: AttemptFilter, cursor: str | None, most: int
+    ) -> tuple[list[ListedAttempt], str | None]:
+        """At most ``most`` attempts, the newest first, and the cursor of the next page if any.
+
+        Raises BadCursorError.
+        """
+        return await self._read(lambda connection: page(connection, wanted, cursor, most))
+
+    async def history(self, attempt_id: str) -> AttemptHistory | None:
+        """An attempt with its answers, reports and overrides; None where there is none."""
+        return await self._read(lambda connection: history(connection, attempt_id))
+
+    async def statistics(self, wanted: AttemptFilter) -> ExerciseStatistics:
+        """The statistics of the attempts at ``wanted.exercise`` in a span of time."""
+        return await self._read(lambda connection: exercise_statistics(connection, wanted))
+
+    async def _read(self, work: Callable[[Connection], R]) -> R:
+        """The result of ``work``, which writes nothing; beside the attempts that are recorded."""
+        assert self._readers is not None, "the store has not been started"
+        return await asyncio.get_running_loop().run_in_executor(self._readers, self._read_by, work)
+
+    def _read_by(self, work: Callable[[Connection], R]) -> R:
+        try:
+            with self.engine.connect() as connection:
+                return work(connection)
+        except SQLAlchemyError as error:
+            raise StoreDownError(reason(error)) from error
+
+    @property
+    def _running(self) -> AttemptWriter:
+        assert self._writer is not None, "the store has not been started"
+        return self._writer

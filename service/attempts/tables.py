@@ -1,0 +1,142 @@
+"""The tables of the database, as the newest migration leaves them."""
+
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import (
+    BigInteger,
+    Boolean,
+    Column,
+    DateTime,
+    Dialect,
+    Float,
+    ForeignKey,
+    Index,
+    Integer,
+    MetaData,
+    String,
+    Table,
+    Text,
+    UniqueConstraint,
+    text,
+)
+from sqlalchemy.types import TypeDecorator
+
+
+class UtcTime(TypeDecorator[datetime]):
+    """A moment in UTC, also where the database keeps no time zones (SQLite)."""
+
+    impl = DateTime(timezone=True)
+    cache_ok = True
+
+    def process_bind_param(self, value: datetime | None, _: Dialect) -> datetime | None:
+        """Turn to UTC; a moment without its zone is refused."""
+        if value is None:
+            return None
+        if value.tzinfo is None:
+            raise ValueError("a moment needs its time zone")
+        return value.astimezone(UTC)
+
+    def process_result_value(self, value: datetime | None, _: Dialect) -> datetime | None:
+        """Name the zone where the database left it out."""
+        return value.replace(tzinfo=UTC) if value is not None and value.tzinfo is None else value
+
+
+# In SQLite only a plain INTEGER counts on by itself.
+RowNumber = BigInteger().with_variant(Integer, "sqlite")
+
+metadata = MetaData(
+    naming_convention={
+        "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+        "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+        "fk": "fk_%(table_name)s_%(column_0_N_name)s",
+        "pk": "pk_%(table_name)s",
+    }
+)
+
+# Verdicts and codes of a report without what is written in it. Many attempts share one, so that
+# the statistics of a class count a few thousand outcomes and not every cell of every attempt.
+outcomes = Table(
+    "outcomes",
+    metadata,
+    Column("id", RowNumber, primary_key=True),
+    Column("exercise", String(100), nullable=False),
+    Column("digest", String(64), nullable=False),
+    Column("content", Text, nullable=False),
+    UniqueConstraint("exercise", "digest"),
+)
+
+# Attempts in which nothing could be read: few among many that count.
+_UNCOUNTED: Any = dict.fromkeys(("sqlite_where", "postgresql_where"), text("ordinal IS NULL"))
+
+# ``number`` is the order of arrival, ``ordinal`` the learner's own count of counted attempts at the
+# exercise: its uniqueness keeps two requests at once from both being the last one allowed.
+# ``awarded`` are the points of a tutor instead of the report's. The indexes hold all that lists are
+# filtered and statistics counted by: the rows themselves, with their reports, are far larger.
+attempts = Table(
+    "attempts",
+    metadata,
+    Column("number", RowNumber, primary_key=True),
+    Column("id", String(32), nullable=False, unique=True),
+    Column("exercise", String(100), nullable=False),
+    Column("learner", String(200), nullable=False),
+    Column("ordinal", Integer),
+    Column("at", UtcTime, nullable=False),
+    Column("is_late", Boolean, nullable=False),
+    Column("worth", Float, nullable=False),
+    Column("submission", Text, nullable=False),
+    Column("answers_digest", String(64), nullable=False),
+    Column("report", Text, nullable=False),
+    Column("version", String(64), nullable=False),
+    Column("grader", String(32), nullable=False),
+    Column("points", Float, nullable=False),
+    Column("max_points", Float, nullable=False),
+    Column("outcome", RowNumber, ForeignKey(outcomes.c.id), nullable=False),
+    Column("owner", String(32), nullable=False),
+    Column("idempotency_key", String(255)),
+    Column("request_digest", String(64), nullable=False),
+    UniqueConstraint("exercise", "learner", "ordinal"),
+    UniqueConstraint("owner", "idempotency_key"),
+    Column("awarded", Float),
+    Index("ix_attempts_uncounted", "at", "number", **_UNCOUNTED),
+    Index("ix_attempts_exercise_uncounted", "exercise", "at", "number", **_UNCOUNTED),
+    Index("ix_attempts_at", "at", "number", "ordinal"),
+    Index("ix_attempts_exercise", "exercise", "at", "number", "ordinal"),
+    Index("ix_attempts_learner", "learner", "at", "number", "ordinal"),
+    Index("ix_attempts_outcome", "exercise", "outcome", "answers_digest", "learner", "at"),
+)
+
+# Points that a tutor has awarded instead of a report's, or (NULL) withdrawn; the newest counts.
+overrides = Table(
+    "overrides",
+    metadata,
+    Column("id", RowNumber, primary_key=True),
+    Column("attempt", RowNumber, ForeignKey(attempts.c.number), nullable=False, index=True),
+    Column("points", Float),
+    Column("reason", Text, nullable=False),
+    Column("author", String(200), nullable=False),
+    Column("at", UtcTime, nullable=False),
+)
+
+# The reports that a regrade has replaced.
+earlier_reports = Table(
+    "earlier_reports",
+    metadata,
+    Column("id", RowNumber, primary_key=True),
+    Column("attempt", RowNumber, ForeignKey(attempts.c.number), nullable=False, index=True),
+    Column("replaced_at", UtcTime, nullable=False),
+    Column("report", Text, nullable=False),
+    Column("version", String(64), nullable=False),
+    Column("grader", String(32), nullable=False),
+    Column("points", Float, nullable=False),
+    Column("max_points", Float, nullable=False),
+)
+
+# The attempts that wait to be regraded; a worker holds those locked that it is at.
+regrade_queue = Table(
+    "regrade_queue",
+    metadata,
+    Column("attempt", RowNumber, ForeignKey(attempts.c.number), primary_key=True),
+    Column("exercise", String(100), nullable=False),
+    Index(None, "exercise", "attempt"),
+)

@@ -1,0 +1,141 @@
+"""One thread that writes: what waits is written together, so that many share one durable commit."""
+
+import asyncio
+import queue
+import threading
+from collections import defaultdict
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any, Final, TypeVar
+
+from sqlalchemy import Connection, Engine
+from sqlalchemy.exc import DBAPIError, SQLAlchemyError
+
+from service.attempts.database import is_deadlock, reason
+from service.attempts.errors import StoreDownError
+
+R = TypeVar("R")
+
+# So many share a transaction at the most, and so many wait before others are turned away.
+_TOGETHER: Final = 64
+_WAITING: Final = 4096
+
+
+@dataclass(frozen=True, slots=True)
+class _Job:
+    work: Callable[[Connection], Any]
+    loop: asyncio.AbstractEventLoop
+    done: "asyncio.Future[Any]"
+
+
+# A job and its result, or the failure that it is told of.
+_Settled = tuple[_Job, Any, Exception | None]
+
+
+class AttemptWriter:
+    """Runs functions on a connection, in the order in which they come; many in one transaction.
+
+    A result is given only after the commit: what it says is durable. Where the transaction of
+    several fails, each gets one of its own, so that one that cannot be written costs no other.
+    """
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
+        self._thread = threading.Thread(target=self._run, name="attempts", daemon=True)
+        self._thread.start()
+
+    async def run(self, work: Callable[[Connection], R]) -> R:
+        """The result of ``work``, committed. Raises StoreDownError where nothing was written."""
+        if self._jobs.qsize() >= _WAITING:
+            raise StoreDownError("too many attempts wait to be written")
+        loop = asyncio.get_running_loop()
+        job = _Job(work, loop, loop.create_future())
+        self._jobs.put(job)
+        result: R = await job.done
+        return result
+
+    def close(self) -> None:
+        """Write what waits, and end."""
+        self._jobs.put(None)
+        self._thread.join()
+
+    def _run(self) -> None:
+        ended = False
+        while not ended:
+            jobs, ended = self._waiting()
+            # Who has gone away needs no answer, and what nobody waits for is not begun.
+            jobs = [job for job in jobs if not job.done.cancelled()]
+            if jobs:
+                self._work_off(jobs)
+
+    def _waiting(self) -> tuple[list[_Job], bool]:
+        """The jobs that wait, at least one, and whether the end has come."""
+        jobs: list[_Job] = []
+        found = self._jobs.get()
+        while found is not None:
+            jobs.append(found)
+            if len(jobs) == _TOGETHER:
+                return jobs, False
+            try:
+                found = self._jobs.get_nowait()
+            except queue.Empty:
+                return jobs, False
+        return jobs, True
+
+    def _work_off(self, jobs: list[_Job]) -> None:
+        try:
+            results = self._together(jobs)
+        except Exception as error:  # noqa: BLE001 - each job is told of its own failure
+            if len(jobs) > 1 and not is_lost(error):
+                for job in jobs:
+                    self._work_off([job])
+                return
+            failure = _told(error)
+            _settle([(job, None, failure) for job in jobs])
+            return
+        _settle([(job, result, None) for job, result in zip(jobs, results, strict=True)])
+
+    def _together(self, jobs: list[_Job]) -> list[Any]:
+        with self._engine.connect() as connection:
+            connection = connection.execution_options(writes=True)
+            with connection.begin():
+                return [job.work(connection) for job in jobs]
+
+
+def _settle(settled: list[_Settled]) -> None:
+    """Tell those who wait, all of a loop by waking it once."""
+    by_loop: dict[asyncio.AbstractEventLoop, list[_Settled]] = defaultdict(list)
+    for each in settled:
+        by_loop[each[0].loop].append(each)
+    for loop, those in by_loop.items():
+        # Nobody waits in a loop that is closed.
+        with suppress(RuntimeError):
+            loop.call_soon_threadsafe(_tell, those)
+
+
+def _tell(settled: list[_Settled]) -> None:
+    for job, result, failure in settled:
+        if job.done.done():
+            continue
+        if failure is None:
+            job.done.set_result(result)
+        else:
+            job.done.set_exception(failure)
+
+
+def is_lost(error: Exception) -> bool:
+    """Whether the database itself failed, so that another try at once would fail as well."""
+    # Two transactions of several attempts each may wait for one another; those of one each do not.
+    if is_deadlock(error):
+        return False
+    return isinstance(error, SQLAlchemyError) and (
+        not isinstance(error, DBAPIError)
+        or error.connection_invalidated
+        or type(error).__name__ in ("OperationalError", "InternalError", "InterfaceError")
+    )
+
+
+def _told(error: Exception) -> Exception:
+    return StoreDownError(reason(error)) if isinstance(error, SQLAlchemyError) else error

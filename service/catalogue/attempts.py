@@ -1,0 +1,36 @@
+"""How often and until when an exercise may be attempted, where attempts are recorded."""
+
+from typing import Annotated, Literal
+
+from pydantic import AwareDatetime, Field, model_validator
+
+from service.catalogue.fields import StrictModel
+
+Worth = Annotated[float, Field(ge=0, le=1)]
+
+
+class AttemptsSpec(StrictModel):
+    """How often and until when an exercise may be attempted. Only recorded attempts are limited."""
+
+    limit: Annotated[int, Field(ge=1, strict=True)] | None = None
+    """The most attempts of one learner; without it as many as they like. An attempt in which
+    nothing could be read does not count."""
+    opens: AwareDatetime | None = None
+    """The moment from which attempts are taken, with its time zone: 2026-10-01T08:00:00+02:00."""
+    due: AwareDatetime | None = None
+    """The moment until which an attempt earns all its points."""
+    closes: AwareDatetime | None = None
+    """The moment until which late attempts are taken; without it none is taken after ``due``."""
+    late_worth: Worth = 0.5
+    """The share of its points that a late attempt earns."""
+    counts: Literal["best", "last"] = "best"
+    """Which of a learner's attempts counts: the one with the most points, or the last one."""
+
+    @model_validator(mode="after")
+    def _in_order(self) -> "AttemptsSpec":
+        if self.closes is not None and self.due is None:
+            raise ValueError("closes says how long late attempts are taken, so it needs due")
+        moments = [moment for moment in (self.opens, self.due, self.closes) if moment is not None]
+        if moments != sorted(moments):
+            raise ValueError("opens, due and closes must follow each other in this order")
+        return self

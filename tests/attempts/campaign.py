@@ -1,0 +1,151 @@
+"""Measure the store with many attempts: ``python -m tests.attempts.campaign [--count N]``.
+
+Prints the time of a page, of the statistics of an exercise and of a regrade. What recording costs a
+POST is a line of ``make bench``.
+"""
+
+import argparse
+import random
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from datetime import timedelta
+from functools import partial
+from pathlib import Path
+
+from rich.console import Console
+from sqlalchemy import Connection, insert
+
+from service.attempts.attempt import AttemptFilter, NewAttempt
+from service.attempts.database import in_transaction
+from service.attempts.reading import page
+from service.attempts.recording import outcome_ids
+from service.attempts.regrading import Regrading
+from service.attempts.statistics import exercise_statistics
+from service.attempts.store import AttemptStore
+from service.attempts.tables import attempts
+from service.catalogue import Exercise, FeedbackLevel, load_catalogue, shipped_folder
+from tests.attempts.recorded import NOON, new_attempt
+from tests.benchmarks.timing import floor_seconds
+
+# Entries of a class: most are right, each cell has its common slips.
+CELLS = (
+    ("a1", "a1", "0", "d1"), ("0", "0", "0", "180deg"), ("0", "0", "a1"), ("θ1", "θ1", "-θ1", "0"),
+    ("a2", "a2", "a1", "0"), ("180deg", "0", "-180deg", "90deg"), ("0", "0", "d2"), ("θ2", "-θ2"),
+    ("0", "0", "a3"), ("0", "0", "180deg"), ("d3", "d3", "-d3", "0"), ("0", "0", "θ3"),
+    ("0", "0"), ("0", "0", "180deg"), ("d4", "-d4", "0"), ("θ4", "-θ4", "q4"),
+)  # fmt: skip
+TABLES = 2000
+AT_ONCE = 10_000
+REGRADED = 10_000
+ALL_DIFFERENT = 2000
+
+show = Console(highlight=False, soft_wrap=True).print
+
+
+def table(dice: random.Random) -> str:
+    """A table with about two slips."""
+    cells = [dice.choice(each) if dice.random() < 0.25 else each[0] for each in CELLS]
+    return "\n".join(" ".join(cells[i : i + 4]) for i in range(0, 16, 4))
+
+
+def spelled(text: str, i: int) -> str:
+    """The table with its blanks doubled where ``i`` has a 1: another text of the same meaning."""
+    first, *others = text.split(" ")
+    return first + "".join(" " * (1 + (i >> k & 1)) + each for k, each in enumerate(others))
+
+
+def fill(
+    store: AttemptStore, exercise: Exercise, count: int, *, no_two_alike: bool = False
+) -> None:
+    """Record ``count`` attempts, as a class sends them or no two alike."""
+    dice = random.Random(1)
+    tables = [table(dice) for _ in range(count if no_two_alike else min(TABLES, count))]
+    if no_two_alike:
+        tables = [spelled(each, i) for i, each in enumerate(tables)]
+    graded = [new_attempt(exercise, "l", each) for each in tables]
+
+    def row(i: int, new: NewAttempt, outcome: int) -> dict[str, object]:
+        moment = NOON + timedelta(minutes=i)
+        new = replace(new, learner=f"l{i // 5}", ordinal=i % 5 + 1, at=moment)
+        values = {name: getattr(new, name) for name in new.__dataclass_fields__}
+        return values | {"id": f"{i:032x}", "outcome": outcome}
+
+    def write(connection: Connection) -> int:
+        ids = outcome_ids(connection, [outcome for _, outcome in graded])
+        for begin in range(0, count, AT_ONCE):
+            rows = []
+            for i in range(begin, min(begin + AT_ONCE, count)):
+                new, outcome = graded[i] if no_two_alike else dice.choice(graded)
+                rows.append(row(i, new, ids[outcome]))
+            connection.execute(insert(attempts), rows)
+        return len(ids)
+
+    outcomes = in_transaction(store.engine, write)
+    show(f"{count} attempts, {outcomes} outcomes, {len(set(tables))} different tables")
+
+
+def timed(what: str, work: Callable[[], object], most: float) -> None:
+    """Print the least milliseconds of five, of the clock and of the processor."""
+    clock, processor = [], []
+    for _ in range(5):
+        begun, used = time.perf_counter(), time.process_time()
+        work()
+        clock.append(time.perf_counter() - begun)
+        processor.append(time.process_time() - used)
+    show(
+        f"{what}: {min(clock) * 1e3:.1f} ms, {min(processor) * 1e3:.1f} ms of processor time "
+        f"(at most {most:g})"
+    )
+
+
+def read(store: AttemptStore) -> None:
+    """Time pages and statistics."""
+    pages = {
+        "first page": AttemptFilter(),
+        "of an exercise": AttemptFilter(exercise="scara"),
+        "of a learner": AttemptFilter(learner="l7"),
+        "oldest of the exercise": AttemptFilter(exercise="scara", until=NOON + timedelta(hours=2)),
+        "not counted (none)": AttemptFilter(exercise="scara", counted=False),
+    }
+    with store.engine.connect() as connection:
+        for name, wanted in pages.items():
+            timed(f"page, {name}", partial(page, connection, wanted, None, 100), 50)
+        timed("statistics", lambda: exercise_statistics(connection, pages["of an exercise"]), 1000)
+
+
+def regrade(store: AttemptStore, exercise: Exercise, most: int) -> None:
+    """Time the regrade of so many attempts in this process."""
+    regrading = Regrading(replace(exercise, version="corrected"), FeedbackLevel.HINTS)
+    in_transaction(store.engine, regrading.enqueue)
+    done, begun, used = 0, time.perf_counter(), time.process_time()
+    while done < most and (batch := in_transaction(store.engine, regrading.work)):
+        done += len(batch)
+    took, used = time.perf_counter() - begun, time.process_time() - used
+    took, used = 1e4 / done * took, 1e4 / done * used
+    show(f"regrade of 10,000: {took:.1f} s, {used:.1f} s of processor time (at most 60)")
+
+
+def main() -> None:
+    """Measure, and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--count", type=int, default=100_000)
+    parser.add_argument("--url", help="an empty database; by default a new file of SQLite")
+    options = parser.parse_args()
+    scara = load_catalogue(shipped_folder())["scara"]
+    show(f"floor of make bench: {floor_seconds() * 1e3:.3f} ms")
+    with tempfile.TemporaryDirectory() as folder:
+        store = AttemptStore.open(options.url or str(Path(folder) / "attempts.db"))
+        fill(store, scara, options.count)
+        read(store)
+        regrade(store, scara, REGRADED)
+        store.close()
+        store = AttemptStore.open(str(Path(folder) / "different.db"))
+        fill(store, scara, ALL_DIFFERENT, no_two_alike=True)
+        regrade(store, scara, ALL_DIFFERENT)
+        store.close()
+
+
+if __name__ == "__main__":
+    main()

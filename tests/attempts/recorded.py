@@ -1,0 +1,86 @@
+"""Attempts for the tests of what is done with them later."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+from service.attempts.attempt import NewAttempt, RecordedAttempt
+from service.attempts.graded import graded_attempt
+from service.attempts.outcome import Outcome
+from service.attempts.recording import record
+from service.attempts.store import AttemptStore
+from service.catalogue import Exercise, FeedbackLevel
+from service.contract.attempts import AttemptRequest
+from service.formats.json import rendered
+from service.grading import Report
+
+NOON = datetime(2026, 11, 22, 12, tzinfo=UTC)
+RIGHT = "a1 0 0 θ1\na2 180deg 0 θ2\n0 0 d3 0\n0 0 d4 θ4"
+NO_TWIST = "a1 0 0 θ1\na2 0 0 θ2\n0 0 d3 0\n0 0 d4 θ4"
+LAZY = "0 0 0 θ1\n0 0 0 θ2\n0 0 d3 0\n0 0 0 θ4"
+
+
+def recorded(
+    store: AttemptStore, exercise: Exercise, learner: str, table: str, *given: Any, **more: Any
+) -> RecordedAttempt:
+    """Write an attempt; see ``new_attempt``."""
+    (written,) = recorded_all(store, [new_attempt(exercise, learner, table, *given, **more)])
+    return written
+
+
+def recorded_all(
+    store: AttemptStore, new: Iterable[tuple[NewAttempt, Outcome]]
+) -> list[RecordedAttempt]:
+    """Write attempts in one commit."""
+    with store.engine.connect() as connection:
+        connection = connection.execution_options(writes=True)
+        with connection.begin():
+            written = [record(connection, *each) for each in new]
+    assert None not in written
+    return [each for each in written if each]
+
+
+_KEPT: dict[tuple[str, ...], tuple[Report, Outcome]] = {}
+
+
+def _graded(
+    exercise: Exercise, body: AttemptRequest, level: FeedbackLevel
+) -> tuple[Report, Outcome]:
+    """Graded once: these tests send the same few tables again and again."""
+    key = (exercise.id, exercise.version, body.answers["table"], level)
+    if key not in _KEPT:
+        _KEPT[key] = graded_attempt(exercise, body, level)
+    return _KEPT[key]
+
+
+def new_attempt(
+    exercise: Exercise,
+    learner: str,
+    table: str,
+    ordinal: int | None = 1,
+    hours: float = 0,
+    **more: Any,
+) -> tuple[NewAttempt, Outcome]:
+    """An attempt at the exercise, ``hours`` after noon; ``more`` replaces fields."""
+    body = AttemptRequest(learner=learner, answers={"table": table})
+    report, outcome = _graded(exercise, body, exercise.feedback_at(ordinal or 1))
+    new = NewAttempt(
+        exercise=exercise.id,
+        learner=learner,
+        ordinal=ordinal,
+        at=NOON + timedelta(hours=hours),
+        is_late=False,
+        worth=1.0,
+        submission=body.model_dump_json(exclude={"learner"}, exclude_unset=True),
+        answers_digest=str(hash(table)),
+        report=rendered(report).decode(),
+        version=report.version,
+        grader=report.grader,
+        points=report.points,
+        max_points=report.max_points,
+        owner="",
+        idempotency_key=None,
+        request_digest="",
+    )
+    return replace(new, **more), outcome

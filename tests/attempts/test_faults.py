@@ -1,0 +1,82 @@
+"""The store in trouble: locked, full or gone, it says so in time and works again afterwards."""
+
+import asyncio
+import sqlite3
+import time
+from collections.abc import Mapping
+from typing import Any
+
+import pytest
+from sqlalchemy import event
+
+from service.attempts.errors import StoreDownError
+from service.attempts.store import AttemptStore
+from service.catalogue import Exercise
+from tests.attempts.recorded import RIGHT, new_attempt
+
+
+def record(store: AttemptStore, exercise: Exercise, ordinal: int) -> bool:
+    new, outcome = new_attempt(exercise, "ada", RIGHT, ordinal)
+    return asyncio.run(store.record(new, outcome)) is not None
+
+
+def test_a_locked_file_is_told_after_a_wait_and_works_when_it_is_free(
+    sqlite_url: str, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.attempts.database._LOCK_WAIT", 0.5)
+    scara = catalogue["scara"]
+    store = AttemptStore.open(sqlite_url)
+    store.start()
+    other = sqlite3.connect(sqlite_url, isolation_level=None)
+    other.execute("BEGIN EXCLUSIVE")
+    begun = time.monotonic()
+    with pytest.raises(StoreDownError, match="locked"):
+        record(store, scara, 1)
+    assert 0.4 < time.monotonic() - begun < 5
+    other.execute("ROLLBACK")
+    other.close()
+    assert record(store, scara, 1)
+    store.close()
+
+
+def test_a_full_disk_is_told_and_costs_nothing_that_was_recorded(
+    sqlite_url: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    scara = catalogue["scara"]
+    store = AttemptStore.open(sqlite_url)
+    pages = 60
+    event.listen(
+        store.engine,
+        "connect",
+        lambda connection, _: connection.execute(f"PRAGMA max_page_count = {pages}"),
+    )
+    store.start()
+    acknowledged = list[int]()
+
+    def until_it_is_full() -> None:
+        for ordinal in range(1, 200):
+            record(store, scara, ordinal)
+            acknowledged.append(ordinal)
+
+    with pytest.raises(StoreDownError, match="full"):
+        until_it_is_full()
+    found = asyncio.run(store.standing("scara", "ada", "", None))
+    assert found.counted == len(acknowledged) > 0
+    store.close()
+
+
+def test_a_server_that_is_started_again_is_used_again(
+    postgresql_url: str, server: Any, catalogue: Mapping[str, Exercise]
+) -> None:
+    scara = catalogue["scara"]
+    store = AttemptStore.open(postgresql_url)
+    store.start()
+    assert record(store, scara, 1)
+    server.stop()
+    try:
+        with pytest.raises(StoreDownError):
+            record(store, scara, 2)
+    finally:
+        server.start()
+    assert record(store, scara, 2)
+    store.close()

@@ -1,0 +1,76 @@
+from collections.abc import Mapping
+from dataclasses import replace
+
+import pytest
+from sqlalchemy import func, select
+
+from service.attempts.reading import history
+from service.attempts.regrading import Regrading
+from service.attempts.store import AttemptStore
+from service.attempts.tables import attempts, metadata, outcomes, regrade_queue
+from service.attempts.tutoring import (
+    LearnerData,
+    UnknownAttemptError,
+    UnusablePointsError,
+    forget,
+    override,
+)
+from service.catalogue import Exercise, FeedbackLevel
+from tests.attempts.recorded import NO_TWIST, NOON, RIGHT, recorded
+
+
+def test_points_of_a_tutor_count_and_can_be_withdrawn(
+    store: AttemptStore, catalogue: Mapping[str, Exercise]
+) -> None:
+    attempt = recorded(store, catalogue["scara"], "ada", NO_TWIST)
+    earned = []
+    for points, reason in ((5.0, "the sheet was wrong"), (None, "it was not")):
+        with store.engine.begin() as connection:
+            override(connection, attempt.id, points, reason, "Dr. Lee", NOON)
+            found = history(connection, attempt.id)
+        assert found is not None
+        earned.append(found.attempt.earned)
+    assert earned == [5.0, attempt.points]
+    with store.engine.connect() as connection:
+        found = history(connection, attempt.id)
+    assert found is not None
+    told = [(row.points, row.reason, row.author, row.at) for row in found.overrides]
+    assert told == [
+        (5.0, "the sheet was wrong", "Dr. Lee", NOON),
+        (None, "it was not", "Dr. Lee", NOON),
+    ]
+
+
+def test_points_that_cannot_be_given_are_refused(
+    store: AttemptStore, catalogue: Mapping[str, Exercise]
+) -> None:
+    attempt = recorded(store, catalogue["scara"], "ada", NO_TWIST)
+    for points in (-0.5, 1000.0, float("nan")):
+        with store.engine.begin() as connection, pytest.raises(UnusablePointsError):
+            override(connection, attempt.id, points, "", "", NOON)
+    with store.engine.begin() as connection, pytest.raises(UnknownAttemptError):
+        override(connection, "0" * 32, 1.0, "", "", NOON)
+
+
+def test_nothing_of_a_forgotten_learner_is_left(
+    store: AttemptStore, catalogue: Mapping[str, Exercise]
+) -> None:
+    scara = catalogue["scara"]
+    first = recorded(store, scara, "ada", NO_TWIST)
+    recorded(store, scara, "ada", RIGHT, 2)
+    other = recorded(store, scara, "grace", RIGHT)
+    regrading = Regrading(replace(scara, version="2"), FeedbackLevel.FULL)
+    with store.engine.begin() as connection:
+        regrading.enqueue(connection)
+        regrading.work(connection)
+        override(connection, first.id, 1.0, "because", "me", NOON)
+        connection.execute(regrade_queue.insert().values(attempt=first.number, exercise="scara"))
+    with store.engine.begin() as connection:
+        assert forget(connection, "ada") == LearnerData(2, 2, 1)
+        assert forget(connection, "ada") == LearnerData(0, 0, 0)
+    with store.engine.connect() as connection:
+        assert list(connection.scalars(select(attempts.c.id))) == [other.id]
+        for table in metadata.tables.values():
+            if table not in (attempts, outcomes):
+                rows = connection.scalar(select(func.count()).select_from(table)) or 0
+                assert rows == (1 if table.name == "earlier_reports" else 0)

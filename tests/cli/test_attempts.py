@@ -1,0 +1,136 @@
+import json
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+from service.attempts.store import AttemptStore
+from service.catalogue import Exercise, shipped_folder
+from tests.attempts.recorded import NO_TWIST, RIGHT, new_attempt, recorded_all
+from tests.cli.conftest import Run
+
+
+@pytest.fixture
+def course(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, catalogue: Mapping[str, Exercise]
+) -> list[str]:
+    """The ids of ada's right and then wrong attempt, and of grace's wrong one."""
+    file = tmp_path / "attempts.db"
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(file))
+    store = AttemptStore.open(str(file))
+    scara = catalogue["scara"]
+    written = recorded_all(
+        store,
+        [
+            new_attempt(scara, "ada", RIGHT),
+            new_attempt(scara, "ada", NO_TWIST, 2, hours=1),
+            new_attempt(scara, "grace", NO_TWIST, hours=2, is_late=True),
+        ],
+    )
+    store.close()
+    return [each.id for each in written]
+
+
+def test_without_a_database_the_commands_say_so(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("DH_GRADER_DATABASE", raising=False)
+    result = run("attempts", "list")
+    assert (result.exit_code, "DH_GRADER_DATABASE" in result.output) == (2, True)
+
+
+def test_the_newest_attempts_are_listed(run: Run, course: list[str]) -> None:
+    lines = run("attempts", "list", "--limit", 2).output.splitlines()
+    assert [line.split()[0] for line in lines[:2]] == [course[2], course[1]]
+    assert lines[0].rstrip().endswith("late")
+    assert "--limit 4" in lines[2]
+    told = run("attempts", "statistics", "scara").output
+    assert "3 attempts of 2 learners" in told
+    assert "     2 half_turn (table)" in told
+
+
+def test_every_attempt_is_exported_and_the_one_that_counts_for_gradebooks(
+    run: Run, course: list[str], tmp_path: Path
+) -> None:
+    lines = [
+        json.loads(line)
+        for line in run("attempts", "export", "--format", "jsonl").output.splitlines()
+    ]
+    assert [(each["attempt"], each["counts"]) for each in lines] == [
+        (course[0], True),
+        (course[1], False),
+        (course[2], True),
+    ]
+    best, wrong = lines[0]["points"], lines[1]["points"]
+    assert best > wrong
+    file = tmp_path / "grades.csv"
+    assert (
+        run(
+            "attempts", "export", "--exercise", "scara", "--format", "canvas", "--output", file
+        ).exit_code
+        == 0
+    )
+    assert file.read_text(encoding="utf-8").splitlines() == [
+        "Student,ID,SIS User ID,SIS Login ID,Section,scara",
+        "    Points Possible,,,,,24",
+        f"ada,,,ada,,{best:g}",
+        f"grace,,,grace,,{wrong:.6f}".rstrip("0"),
+    ]
+    moodle = run("attempts", "export", "--exercise", "scara", "--format", "moodle").output
+    assert moodle.splitlines()[1:] == [
+        f"ada,{best:g},24,",
+        f"grace,{wrong:.6f}".rstrip("0") + ",24,late",
+    ]
+    assert run("attempts", "export", "--format", "moodle").exit_code == 2
+    assert run("attempts", "export").output.count("\n") == 4
+
+
+@pytest.fixture
+def corrected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The exercise with another rule of marking, and the last attempt as the one that counts."""
+    text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
+    text = text.replace('kind = "dh_table"\n', 'kind = "dh_table"\nmarking = "rows"\n', 1)
+    folder = tmp_path / "exercises"
+    folder.mkdir()
+    (folder / "scara.toml").write_text(text + '\n[attempts]\ncounts = "last"\n', encoding="utf-8")
+    monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", str(folder))
+
+
+@pytest.mark.usefixtures("corrected")
+def test_a_regrade_is_tried_before_it_is_done(run: Run, course: list[str]) -> None:
+    before = run("attempts", "export").output
+    tried = run("attempts", "regrade", "scara").output
+    assert "3 attempts were graded by another version; 2 would change." in tried
+    assert "grace, attempt 1:" in tried
+    assert "table partial, other points" in tried
+    assert run("attempts", "export").output == before
+    assert "Regraded: 3." in run("attempts", "regrade", "scara", "--apply").output
+    assert "0 attempts were graded by another" in run("attempts", "regrade", "scara").output
+    lines = [
+        json.loads(line)
+        for line in run("attempts", "export", "--format", "jsonl").output.splitlines()
+    ]
+    assert [each["counts"] for each in lines] == [False, True, True]
+    assert run("attempts", "regrade", "scara", "--apply", "--jobs", "2").exit_code == 2
+
+
+def test_points_are_given_with_a_reason(run: Run, course: list[str]) -> None:
+    assert run("attempts", "override", course[2], "20").exit_code == 2
+    assert run("attempts", "override", "0" * 32, "20", "--reason", "r").exit_code == 2
+    assert run("attempts", "override", course[2], "99", "--reason", "r").exit_code == 2
+    assert (
+        run("attempts", "override", course[2], "20", "--reason", "r", "--by", "me").exit_code == 0
+    )
+    moodle = ("attempts", "export", "--exercise", "scara", "--format", "moodle")
+    assert "grace,20,24,late" in run(*moodle).output
+    assert run("attempts", "override", course[2], "--reason", "no", "--by", "me").exit_code == 0
+    assert "grace,20" not in run(*moodle).output
+
+
+def test_a_forgotten_learner_is_nowhere_in_the_files(
+    run: Run, course: list[str], tmp_path: Path
+) -> None:
+    assert run("attempts", "forget", "grace", "--yes").output.startswith("Deleted: attempts: 1,")
+    assert run("attempts", "forget", "grace", "--yes").exit_code == 2
+    assert run("attempts", "forget", "ada").exit_code == 1  # nobody confirms
+    for file in tmp_path.glob("attempts.db*"):
+        assert b"grace" not in file.read_bytes()
+    assert "ada" in run("attempts", "export").output
