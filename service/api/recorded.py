@@ -10,11 +10,13 @@ from fastapi import APIRouter, Path, Query, Request, Response
 from pydantic import AfterValidator, AwareDatetime, BaseModel, StringConstraints
 from sqlalchemy import Connection, Row
 
+from service.access.caller import Caller
+from service.api.access import Access
+from service.api.access_problems import other_learner
 from service.api.attempts import not_recorded
 from service.api.lookup import Catalogue, ExerciseId, exercise_or_404
-from service.api.openapi import refusals
+from service.api.openapi import MAY_NEED_KEY, refusals
 from service.api.problems import ProblemError, invalid, store_down
-from service.api.tutor import TutorRight
 from service.attempts.database import StoreDownError
 from service.attempts.reading import (
     MOST_ON_A_PAGE,
@@ -61,12 +63,11 @@ _REFUSED: Final = refusals(
 )
 
 
-def routes(catalogue: Catalogue, store: AttemptStore | None, is_tutor: TutorRight) -> APIRouter:
-    """The routes that read what is recorded, for those with a tutor's right."""
+def routes(catalogue: Catalogue, store: AttemptStore | None, access: Access) -> APIRouter:
+    """The routes that read what is recorded: for tutors, and for learners what is their own."""
     router = APIRouter(prefix="/v1", tags=["attempts"])
 
-    async def read(request: Request, work: Callable[[Connection], R]) -> R:
-        _require_right(request, is_tutor)
+    async def read(work: Callable[[Connection], R]) -> R:
         if store is None:
             raise not_recorded()
         try:
@@ -81,6 +82,7 @@ def routes(catalogue: Catalogue, store: AttemptStore | None, is_tutor: TutorRigh
         response_model=AttemptList,
         response_description="A page of attempts.",
         responses=_REFUSED,
+        openapi_extra=MAY_NEED_KEY,
     )
     async def list_attempts(
         request: Request,
@@ -98,11 +100,15 @@ def routes(catalogue: Catalogue, store: AttemptStore | None, is_tutor: TutorRigh
             int, Query(ge=1, le=MOST_ON_A_PAGE, description="The most on a page.")
         ] = 50,
     ) -> Response:
-        """List recorded attempts for tutors, the newest first, without answers and reports."""
-        wanted = AttemptFilter(exercise, learner, since, until, counted)
+        """List recorded attempts for tutors, the newest first, without answers and reports.
+
+        To a learner with a token only the learner's own.
+        """
+        caller = access.require_reading(request, exercise)
+        wanted = AttemptFilter(exercise, _readable(caller, learner), since, until, counted)
         try:
             shown, following = await read(
-                request, lambda connection: page(connection, wanted, cursor, limit)
+                lambda connection: page(connection, wanted, cursor, limit)
             )
         except BadCursorError as error:
             detail = {"type": "cursor", "loc": ("cursor",), "msg": "This is no cursor of a page."}
@@ -117,23 +123,27 @@ def routes(catalogue: Catalogue, store: AttemptStore | None, is_tutor: TutorRigh
         response_model=AttemptDetail,
         response_description="The attempt with its answers and reports.",
         responses=_REFUSED,
+        openapi_extra=MAY_NEED_KEY,
     )
     async def show_attempt(
         request: Request, attempt_id: Annotated[str, Path(description="The id of an attempt.")]
     ) -> Response:
-        """Show a recorded attempt for tutors: answers, report, earlier reports and overrides."""
+        """Show a recorded attempt for tutors: answers, report, earlier reports and overrides.
+
+        To the learner with a token only answers and report.
+        """
+        caller = access.require_reading_one(request)
         found = await read(
-            request,
-            lambda connection: history(connection, attempt_id) if attempt_id.isalnum() else None,
+            lambda connection: history(connection, attempt_id) if attempt_id.isalnum() else None
         )
-        if found is None:
+        if found is None or not _may_read(caller, found):
             raise ProblemError(
                 HTTPStatus.NOT_FOUND,
                 "No attempt with this id is recorded here.",
                 "unknown-attempt",
                 "There is no such attempt",
             )
-        return _json(json.dumps(_detail(found)).encode())
+        return _json(json.dumps(_detail(found, caller)).encode())
 
     @router.get(
         "/exercises/{exercise_id}/statistics",
@@ -142,29 +152,31 @@ def routes(catalogue: Catalogue, store: AttemptStore | None, is_tutor: TutorRigh
         response_model=ExerciseStatistics,
         response_description="The recorded attempts in counts.",
         responses=_REFUSED,
+        openapi_extra=MAY_NEED_KEY,
     )
     async def show_statistics(
         request: Request, exercise_id: ExerciseId, since: Since = None, until: Until = None
     ) -> Response:
         """Count recorded attempts for tutors: who is right where, which mistakes are common."""
+        access.require_tutor(request, exercise_id)
         exercise = exercise_or_404(catalogue, exercise_id)
         wanted = AttemptFilter(exercise=exercise.id, since=since, until=until)
-        figures = await read(request, lambda connection: exercise_statistics(connection, wanted))
+        figures = await read(lambda connection: exercise_statistics(connection, wanted))
         return _sent(figures)
 
     return router
 
 
-def _require_right(request: Request, is_tutor: TutorRight) -> None:
-    if not is_tutor(request):
-        raise ProblemError(
-            HTTPStatus.FORBIDDEN,
-            "Recorded attempts are for tutors, and this service does not show them. Ask from the "
-            "machine itself, use dh-grader attempts there, or have them shown to whoever can reach "
-            "the service: DH_GRADER_READ_ATTEMPTS=true.",
-            "attempts-not-shown",
-            "Recorded attempts are not shown here",
-        )
+def _readable(caller: Caller, learner: str | None) -> str | None:
+    """Whose attempts are listed, where those of ``learner`` are asked for. Raises ProblemError."""
+    if caller.learner is not None and learner not in (None, caller.learner):
+        raise other_learner()
+    return caller.learner or learner
+
+
+def _may_read(caller: Caller, found: AttemptHistory) -> bool:
+    attempt = found.attempt
+    return caller.reaches(attempt.exercise) and caller.learner in (None, attempt.learner)
 
 
 def _sent(model: BaseModel) -> Response:
@@ -175,7 +187,9 @@ def _json(content: bytes) -> Response:
     return Response(content, HTTPStatus.OK, {"Cache-Control": "no-store"}, "application/json")
 
 
-def _detail(found: AttemptHistory) -> dict[str, Any]:
+def _detail(found: AttemptHistory, caller: Caller) -> dict[str, Any]:
+    # What a tutor has written, and what a regrade has replaced, is for tutors.
+    is_tutor = caller.learner is None
     attempt = AttemptSummary.model_validate(found.attempt, from_attributes=True)
     return {
         "attempt": attempt.model_dump(mode="json", exclude_none=True),
@@ -186,8 +200,9 @@ def _detail(found: AttemptHistory) -> dict[str, Any]:
                 mode="json", exclude_none=True
             )
             for row in found.overrides
+            if is_tutor
         ],
-        "earlier_reports": [_earlier(row) for row in found.earlier],
+        "earlier_reports": [_earlier(row) for row in found.earlier if is_tutor],
     }
 
 
