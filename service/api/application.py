@@ -3,7 +3,7 @@
 import gc
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fastapi import APIRouter, FastAPI
 from starlette.middleware.cors import CORSMiddleware
@@ -29,10 +29,12 @@ from service.api.compression import PackedGets
 from service.api.door import DoorMiddleware, RequestRates
 from service.api.lookup import Catalogue
 from service.api.openapi import HEADING, completed, other_failures
-from service.attempts.store import AttemptStore
 from service.catalogue import FeedbackLevel
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.version import VERSION
+
+if TYPE_CHECKING:  # it loads the drivers of databases
+    from service.attempts.store import AttemptStore
 
 # What stands around an application.
 Layer = Callable[[ASGIApp], ASGIApp]
@@ -55,7 +57,7 @@ class _Api(FastAPI):
         self,
         cors_origins: tuple[str, ...],
         turns: Layer | None,
-        store: AttemptStore | None,
+        store: "AttemptStore | None",
         access: Access,
         rates: RequestRates | None,
     ) -> None:
@@ -122,7 +124,7 @@ def application(
     rates: RequestRates | None = None,
     feedback: FeedbackLevel = FeedbackLevel.FULL,
     turns: Layer | None = None,
-    store: AttemptStore | None = None,
+    store: "AttemptStore | None" = None,
     pages: APIRouter | None = None,
 ) -> FastAPI:
     """The HTTP service for these exercises; pages of ``cors_origins`` may call it.

@@ -4,7 +4,7 @@ import hashlib
 import json
 from datetime import UTC, datetime
 from http import HTTPStatus
-from typing import Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
 from fastapi import APIRouter, Header, Request, Response
 
@@ -15,15 +15,17 @@ from service.api.bodies import body_as
 from service.api.lookup import Catalogue, ExerciseId, exercise_or_404, require_parts
 from service.api.openapi import posting
 from service.api.problems import ProblemError, store_down
-from service.attempts.database import StoreDownError
+from service.attempts.attempt import NewAttempt, RecordedAttempt
+from service.attempts.errors import StoreDownError
 from service.attempts.graded import graded_attempt
 from service.attempts.policy import AttemptRefusedError, Ruling, ruling
-from service.attempts.recording import NewAttempt, RecordedAttempt
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise, FeedbackLevel
+from service.catalogue import Exercise, FeedbackLevel, least
 from service.contract.attempts import Attempt, AttemptRequest, AttemptResponse
 from service.formats.json import rendered
 from service.grading import Report
+
+if TYPE_CHECKING:  # it loads the drivers of databases
+    from service.attempts.store import AttemptStore
 
 # So often an attempt is graded anew because another of the same learner came first.
 _TRIES: Final = 5
@@ -41,7 +43,10 @@ IdempotencyKey = Annotated[
 
 
 def routes(
-    catalogue: Catalogue, feedback: FeedbackLevel, store: AttemptStore | None, access: Access
+    catalogue: Catalogue,
+    feedback: FeedbackLevel,
+    store: "AttemptStore | None",
+    access: Access,
 ) -> APIRouter:
     """The routes that record; no report tells more than ``feedback``."""
     router = APIRouter(prefix="/v1", tags=["attempts"])
@@ -111,7 +116,7 @@ class _Attempting:
         exercise: Exercise,
         body: AttemptRequest,
         ceiling: FeedbackLevel,
-        store: AttemptStore,
+        store: "AttemptStore",
         owner: str,
         idempotency_key: str | None,
     ) -> None:
@@ -134,9 +139,8 @@ class _Attempting:
                 return self._same(standing.earlier)
             now = datetime.now(UTC)
             taken = ruling(self._exercise.attempts, standing.counted, now)
-            report, outcome = graded_attempt(
-                self._exercise, self._body, taken.ordinal, self._ceiling
-            )
+            most = least(self._exercise.feedback_at(taken.ordinal), self._ceiling)
+            report, outcome = graded_attempt(self._exercise, self._body, most)
             new = self._new(taken, now, report)
             written = await self._store.record(new, outcome)
             if written is not None:

@@ -1,14 +1,13 @@
 """The routes by which tutors read what is recorded."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from datetime import UTC, datetime
 from http import HTTPStatus
-from typing import Annotated, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Final, TypeVar
 
 from fastapi import APIRouter, Path, Query, Request, Response
 from pydantic import AfterValidator, AwareDatetime, BaseModel, StringConstraints
-from sqlalchemy import Connection, Row
 
 from service.access.caller import Caller
 from service.api.access import Access
@@ -17,17 +16,8 @@ from service.api.attempts import not_recorded
 from service.api.lookup import Catalogue, ExerciseId, exercise_or_404
 from service.api.openapi import MAY_NEED_KEY, refusals
 from service.api.problems import ProblemError, invalid, store_down
-from service.attempts.database import StoreDownError
-from service.attempts.reading import (
-    MOST_ON_A_PAGE,
-    AttemptFilter,
-    AttemptHistory,
-    BadCursorError,
-    history,
-    page,
-)
-from service.attempts.statistics import exercise_statistics
-from service.attempts.store import AttemptStore
+from service.attempts.attempt import MOST_ON_A_PAGE, AttemptFilter
+from service.attempts.errors import BadCursorError, StoreDownError
 from service.contract.attempts import (
     AttemptDetail,
     AttemptList,
@@ -36,6 +26,12 @@ from service.contract.attempts import (
     Learner,
 )
 from service.contract.statistics import ExerciseStatistics
+
+if TYPE_CHECKING:  # they load the drivers of databases
+    from sqlalchemy import Row
+
+    from service.attempts.reading import AttemptHistory
+    from service.attempts.store import AttemptStore
 
 R = TypeVar("R")
 
@@ -63,15 +59,15 @@ _REFUSED: Final = refusals(
 )
 
 
-def routes(catalogue: Catalogue, store: AttemptStore | None, access: Access) -> APIRouter:
+def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -> APIRouter:
     """The routes that read what is recorded: for tutors, and for learners what is their own."""
     router = APIRouter(prefix="/v1", tags=["attempts"])
 
-    async def read(work: Callable[[Connection], R]) -> R:
+    async def read(ask: Callable[["AttemptStore"], Awaitable[R]]) -> R:
         if store is None:
             raise not_recorded()
         try:
-            return await store.read(work)
+            return await ask(store)
         except StoreDownError as error:
             raise store_down("The database does not answer; nothing could be read.") from error
 
@@ -107,9 +103,7 @@ def routes(catalogue: Catalogue, store: AttemptStore | None, access: Access) -> 
         caller = access.require_reading(request, exercise)
         wanted = AttemptFilter(exercise, _readable(caller, learner), since, until, counted)
         try:
-            shown, following = await read(
-                lambda connection: page(connection, wanted, cursor, limit)
-            )
+            shown, following = await read(lambda store: store.page(wanted, cursor, limit))
         except BadCursorError as error:
             detail = {"type": "cursor", "loc": ("cursor",), "msg": "This is no cursor of a page."}
             raise invalid([detail]) from error
@@ -133,9 +127,7 @@ def routes(catalogue: Catalogue, store: AttemptStore | None, access: Access) -> 
         To the learner with a token only answers and report.
         """
         caller = access.require_reading_one(request)
-        found = await read(
-            lambda connection: history(connection, attempt_id) if attempt_id.isalnum() else None
-        )
+        found = await read(lambda store: store.history(attempt_id))
         if found is None or not _may_read(caller, found):
             raise ProblemError(
                 HTTPStatus.NOT_FOUND,
@@ -161,7 +153,7 @@ def routes(catalogue: Catalogue, store: AttemptStore | None, access: Access) -> 
         access.require_tutor(request, exercise_id)
         exercise = exercise_or_404(catalogue, exercise_id)
         wanted = AttemptFilter(exercise=exercise.id, since=since, until=until)
-        figures = await read(lambda connection: exercise_statistics(connection, wanted))
+        figures = await read(lambda store: store.statistics(wanted))
         return _sent(figures)
 
     return router
@@ -174,7 +166,7 @@ def _readable(caller: Caller, learner: str | None) -> str | None:
     return caller.learner or learner
 
 
-def _may_read(caller: Caller, found: AttemptHistory) -> bool:
+def _may_read(caller: Caller, found: "AttemptHistory") -> bool:
     attempt = found.attempt
     return caller.reaches(attempt.exercise) and caller.learner in (None, attempt.learner)
 
@@ -187,7 +179,7 @@ def _json(content: bytes) -> Response:
     return Response(content, HTTPStatus.OK, {"Cache-Control": "no-store"}, "application/json")
 
 
-def _detail(found: AttemptHistory, caller: Caller) -> dict[str, Any]:
+def _detail(found: "AttemptHistory", caller: Caller) -> dict[str, Any]:
     # What a tutor has written, and what a regrade has replaced, is for tutors.
     is_tutor = caller.learner is None
     attempt = AttemptSummary.model_validate(found.attempt, from_attributes=True)
@@ -206,7 +198,7 @@ def _detail(found: AttemptHistory, caller: Caller) -> dict[str, Any]:
     }
 
 
-def _earlier(row: Row[Any]) -> dict[str, Any]:
+def _earlier(row: "Row[Any]") -> dict[str, Any]:
     named = ("version", "grader", "points", "max_points")
     return {
         "replaced_at": row.replaced_at.isoformat(),

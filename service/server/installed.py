@@ -1,18 +1,22 @@
 """The application of this installation, as its settings want it."""
 
+from typing import TYPE_CHECKING
+
 from fastapi import FastAPI
 
 from service.access.keys import Keys, KeysUnreachableError
 from service.api.access import Access, is_loopback
 from service.api.application import application
 from service.api.door import RequestRates
-from service.attempts.database import UnusableDatabaseError
-from service.attempts.store import AttemptStore
+from service.attempts.errors import UnusableDatabaseError
 from service.catalogue import open_catalogue
 from service.server.access_log import set_up_access_log
 from service.server.admission import FairAdmission
 from service.settings import Settings, SettingsError
 from service.web import Tutoring, web_routes
+
+if TYPE_CHECKING:  # it loads the drivers of databases
+    from service.attempts.store import AttemptStore
 
 
 def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
@@ -23,6 +27,9 @@ def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
     catalogue = open_catalogue(settings.exercises_dir, reload=settings.reload_exercises)
     store = None
     if settings.database is not None:
+        # Only here: it loads the drivers of databases.
+        from service.attempts.store import AttemptStore
+
         try:
             store = AttemptStore.open(settings.database.get_secret_value())
         except UnusableDatabaseError as error:
@@ -47,7 +54,7 @@ def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
     return app
 
 
-def _keys(settings: Settings, store: AttemptStore | None, host: str | None) -> Keys | None:
+def _keys(settings: Settings, store: "AttemptStore | None", host: str | None) -> Keys | None:
     """The keys, where there may be any. Raises SettingsError for a service open to strangers."""
     secret = settings.known_secret()
     ring = None
