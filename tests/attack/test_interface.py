@@ -8,7 +8,7 @@ from tests.attack.interface import SECRET, faults, with_key
 from tests.server.raw import service
 
 
-@pytest.mark.parametrize("keyed", [False, True])
+@pytest.mark.parametrize("keyed", [False, pytest.param(True, marks=pytest.mark.campaign)])
 def test_the_service_does_what_its_document_says(tmp_path: Path, keyed: bool) -> None:
     sample = ["--phases", "examples,fuzzing", "--no-shrink", "--generation-database", "none"]
     settings, key = with_key(tmp_path) if keyed else ({}, "")

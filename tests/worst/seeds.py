@@ -44,7 +44,10 @@ def previews_of(exercise: str, part: str, text: str) -> Attack:
 
 
 def frames_of(exercise: str, joints: int, text: str) -> Attack:
-    """A table of long cells and the mechanism, in as many pictures as one request may have, one drawn."""
+    """A table of long cells and the mechanism, in as many pictures as one request may have.
+
+    The first is drawn.
+    """
     rows = [dict.fromkeys(KEYS[:3], f"{text}+{i}") | {"theta": f"q{i + 1}"} for i in range(joints)]
     values = [[0.1 * k + 0.01 * i for i in range(joints)] for k in range(30)]
     body = {"exercise": exercise, "table": {"rows": rows}, "joints": values, "figure": "auto"}
