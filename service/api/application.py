@@ -22,10 +22,17 @@ from service.api import (
     reference,
 )
 from service.api import solutions as model_solutions
-from service.api.boundary import BoundaryMiddleware
+from service.api.boundary import (
+    EXPOSED_HEADERS,
+    BoundaryMiddleware,
+    NamingMiddleware,
+    RouteNoting,
+)
 from service.api.compression import PackedGets
 from service.api.lookup import Catalogue
+from service.api.monitor import Monitor
 from service.api.openapi import HEADING, completed, other_failures
+from service.api.request_context import HEADER
 from service.api.tutor import tutor_right
 from service.attempts.store import AttemptStore
 from service.catalogue import FeedbackLevel
@@ -50,11 +57,16 @@ class _Api(FastAPI):
     """FastAPI with its outermost layers outside the framework's own error pages and limit."""
 
     def __init__(
-        self, cors_origins: tuple[str, ...], turns: Layer | None, store: AttemptStore | None
+        self,
+        cors_origins: tuple[str, ...],
+        turns: Layer | None,
+        store: AttemptStore | None,
+        monitor: Monitor | None,
     ) -> None:
         self._cors_origins = cors_origins
         self._turns = turns
         self._store = store
+        self._monitor = monitor
         super().__init__(
             **HEADING,
             version=VERSION,
@@ -77,9 +89,13 @@ class _Api(FastAPI):
     def build_middleware_stack(self) -> ASGIApp:
         """The framework's layers, packed answers, the turns between clients, the boundary.
 
-        Then CORS: a page may read problems, too.
+        Then CORS: a page may read problems, too. Outermost, so that whatever is answered has one,
+        the id of the request.
         """
-        app: ASGIApp = PackedGets(super().build_middleware_stack())
+        app = super().build_middleware_stack()
+        if self._monitor is not None:
+            app = RouteNoting(app)
+        app = PackedGets(app)
         if self._turns is not None:
             app = self._turns(app)
         app = BoundaryMiddleware(app)
@@ -88,10 +104,12 @@ class _Api(FastAPI):
                 app,
                 allow_origins=self._cors_origins,
                 allow_methods=["GET", "POST"],
-                allow_headers=["Content-Type", "Idempotency-Key"],
-                expose_headers=["Retry-After"],
+                allow_headers=["Content-Type", "Idempotency-Key", HEADER],
+                expose_headers=EXPOSED_HEADERS,
             )
-        return app
+        if self._monitor is not None:
+            app = self._monitor.watched(app)
+        return NamingMiddleware(app)
 
     def openapi(self) -> dict[str, Any]:
         """The description of the interface, made at the first call."""
@@ -110,6 +128,7 @@ def application(
     store: AttemptStore | None = None,
     read_attempts: bool | None = False,
     pages: APIRouter | None = None,
+    monitor: Monitor | None = None,
 ) -> FastAPI:
     """The HTTP service for these exercises; pages of ``cors_origins`` may call it.
 
@@ -118,14 +137,14 @@ def application(
     ``feedback``, nor than their exercise allows. ``turns`` decides who comes next, ``pages`` are
     the web pages of the service itself. Attempts are recorded in ``store``; without one none are.
     With ``read_attempts`` they are shown to whoever asks; None means whoever asks from this
-    machine.
+    machine. ``monitor`` counts what happens.
     """
-    app = _Api(cors_origins, turns, store)
+    app = _Api(cors_origins, turns, store, monitor)
     problems.install(app)
     for router in (
         exercises.routes(catalogue, feedback),
-        grading.routes(catalogue, feedback),
-        attempts.routes(catalogue, feedback, store),
+        grading.routes(catalogue, feedback, monitor),
+        attempts.routes(catalogue, feedback, store, monitor),
         recorded.routes(catalogue, store, tutor_right(read_attempts)),
         preview.routes(catalogue),
         figures.routes(catalogue),

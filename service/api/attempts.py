@@ -4,12 +4,14 @@ import hashlib
 import json
 from datetime import UTC, datetime
 from http import HTTPStatus
+from time import perf_counter
 from typing import Annotated, Final
 
 from fastapi import APIRouter, Header, Request, Response
 
 from service.api.bodies import body_as
 from service.api.lookup import Catalogue, ExerciseId, exercise_or_404, require_parts
+from service.api.monitor import Monitor
 from service.api.openapi import posting
 from service.api.problems import ProblemError, store_down
 from service.attempts.database import StoreDownError
@@ -37,7 +39,12 @@ IdempotencyKey = Annotated[
 ]
 
 
-def routes(catalogue: Catalogue, feedback: FeedbackLevel, store: AttemptStore | None) -> APIRouter:
+def routes(
+    catalogue: Catalogue,
+    feedback: FeedbackLevel,
+    store: AttemptStore | None,
+    monitor: Monitor | None = None,
+) -> APIRouter:
     """The routes that record; no report tells more than ``feedback``."""
     router = APIRouter(prefix="/v1", tags=["attempts"])
 
@@ -70,7 +77,7 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel, store: AttemptStore | 
         exercise = exercise_or_404(catalogue, exercise_id)
         body = await body_as(AttemptRequest, request)
         require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
-        attempting = _Attempting(exercise, body, feedback, store, "", idempotency_key)
+        attempting = _Attempting(exercise, body, feedback, store, "", idempotency_key, monitor)
         try:
             recorded = await attempting.recorded()
         except StoreDownError as error:
@@ -106,6 +113,7 @@ class _Attempting:
         store: AttemptStore,
         owner: str,
         idempotency_key: str | None,
+        monitor: Monitor | None,
     ) -> None:
         self._exercise = exercise
         self._body = body
@@ -113,6 +121,7 @@ class _Attempting:
         self._store = store
         self._owner = owner
         self._key = idempotency_key
+        self._monitor = monitor
         content = {"exercise": exercise.id, **body.model_dump(mode="json", exclude_unset=True)}
         self._request_digest = _digest(content)
 
@@ -126,9 +135,12 @@ class _Attempting:
                 return self._same(standing.earlier)
             now = datetime.now(UTC)
             taken = ruling(self._exercise.attempts, standing.counted, now)
+            began = perf_counter()
             report, outcome = graded_attempt(
                 self._exercise, self._body, taken.ordinal, self._ceiling
             )
+            if self._monitor is not None:
+                self._monitor.graded(report, perf_counter() - began)
             new = self._new(taken, now, report)
             written = await self._store.record(new, outcome)
             if written is not None:

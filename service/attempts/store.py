@@ -3,19 +3,22 @@
 import asyncio
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractContextManager, nullcontext
 from typing import Final, TypeVar
 
-from sqlalchemy import Connection, Engine, text
+from sqlalchemy import Connection, Engine, literal, select
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.attempts.database import StoreDownError, open_database, reason
 from service.attempts.outcome import Outcome
 from service.attempts.recording import NewAttempt, RecordedAttempt, Standing, record, standing
+from service.attempts.tables import attempts
 from service.attempts.writer import AttemptWriter
 
 R = TypeVar("R")
 
-_ALIVE: Final = text("SELECT 1")
+# The tables must be there, too.
+_ALIVE: Final = select(literal(1)).select_from(attempts).limit(1)
 # So many tutors read at once; others wait.
 _READERS: Final = 2
 
@@ -31,6 +34,8 @@ class AttemptStore:
         self.engine = engine
         self._writer: AttemptWriter | None = None
         self._readers: ThreadPoolExecutor | None = None
+        # What surrounds each operation, by its name.
+        self.measure: Callable[[str], AbstractContextManager[None]] = lambda _: nullcontext()
 
     @classmethod
     def open(cls, url: str) -> "AttemptStore":
@@ -59,22 +64,27 @@ class AttemptStore:
         self, exercise: str, learner: str, owner: str, idempotency_key: str | None
     ) -> Standing:
         """How a learner stands at an exercise, and what a request with this key has recorded."""
-        return await self._running.run(
-            lambda connection: standing(connection, exercise, learner, owner, idempotency_key)
-        )
+        with self.measure("standing"):
+            return await self._running.run(
+                lambda connection: standing(connection, exercise, learner, owner, idempotency_key)
+            )
 
     async def record(self, new: NewAttempt, outcome: Outcome) -> RecordedAttempt | None:
         """Write the attempt, durably; None where another took its ordinal or its key."""
-        return await self._running.run(lambda connection: record(connection, new, outcome))
+        with self.measure("record"):
+            return await self._running.run(lambda connection: record(connection, new, outcome))
 
     async def check(self) -> None:
         """Make sure that the database answers."""
-        await self._running.run(lambda connection: connection.execute(_ALIVE))
+        with self.measure("check"):
+            await self._running.run(lambda connection: connection.execute(_ALIVE))
 
     async def read(self, work: Callable[[Connection], R]) -> R:
         """The result of ``work``, which writes nothing; beside the attempts that are recorded."""
         assert self._readers is not None, "the store has not been started"
-        return await asyncio.get_running_loop().run_in_executor(self._readers, self._read_by, work)
+        loop = asyncio.get_running_loop()
+        with self.measure("read"):
+            return await loop.run_in_executor(self._readers, self._read_by, work)
 
     def _read_by(self, work: Callable[[Connection], R]) -> R:
         try:

@@ -22,6 +22,14 @@ def installed_app(settings: Settings) -> FastAPI:
             store = AttemptStore.open(settings.database.get_secret_value())
         except UnusableDatabaseError as error:
             raise SettingsError(f"DH_GRADER_DATABASE: {error}") from error
+    metrics = None
+    if settings.metrics != "off":
+        # Only here: who does not count loads nothing that counts.
+        from service.server.metrics import Metrics
+
+        metrics = Metrics()
+        if store is not None:
+            store.measure = metrics.store
     is_tutor = tutor_right(settings.solutions)
     tutoring = Tutoring(is_tutor, settings.exercises_dir, settings.editor_dir)
     app = application(
@@ -29,10 +37,14 @@ def installed_app(settings: Settings) -> FastAPI:
         settings.cors_origins,
         solutions=settings.solutions,
         feedback=settings.feedback,
-        turns=FairAdmission,
+        turns=FairAdmission if metrics is None else metrics.fair_admission,
         store=store,
         read_attempts=settings.read_attempts,
         pages=web_routes(catalogue, tutoring),
+        monitor=metrics,
     )
+    if metrics is not None:
+        may_read = tutor_right(True if settings.metrics == "all" else None)
+        app.include_router(metrics.routes(may_read))
     set_up_access_log(addresses=settings.log_addresses)
     return app
