@@ -24,7 +24,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test browser screenshots coverage lint format bench fuzz attack worst campaign policies prints slips durability clients wheel image lock clean
+.PHONY: help install run test browser screenshots coverage lint format bench fuzz attack worst campaign policies prints slips durability attempts clients wheel image lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
@@ -92,6 +92,10 @@ slips: $(dev) ## spoil the poses of all robots by each single slip of the table:
 
 durability: $(dev) ## kill the service while it records attempts, 20 times on each database
 	$(python) -m pytest -m campaign tests/attempts/test_durability.py
+
+attempts: $(dev) ## measure a store of COUNT= attempts; regrade as many by four processes, two being killed
+	$(python) -m tests.attempts.campaign --count "$(COUNT)"
+	$(python) -m tests.attempts.shared_regrade --count "$(COUNT)"
 
 prints: $(dev) ## hand in the model solution of every exercise as each program prints it
 	$(python) -m tests.solutions.prints

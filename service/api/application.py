@@ -3,7 +3,7 @@
 import gc
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fastapi import APIRouter, FastAPI
 from starlette.middleware.cors import CORSMiddleware
@@ -34,10 +34,12 @@ from service.api.monitor import Monitor
 from service.api.openapi import HEADING, completed, other_failures
 from service.api.request_context import HEADER
 from service.api.tutor import tutor_right
-from service.attempts.store import AttemptStore
 from service.catalogue import FeedbackLevel
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.version import VERSION
+
+if TYPE_CHECKING:  # it loads the drivers of databases
+    from service.attempts.store import AttemptStore
 
 # What stands around an application.
 Layer = Callable[[ASGIApp], ASGIApp]
@@ -60,7 +62,7 @@ class _Api(FastAPI):
         self,
         cors_origins: tuple[str, ...],
         turns: Layer | None,
-        store: AttemptStore | None,
+        store: "AttemptStore | None",
         monitor: Monitor | None,
     ) -> None:
         self._cors_origins = cors_origins
@@ -125,7 +127,7 @@ def application(
     solutions: bool | None = False,
     feedback: FeedbackLevel = FeedbackLevel.FULL,
     turns: Layer | None = None,
-    store: AttemptStore | None = None,
+    store: "AttemptStore | None" = None,
     read_attempts: bool | None = False,
     pages: APIRouter | None = None,
     monitor: Monitor | None = None,

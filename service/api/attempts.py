@@ -5,7 +5,7 @@ import json
 from datetime import UTC, datetime
 from http import HTTPStatus
 from time import perf_counter
-from typing import Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
 from fastapi import APIRouter, Header, Request, Response
 
@@ -14,15 +14,17 @@ from service.api.lookup import Catalogue, ExerciseId, exercise_or_404, require_p
 from service.api.monitor import Monitor
 from service.api.openapi import posting
 from service.api.problems import ProblemError, store_down
-from service.attempts.database import StoreDownError
+from service.attempts.attempt import NewAttempt, RecordedAttempt
+from service.attempts.errors import StoreDownError
 from service.attempts.graded import graded_attempt
 from service.attempts.policy import AttemptRefusedError, Ruling, ruling
-from service.attempts.recording import NewAttempt, RecordedAttempt
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise, FeedbackLevel
+from service.catalogue import Exercise, FeedbackLevel, least
 from service.contract.attempts import Attempt, AttemptRequest, AttemptResponse
 from service.formats.json import rendered
 from service.grading import Report
+
+if TYPE_CHECKING:  # it loads the drivers of databases
+    from service.attempts.store import AttemptStore
 
 # So often an attempt is graded anew because another of the same learner came first.
 _TRIES: Final = 5
@@ -42,7 +44,7 @@ IdempotencyKey = Annotated[
 def routes(
     catalogue: Catalogue,
     feedback: FeedbackLevel,
-    store: AttemptStore | None,
+    store: "AttemptStore | None",
     monitor: Monitor | None = None,
 ) -> APIRouter:
     """The routes that record; no report tells more than ``feedback``."""
@@ -110,7 +112,7 @@ class _Attempting:
         exercise: Exercise,
         body: AttemptRequest,
         ceiling: FeedbackLevel,
-        store: AttemptStore,
+        store: "AttemptStore",
         owner: str,
         idempotency_key: str | None,
         monitor: Monitor | None,
@@ -135,10 +137,9 @@ class _Attempting:
                 return self._same(standing.earlier)
             now = datetime.now(UTC)
             taken = ruling(self._exercise.attempts, standing.counted, now)
+            most = least(self._exercise.feedback_at(taken.ordinal), self._ceiling)
             began = perf_counter()
-            report, outcome = graded_attempt(
-                self._exercise, self._body, taken.ordinal, self._ceiling
-            )
+            report, outcome = graded_attempt(self._exercise, self._body, most)
             if self._monitor is not None:
                 self._monitor.graded(report, perf_counter() - began)
             new = self._new(taken, now, report)

@@ -2,7 +2,7 @@
 
 import asyncio
 from http import HTTPStatus
-from typing import Final, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 from fastapi import APIRouter
 from pydantic import BaseModel
@@ -10,8 +10,10 @@ from pydantic import BaseModel
 from service.api.lookup import Catalogue
 from service.api.openapi import refusals
 from service.api.problems import ProblemError, store_down
-from service.attempts.database import StoreDownError
-from service.attempts.store import AttemptStore
+from service.attempts.errors import StoreDownError
+
+if TYPE_CHECKING:  # it loads the drivers of databases
+    from service.attempts.store import AttemptStore
 
 # So long the database may take to answer (seconds).
 _PATIENCE: Final = 3.0
@@ -30,7 +32,7 @@ class Ready(BaseModel):
     exercises: int
 
 
-def routes(catalogue: Catalogue, store: AttemptStore | None) -> APIRouter:
+def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
     """The routes that a supervisor asks."""
     router = APIRouter(tags=["health"])
     checks = None if store is None else _Checks(store)
@@ -70,7 +72,7 @@ def routes(catalogue: Catalogue, store: AttemptStore | None) -> APIRouter:
 class _Checks:
     """Checks of the database, of which one at a time answers all who ask meanwhile."""
 
-    def __init__(self, store: AttemptStore) -> None:
+    def __init__(self, store: "AttemptStore") -> None:
         self._store = store
         self._under_way: asyncio.Task[None] | None = None
 

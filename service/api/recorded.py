@@ -1,31 +1,21 @@
 """The routes by which tutors read what is recorded."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from datetime import UTC, datetime
 from http import HTTPStatus
-from typing import Annotated, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Final, TypeVar
 
 from fastapi import APIRouter, Path, Query, Request, Response
 from pydantic import AfterValidator, AwareDatetime, BaseModel, StringConstraints
-from sqlalchemy import Connection, Row
 
 from service.api.attempts import not_recorded
 from service.api.lookup import Catalogue, ExerciseId, exercise_or_404
 from service.api.openapi import refusals
 from service.api.problems import ProblemError, invalid, store_down
 from service.api.tutor import TutorRight
-from service.attempts.database import StoreDownError
-from service.attempts.reading import (
-    MOST_ON_A_PAGE,
-    AttemptFilter,
-    AttemptHistory,
-    BadCursorError,
-    history,
-    page,
-)
-from service.attempts.statistics import exercise_statistics
-from service.attempts.store import AttemptStore
+from service.attempts.attempt import MOST_ON_A_PAGE, AttemptFilter
+from service.attempts.errors import BadCursorError, StoreDownError
 from service.contract.attempts import (
     AttemptDetail,
     AttemptList,
@@ -34,6 +24,12 @@ from service.contract.attempts import (
     Learner,
 )
 from service.contract.statistics import ExerciseStatistics
+
+if TYPE_CHECKING:  # they load the drivers of databases
+    from sqlalchemy import Row
+
+    from service.attempts.reading import AttemptHistory
+    from service.attempts.store import AttemptStore
 
 R = TypeVar("R")
 
@@ -61,16 +57,16 @@ _REFUSED: Final = refusals(
 )
 
 
-def routes(catalogue: Catalogue, store: AttemptStore | None, is_tutor: TutorRight) -> APIRouter:
+def routes(catalogue: Catalogue, store: "AttemptStore | None", is_tutor: TutorRight) -> APIRouter:
     """The routes that read what is recorded, for those with a tutor's right."""
     router = APIRouter(prefix="/v1", tags=["attempts"])
 
-    async def read(request: Request, work: Callable[[Connection], R]) -> R:
+    async def read(request: Request, ask: Callable[["AttemptStore"], Awaitable[R]]) -> R:
         _require_right(request, is_tutor)
         if store is None:
             raise not_recorded()
         try:
-            return await store.read(work)
+            return await ask(store)
         except StoreDownError as error:
             raise store_down("The database does not answer; nothing could be read.") from error
 
@@ -101,9 +97,7 @@ def routes(catalogue: Catalogue, store: AttemptStore | None, is_tutor: TutorRigh
         """List recorded attempts for tutors, the newest first, without answers and reports."""
         wanted = AttemptFilter(exercise, learner, since, until, counted)
         try:
-            shown, following = await read(
-                request, lambda connection: page(connection, wanted, cursor, limit)
-            )
+            shown, following = await read(request, lambda store: store.page(wanted, cursor, limit))
         except BadCursorError as error:
             detail = {"type": "cursor", "loc": ("cursor",), "msg": "This is no cursor of a page."}
             raise invalid([detail]) from error
@@ -122,10 +116,7 @@ def routes(catalogue: Catalogue, store: AttemptStore | None, is_tutor: TutorRigh
         request: Request, attempt_id: Annotated[str, Path(description="The id of an attempt.")]
     ) -> Response:
         """Show a recorded attempt for tutors: answers, report, earlier reports and overrides."""
-        found = await read(
-            request,
-            lambda connection: history(connection, attempt_id) if attempt_id.isalnum() else None,
-        )
+        found = await read(request, lambda store: store.history(attempt_id))
         if found is None:
             raise ProblemError(
                 HTTPStatus.NOT_FOUND,
@@ -149,7 +140,7 @@ def routes(catalogue: Catalogue, store: AttemptStore | None, is_tutor: TutorRigh
         """Count recorded attempts for tutors: who is right where, which mistakes are common."""
         exercise = exercise_or_404(catalogue, exercise_id)
         wanted = AttemptFilter(exercise=exercise.id, since=since, until=until)
-        figures = await read(request, lambda connection: exercise_statistics(connection, wanted))
+        figures = await read(request, lambda store: store.statistics(wanted))
         return _sent(figures)
 
     return router
@@ -175,7 +166,7 @@ def _json(content: bytes) -> Response:
     return Response(content, HTTPStatus.OK, {"Cache-Control": "no-store"}, "application/json")
 
 
-def _detail(found: AttemptHistory) -> dict[str, Any]:
+def _detail(found: "AttemptHistory") -> dict[str, Any]:
     attempt = AttemptSummary.model_validate(found.attempt, from_attributes=True)
     return {
         "attempt": attempt.model_dump(mode="json", exclude_none=True),
@@ -191,7 +182,7 @@ def _detail(found: AttemptHistory) -> dict[str, Any]:
     }
 
 
-def _earlier(row: Row[Any]) -> dict[str, Any]:
+def _earlier(row: "Row[Any]") -> dict[str, Any]:
     named = ("version", "grader", "points", "max_points")
     return {
         "replaced_at": row.replaced_at.isoformat(),

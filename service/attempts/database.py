@@ -10,6 +10,8 @@ from alembic.util import CommandError
 from sqlalchemy import Connection, Engine, create_engine, event, make_url, text
 from sqlalchemy.exc import ArgumentError, SQLAlchemyError
 
+from service.attempts.errors import UnusableDatabaseError
+
 R = TypeVar("R")
 
 _MIGRATIONS: Final = Path(__file__).parent / "migrations"
@@ -17,14 +19,9 @@ _MIGRATIONS: Final = Path(__file__).parent / "migrations"
 _LOCK_WAIT: Final = 5.0
 # Only one of several processes that start together changes the tables of a PostgreSQL database.
 _MIGRATION_LOCK: Final = 0x6468_6772
-
-
-class StoreDownError(Exception):
-    """The database cannot be reached, or cannot write; what was asked for was not done."""
-
-
-class UnusableDatabaseError(Exception):
-    """The URL names no database that can be used; the text says why."""
+# PostgreSQL, appendix A, "deadlock_detected"; so often a transaction is tried then.
+_TRIES: Final = 5
+_DEADLOCK: Final = "40P01"
 
 
 def open_database(url: str) -> Engine:
@@ -60,13 +57,17 @@ def _engine(url: str) -> Engine:
             event.listen(engine, "begin", _begin_sqlite)
             return engine
         case "postgresql":
-            waits = f"-c lock_timeout={_LOCK_WAIT:.0f}s -c statement_timeout=60s"
+            # The server gives up the locks of a client whose machine is gone after a minute.
+            options = (
+                f"-c lock_timeout={_LOCK_WAIT:.0f}s -c statement_timeout=60s "
+                "-c tcp_keepalives_idle=30 -c tcp_keepalives_interval=10 -c tcp_keepalives_count=3"
+            )
             return create_engine(
                 parsed.set(drivername="postgresql+psycopg"),
                 pool_pre_ping=True,
                 # No failure that is logged tells what somebody has answered.
                 hide_parameters=True,
-                connect_args={"connect_timeout": 3, "options": waits},
+                connect_args={"connect_timeout": 3, "options": options},
             )
         case other:
             raise UnusableDatabaseError(f"{other} is not supported; use SQLite or PostgreSQL")
@@ -91,6 +92,7 @@ def _migrate(connection: Connection) -> None:
     """Bring the tables to the newest form; an empty database gets them all."""
     connection = connection.execution_options(writes=True)
     with connection.begin():
+        without_time_limit(connection)
         if connection.dialect.name == "postgresql":
             lock = text("SELECT pg_advisory_xact_lock(:key)")
             connection.execute(lock, {"key": _MIGRATION_LOCK})
@@ -100,12 +102,31 @@ def _migrate(connection: Connection) -> None:
         command.upgrade(config, "head")
 
 
+def without_time_limit(connection: Connection) -> None:
+    """Let this transaction take as long as it needs: it is at every row of a large table."""
+    if connection.dialect.name == "postgresql":
+        for limit in ("lock_timeout", "statement_timeout"):
+            connection.exec_driver_sql(f"SET LOCAL {limit} = 0")
+
+
 def in_transaction(engine: Engine, work: Callable[[Connection], R]) -> R:
-    """The result of ``work``, committed."""
-    with engine.connect() as connection:
-        connection = connection.execution_options(writes=True)
-        with connection.begin():
-            return work(connection)
+    """The result of ``work``, committed; it is done anew where others were in its way."""
+    tries = 0
+    while True:
+        try:
+            with engine.connect() as connection:
+                connection = connection.execution_options(writes=True)
+                with connection.begin():
+                    return work(connection)
+        except SQLAlchemyError as error:
+            tries += 1
+            if tries == _TRIES or not is_deadlock(error):
+                raise
+
+
+def is_deadlock(error: Exception) -> bool:
+    """Whether PostgreSQL ended this transaction for another, so that it should be tried again."""
+    return getattr(getattr(error, "orig", None), "sqlstate", None) == _DEADLOCK
 
 
 def safe_url(engine: Engine) -> str:

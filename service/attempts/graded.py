@@ -1,19 +1,15 @@
 """An attempt graded: the report that its learner gets, and the outcome that is counted."""
 
 from service.attempts.outcome import Outcome, outcome_of
-from service.catalogue import Exercise, FeedbackLevel, least
+from service.catalogue import Exercise, FeedbackLevel
 from service.grading import Report, grade
 from service.submissions.body import GradeRequest
 
 
 def graded_attempt(
-    exercise: Exercise, body: GradeRequest, ordinal: int, ceiling: FeedbackLevel
+    exercise: Exercise, body: GradeRequest, most: FeedbackLevel
 ) -> tuple[Report, Outcome]:
-    """The report at the level of this attempt, and the outcome, which needs more than bare marks.
-
-    ``ceiling`` is the most that the service tells.
-    """
-    most = least(exercise.feedback_at(ordinal), ceiling)
+    """The report at a level, and the outcome, which needs more than bare marks."""
     report = grade(exercise, body.submission(most))
     if report.feedback in (FeedbackLevel.FULL, FeedbackLevel.HINTS):
         return report, outcome_of(report)

@@ -8,7 +8,8 @@ from typing import Final, Literal
 
 from sqlalchemy import Connection, select
 
-from service.attempts.reading import LISTED, AttemptFilter, ListedAttempt
+from service.attempts.attempt import AttemptFilter, ListedAttempt
+from service.attempts.reading import LISTED, condition
 from service.attempts.tables import attempts
 from service.formats.shared import spreadsheet
 
@@ -33,7 +34,7 @@ def graded_attempts(
     """
     ordered = (
         select(*LISTED)
-        .where(wanted.condition())
+        .where(condition(wanted))
         .order_by(attempts.c.exercise, attempts.c.learner, attempts.c.at, attempts.c.number)
         .execution_options(yield_per=1000)
     )

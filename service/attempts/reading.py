@@ -7,68 +7,33 @@ from typing import Any, Final
 
 from sqlalchemy import ColumnElement, Connection, Row, and_, literal, select, tuple_
 
+from service.attempts.attempt import AttemptFilter, ListedAttempt
+from service.attempts.errors import BadCursorError
 from service.attempts.tables import UtcTime, attempts, earlier_reports, overrides
 
-MOST_ON_A_PAGE: Final = 100
 _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
 _TICK: Final = timedelta(microseconds=1)
 # Larger numbers are none that a database holds.
 _LARGEST: Final = 2**62
 
 
-class BadCursorError(ValueError):
-    """The text is no cursor of a page."""
+def condition(wanted: AttemptFilter) -> ColumnElement[bool]:
+    """A filter in the database's words."""
+    return and_(True, *_conditions(wanted))
 
 
-@dataclass(frozen=True, slots=True)
-class AttemptFilter:
-    """Which attempts are read; None asks for nothing. ``since`` belongs to them, ``until`` not."""
-
-    exercise: str | None = None
-    learner: str | None = None
-    since: datetime | None = None
-    until: datetime | None = None
-    counted: bool | None = None
-
-    def condition(self) -> ColumnElement[bool]:
-        """The same in the database's words."""
-        return and_(True, *self._conditions())
-
-    def _conditions(self) -> Iterator[ColumnElement[bool]]:
-        if self.exercise is not None:
-            yield attempts.c.exercise == self.exercise
-        if self.learner is not None:
-            yield attempts.c.learner == self.learner
-        if self.since is not None:
-            yield attempts.c.at >= self.since
-        if self.until is not None:
-            yield attempts.c.at < self.until
-        if self.counted is not None:
-            has_ordinal = attempts.c.ordinal.is_not(None)
-            yield has_ordinal if self.counted else ~has_ordinal
-
-
-@dataclass(frozen=True, slots=True)
-class ListedAttempt:
-    """An attempt without its answers and its report; ``awarded`` are the points of a tutor."""
-
-    number: int
-    id: str
-    exercise: str
-    learner: str
-    ordinal: int | None
-    at: datetime
-    is_late: bool
-    points: float
-    max_points: float
-    awarded: float | None
-    version: str
-    grader: str
-
-    @property
-    def earned(self) -> float:
-        """The points that count: those of a tutor before those of the report."""
-        return self.points if self.awarded is None else self.awarded
+def _conditions(wanted: AttemptFilter) -> Iterator[ColumnElement[bool]]:
+    if wanted.exercise is not None:
+        yield attempts.c.exercise == wanted.exercise
+    if wanted.learner is not None:
+        yield attempts.c.learner == wanted.learner
+    if wanted.since is not None:
+        yield attempts.c.at >= wanted.since
+    if wanted.until is not None:
+        yield attempts.c.at < wanted.until
+    if wanted.counted is not None:
+        has_ordinal = attempts.c.ordinal.is_not(None)
+        yield has_ordinal if wanted.counted else ~has_ordinal
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +57,7 @@ def page(
 
     Raises BadCursorError.
     """
-    newest = select(*LISTED).where(wanted.condition())
+    newest = select(*LISTED).where(condition(wanted))
     if cursor is not None:
         at, number = _place(cursor)
         last = tuple_(literal(at, UtcTime()), literal(number))
@@ -107,6 +72,9 @@ def page(
 
 def history(connection: Connection, attempt_id: str) -> AttemptHistory | None:
     """An attempt with its answers, reports and overrides; None where there is none."""
+    # PostgreSQL refuses some characters before it looks.
+    if not attempt_id.isalnum():
+        return None
     found = connection.execute(
         select(*LISTED, attempts.c.submission, attempts.c.report).where(attempts.c.id == attempt_id)
     ).one_or_none()

@@ -9,6 +9,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import lru_cache
 from typing import Any, Final
 
 from sqlalchemy import (
@@ -25,11 +26,12 @@ from sqlalchemy import (
     update,
 )
 
+from service.attempts.database import without_time_limit
 from service.attempts.graded import graded_attempt
 from service.attempts.outcome import Outcome
-from service.attempts.recording import insert_or_ignore, outcome_id
+from service.attempts.recording import insert_or_ignore, outcome_ids
 from service.attempts.tables import attempts, earlier_reports, regrade_queue
-from service.catalogue import Exercise, FeedbackLevel
+from service.catalogue import Exercise, FeedbackLevel, least
 from service.formats.json import rendered
 from service.grading import Report
 from service.submissions.body import GradeRequest
@@ -37,6 +39,8 @@ from service.version import VERSION
 
 # So many are regraded in one commit.
 BATCH: Final = 50
+# So many reports are kept for the next who sent the same answers.
+_KEPT: Final = 1000
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,12 +61,23 @@ class RegradedAttempt:
         return self.before != self.after or bool(self.reasons)
 
 
+@dataclass(frozen=True, slots=True)
+class _Graded:
+    """A new report, as it is written, and what is counted of it."""
+
+    report: Report
+    text: str
+    outcome: Outcome
+
+
 class Regrading:
     """The regrading of an exercise's attempts by its present version and the present program."""
 
     def __init__(self, exercise: Exercise, ceiling: FeedbackLevel) -> None:
         self._exercise = exercise
         self._ceiling = ceiling
+        # The same answers get the same report.
+        self._graded = lru_cache(_KEPT)(self._grade)
 
     def outdated(self, connection: Connection) -> list[int]:
         """The numbers of the attempts that another version has graded."""
@@ -75,9 +90,10 @@ class Regrading:
 
     def enqueue(self, connection: Connection) -> None:
         """Have all outdated attempts wait for workers; those that wait already wait once."""
+        without_time_limit(connection)
         waiting = select(attempts.c.number, literal(self._exercise.id)).where(self._is_outdated())
         connection.execute(
-            insert_or_ignore(connection, regrade_queue).from_select(
+            insert_or_ignore(regrade_queue)[connection.dialect.name].from_select(
                 ["attempt", "exercise"], waiting.order_by(attempts.c.number)
             )
         )
@@ -105,7 +121,7 @@ class Regrading:
         if done:
             self._write(connection, done)
         connection.execute(delete(regrade_queue).where(regrade_queue.c.attempt.in_(taken)))
-        return [change for _, change, _, _ in done]
+        return [change for _, change, _ in done]
 
     def _is_outdated(self) -> ColumnElement[bool]:
         another = or_(attempts.c.version != self._exercise.version, attempts.c.grader != VERSION)
@@ -118,32 +134,35 @@ class Regrading:
         chosen = select(attempts).where(attempts.c.number.in_(numbers))
         return connection.execute(chosen.order_by(attempts.c.number)).all()
 
-    def _regraded(self, row: Row[Any]) -> tuple[RegradedAttempt, Report, Outcome]:
-        body = GradeRequest.model_validate_json(row.submission)
-        report, outcome = graded_attempt(self._exercise, body, row.ordinal or 1, self._ceiling)
+    def _regraded(self, row: Row[Any]) -> "tuple[RegradedAttempt, _Graded]":
+        graded = self._graded(row.submission, self._exercise.feedback_at(row.ordinal or 1))
+        report = graded.report
         after = round(report.points * row.worth, 6)
         reasons = tuple(_reasons(json.loads(row.report), report))
         change = RegradedAttempt(
             row.id, row.learner, row.ordinal, row.points, after, report.max_points, reasons
         )
-        return change, report, outcome
+        return change, graded
+
+    def _grade(self, submission: str, level: FeedbackLevel) -> "_Graded":
+        body = GradeRequest.model_validate_json(submission)
+        report, outcome = graded_attempt(self._exercise, body, least(level, self._ceiling))
+        return _Graded(report, rendered(report).decode(), outcome)
 
     def _write(
         self,
         connection: Connection,
-        done: Sequence[tuple[Row[Any], RegradedAttempt, Report, Outcome]],
+        done: Sequence[tuple[Row[Any], RegradedAttempt, "_Graded"]],
     ) -> None:
         now = datetime.now(UTC)
-        # Always in one order: two workers that wait for each other's outcomes would wait for ever.
-        found = {each.digest: each for _, _, _, each in done}
-        ids = {digest: outcome_id(connection, found[digest]) for digest in sorted(found)}
+        ids = outcome_ids(connection, [graded.outcome for _, _, graded in done])
         kept = ("report", "version", "grader", "points", "max_points")
         connection.execute(
             insert(earlier_reports),
             [
                 {"attempt": row.number, "replaced_at": now}
                 | {name: getattr(row, name) for name in kept}
-                for row, _, _, _ in done
+                for row, _, _ in done
             ],
         )
         connection.execute(
@@ -151,14 +170,14 @@ class Regrading:
             [
                 {
                     "which": row.number,
-                    "report": rendered(report).decode(),
-                    "version": report.version,
-                    "grader": report.grader,
+                    "report": graded.text,
+                    "version": graded.report.version,
+                    "grader": graded.report.grader,
                     "points": change.after,
-                    "max_points": report.max_points,
-                    "outcome": ids[outcome.digest],
+                    "max_points": graded.report.max_points,
+                    "outcome": ids[graded.outcome],
                 }
-                for row, change, report, outcome in done
+                for row, change, graded in done
             ],
         )
 

@@ -6,9 +6,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from sqlalchemy import ColumnElement, Connection, String, cast, func, select
+from sqlalchemy import ColumnElement, Connection, String, cast, func, select, type_coerce
 
-from service.attempts.reading import AttemptFilter
+from service.attempts.attempt import AttemptFilter
+from service.attempts.reading import condition
 from service.attempts.tables import attempts, outcomes
 from service.contract.statistics import (
     CellFigures,
@@ -33,7 +34,7 @@ _WRONG: Final = (Verdict.INCORRECT, Verdict.PARTIAL)
 def exercise_statistics(connection: Connection, wanted: AttemptFilter) -> ExerciseStatistics:
     """The statistics of the attempts at ``wanted.exercise`` in a span of time."""
     assert wanted.exercise is not None
-    chosen = wanted.condition()
+    chosen = condition(wanted)
     counts = _counts(connection, chosen)
     contents = _contents(connection, wanted.exercise, counts)
     parts: dict[str, _PartCount] = defaultdict(_PartCount)
@@ -58,15 +59,19 @@ def exercise_statistics(connection: Connection, wanted: AttemptFilter) -> Exerci
 def _counts(connection: Connection, chosen: ColumnElement[bool]) -> dict[int, Counter[str]]:
     """How many attempts have each outcome on each day (in UTC)."""
     is_postgresql = connection.dialect.name == "postgresql"
-    moment: Any = func.timezone("UTC", attempts.c.at) if is_postgresql else attempts.c.at
-    day = cast(func.date(moment), String)
+    # SQLite has moments as texts that begin with the day; to read them as dates takes far longer.
+    day: ColumnElement[str] = (
+        cast(func.date(func.timezone("UTC", attempts.c.at)), String)
+        if is_postgresql
+        else func.substr(type_coerce(attempts.c.at, String), 1, 10)
+    )
     counted = (
         select(attempts.c.outcome, day, func.count())
         .where(chosen)
         .group_by(attempts.c.outcome, day)
     )
     found: dict[int, Counter[str]] = defaultdict(Counter)
-    for outcome, date, times in connection.execute(counted):
+    for outcome, date, times in connection.execute(counted).all():
         found[outcome][date] = times
     return found
 

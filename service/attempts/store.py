@@ -9,11 +9,22 @@ from typing import Final, TypeVar
 from sqlalchemy import Connection, Engine, literal, select
 from sqlalchemy.exc import SQLAlchemyError
 
-from service.attempts.database import StoreDownError, open_database, reason
+from service.attempts.attempt import (
+    AttemptFilter,
+    ListedAttempt,
+    NewAttempt,
+    RecordedAttempt,
+    Standing,
+)
+from service.attempts.database import open_database, reason
+from service.attempts.errors import StoreDownError
 from service.attempts.outcome import Outcome
-from service.attempts.recording import NewAttempt, RecordedAttempt, Standing, record, standing
+from service.attempts.reading import AttemptHistory, history, page
+from service.attempts.recording import record, standing
+from service.attempts.statistics import exercise_statistics
 from service.attempts.tables import attempts
 from service.attempts.writer import AttemptWriter
+from service.contract.statistics import ExerciseStatistics
 
 R = TypeVar("R")
 
@@ -79,7 +90,24 @@ class AttemptStore:
         with self.measure("check"):
             await self._running.run(lambda connection: connection.execute(_ALIVE))
 
-    async def read(self, work: Callable[[Connection], R]) -> R:
+    async def page(
+        self, wanted: AttemptFilter, cursor: str | None, most: int
+    ) -> tuple[list[ListedAttempt], str | None]:
+        """At most ``most`` attempts, the newest first, and the cursor of the next page if any.
+
+        Raises BadCursorError.
+        """
+        return await self._read(lambda connection: page(connection, wanted, cursor, most))
+
+    async def history(self, attempt_id: str) -> AttemptHistory | None:
+        """An attempt with its answers, reports and overrides; None where there is none."""
+        return await self._read(lambda connection: history(connection, attempt_id))
+
+    async def statistics(self, wanted: AttemptFilter) -> ExerciseStatistics:
+        """The statistics of the attempts at ``wanted.exercise`` in a span of time."""
+        return await self._read(lambda connection: exercise_statistics(connection, wanted))
+
+    async def _read(self, work: Callable[[Connection], R]) -> R:
         """The result of ``work``, which writes nothing; beside the attempts that are recorded."""
         assert self._readers is not None, "the store has not been started"
         loop = asyncio.get_running_loop()

@@ -1,6 +1,7 @@
 """The tables of the database, as the newest migration leaves them."""
 
 from datetime import UTC, datetime
+from typing import Any
 
 from sqlalchemy import (
     BigInteger,
@@ -17,6 +18,7 @@ from sqlalchemy import (
     Table,
     Text,
     UniqueConstraint,
+    text,
 )
 from sqlalchemy.types import TypeDecorator
 
@@ -64,6 +66,9 @@ outcomes = Table(
     UniqueConstraint("exercise", "digest"),
 )
 
+# Attempts in which nothing could be read: few among many that count.
+_UNCOUNTED: Any = dict.fromkeys(("sqlite_where", "postgresql_where"), text("ordinal IS NULL"))
+
 # ``number`` is the order of arrival, ``ordinal`` the learner's own count of counted attempts at the
 # exercise: its uniqueness keeps two requests at once from both being the last one allowed.
 # ``awarded`` are the points of a tutor instead of the report's. The indexes hold all that lists are
@@ -93,6 +98,8 @@ attempts = Table(
     UniqueConstraint("exercise", "learner", "ordinal"),
     UniqueConstraint("owner", "idempotency_key"),
     Column("awarded", Float),
+    Index("ix_attempts_uncounted", "at", "number", **_UNCOUNTED),
+    Index("ix_attempts_exercise_uncounted", "exercise", "at", "number", **_UNCOUNTED),
     Index("ix_attempts_at", "at", "number", "ordinal"),
     Index("ix_attempts_exercise", "exercise", "at", "number", "ordinal"),
     Index("ix_attempts_learner", "learner", "at", "number", "ordinal"),

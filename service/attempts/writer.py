@@ -3,30 +3,34 @@
 import asyncio
 import queue
 import threading
+from collections import defaultdict
 from collections.abc import Callable
-from concurrent.futures import Future
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Final, TypeVar
 
 from sqlalchemy import Connection, Engine
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
-from service.attempts.database import StoreDownError, reason
+from service.attempts.database import is_deadlock, reason
+from service.attempts.errors import StoreDownError
 
 R = TypeVar("R")
 
 # So many share a transaction at the most, and so many wait before others are turned away.
 _TOGETHER: Final = 64
 _WAITING: Final = 4096
-# What PostgreSQL says where two transactions of several attempts each wait for one another: those
-# of one attempt each do not.
-_DEADLOCK: Final = "40P01"
 
 
 @dataclass(frozen=True, slots=True)
 class _Job:
     work: Callable[[Connection], Any]
-    done: "Future[Any]"
+    loop: asyncio.AbstractEventLoop
+    done: "asyncio.Future[Any]"
+
+
+# A job and its result, or the failure that it is told of.
+_Settled = tuple[_Job, Any, Exception | None]
 
 
 class AttemptWriter:
@@ -38,22 +42,19 @@ class AttemptWriter:
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
-        self._jobs: queue.Queue[_Job | None] = queue.Queue(_WAITING)
+        self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._run, name="attempts", daemon=True)
         self._thread.start()
 
     async def run(self, work: Callable[[Connection], R]) -> R:
         """The result of ``work``, committed. Raises StoreDownError where nothing was written."""
-        return await asyncio.wrap_future(self.submit(work))
-
-    def submit(self, work: Callable[[Connection], R]) -> "Future[R]":
-        """Have ``work`` done; its future fails with StoreDownError where nothing was written."""
-        done: Future[R] = Future()
-        try:
-            self._jobs.put_nowait(_Job(work, done))
-        except queue.Full:
-            done.set_exception(StoreDownError("too many attempts wait to be written"))
-        return done
+        if self._jobs.qsize() >= _WAITING:
+            raise StoreDownError("too many attempts wait to be written")
+        loop = asyncio.get_running_loop()
+        job = _Job(work, loop, loop.create_future())
+        self._jobs.put(job)
+        result: R = await job.done
+        return result
 
     def close(self) -> None:
         """Write what waits, and end."""
@@ -65,7 +66,7 @@ class AttemptWriter:
         while not ended:
             jobs, ended = self._waiting()
             # Who has gone away needs no answer, and what nobody waits for is not begun.
-            jobs = [job for job in jobs if job.done.set_running_or_notify_cancel()]
+            jobs = [job for job in jobs if not job.done.cancelled()]
             if jobs:
                 self._work_off(jobs)
 
@@ -92,11 +93,9 @@ class AttemptWriter:
                     self._work_off([job])
                 return
             failure = _told(error)
-            for job in jobs:
-                job.done.set_exception(failure)
+            _settle([(job, None, failure) for job in jobs])
             return
-        for job, result in zip(jobs, results, strict=True):
-            job.done.set_result(result)
+        _settle([(job, result, None) for job, result in zip(jobs, results, strict=True)])
 
     def _together(self, jobs: list[_Job]) -> list[Any]:
         with self._engine.connect() as connection:
@@ -105,9 +104,31 @@ class AttemptWriter:
                 return [job.work(connection) for job in jobs]
 
 
+def _settle(settled: list[_Settled]) -> None:
+    """Tell those who wait, all of a loop by waking it once."""
+    by_loop: dict[asyncio.AbstractEventLoop, list[_Settled]] = defaultdict(list)
+    for each in settled:
+        by_loop[each[0].loop].append(each)
+    for loop, those in by_loop.items():
+        # Nobody waits in a loop that is closed.
+        with suppress(RuntimeError):
+            loop.call_soon_threadsafe(_tell, those)
+
+
+def _tell(settled: list[_Settled]) -> None:
+    for job, result, failure in settled:
+        if job.done.done():
+            continue
+        if failure is None:
+            job.done.set_result(result)
+        else:
+            job.done.set_exception(failure)
+
+
 def is_lost(error: Exception) -> bool:
     """Whether the database itself failed, so that another try at once would fail as well."""
-    if getattr(getattr(error, "orig", None), "sqlstate", None) == _DEADLOCK:
+    # Two transactions of several attempts each may wait for one another; those of one each do not.
+    if is_deadlock(error):
         return False
     return isinstance(error, SQLAlchemyError) and (
         not isinstance(error, DBAPIError)

@@ -11,9 +11,11 @@ import typer
 from sqlalchemy import Engine, text
 from sqlalchemy.exc import SQLAlchemyError
 
-from service.attempts.database import UnusableDatabaseError, in_transaction, open_database, reason
+from service.attempts.attempt import AttemptFilter
+from service.attempts.database import in_transaction, open_database, reason
+from service.attempts.errors import UnusableDatabaseError
 from service.attempts.grades import Counting, GradesFormat, graded_attempts, written
-from service.attempts.reading import AttemptFilter, page
+from service.attempts.reading import page
 from service.attempts.statistics import exercise_statistics
 from service.attempts.tutoring import (
     LearnerData,

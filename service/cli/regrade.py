@@ -7,7 +7,8 @@ from typing import Final
 from sqlalchemy import Engine
 from sqlalchemy.exc import SQLAlchemyError
 
-from service.attempts.database import UnusableDatabaseError, in_transaction, open_database
+from service.attempts.database import in_transaction, open_database
+from service.attempts.errors import UnusableDatabaseError
 from service.attempts.regrading import BATCH, RegradedAttempt, Regrading
 from service.catalogue import Exercise
 from service.cli.progress import progress
@@ -15,7 +16,7 @@ from service.cli.terminal import installed_exercise, stdout
 from service.formats.shared.plain_text import number, visible
 from service.settings import load_settings
 
-# While others are at the last attempts (seconds).
+# Between two looks at what is left, and while others are at the last attempts (seconds).
 _PAUSE: Final = 0.2
 _MOST_SHOWN: Final = 200
 
@@ -60,10 +61,16 @@ def regrade_all(engine: Engine, exercise: Exercise, jobs: int) -> None:
         each.start()
     try:
         with progress(total) as bar:
+            look_again = 0.0
             while left:
                 done = in_transaction(engine, regrading.work)
+                begun = time.monotonic()
+                if done and begun < look_again:
+                    continue
                 with engine.connect() as connection:
                     before, left = left, regrading.waiting(connection)
+                # A count of millions takes as long as regrading many.
+                look_again = begun + max(_PAUSE, 20 * (time.monotonic() - begun))
                 for _ in range(before - left):
                     bar.advance()
                 if left and not done:

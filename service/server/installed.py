@@ -4,8 +4,7 @@ from fastapi import FastAPI
 
 from service.api.application import application
 from service.api.tutor import tutor_right
-from service.attempts.database import UnusableDatabaseError
-from service.attempts.store import AttemptStore
+from service.attempts.errors import UnusableDatabaseError
 from service.catalogue import open_catalogue
 from service.server.access_log import set_up_access_log
 from service.server.admission import FairAdmission
@@ -18,6 +17,9 @@ def installed_app(settings: Settings) -> FastAPI:
     catalogue = open_catalogue(settings.exercises_dir, reload=settings.reload_exercises)
     store = None
     if settings.database is not None:
+        # Only here: it loads the drivers of databases.
+        from service.attempts.store import AttemptStore
+
         try:
             store = AttemptStore.open(settings.database.get_secret_value())
         except UnusableDatabaseError as error:

@@ -1,33 +1,32 @@
 """Measure the store with many attempts: ``python -m tests.attempts.campaign [--count N]``.
 
-Prints the time of a page, of the statistics of an exercise and of a regrade, then the share of its
-throughput that a graded POST keeps where it is recorded (SQLite, one server, both in turn).
+Prints the time of a page, of the statistics of an exercise and of a regrade. What recording costs a
+POST is a line of ``make bench``.
 """
 
 import argparse
 import random
 import tempfile
 import time
-from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
 from dataclasses import replace
 from datetime import timedelta
 from pathlib import Path
 
-import httpx
 from rich.console import Console
-from sqlalchemy import func, insert, select
+from sqlalchemy import Connection, insert
 
+from service.attempts.attempt import AttemptFilter, NewAttempt
 from service.attempts.database import in_transaction
-from service.attempts.reading import AttemptFilter, page
-from service.attempts.recording import outcome_id
+from service.attempts.reading import page
+from service.attempts.recording import outcome_ids
 from service.attempts.regrading import Regrading
 from service.attempts.statistics import exercise_statistics
 from service.attempts.store import AttemptStore
 from service.attempts.tables import attempts
 from service.catalogue import Exercise, FeedbackLevel, load_catalogue, shipped_folder
-from tests.api.serving import served
 from tests.attempts.recorded import NOON, new_attempt
+from tests.benchmarks.timing import floor_seconds
 
 # Entries of a class: most are right, each cell has its common slips.
 CELLS = (
@@ -37,9 +36,9 @@ CELLS = (
     ("0", "0"), ("0", "0", "180deg"), ("d4", "-d4", "0"), ("θ4", "-θ4", "q4"),
 )  # fmt: skip
 TABLES = 2000
+AT_ONCE = 10_000
 REGRADED = 10_000
-POSTS = 1500
-CLIENTS = 16
+ALL_DIFFERENT = 2000
 
 show = Console(highlight=False, soft_wrap=True).print
 
@@ -50,26 +49,40 @@ def table(dice: random.Random) -> str:
     return "\n".join(" ".join(cells[i : i + 4]) for i in range(0, 16, 4))
 
 
-def fill(store: AttemptStore, exercise: Exercise, count: int) -> None:
-    """Record ``count`` attempts of a few thousand different tables."""
+def spelled(text: str, i: int) -> str:
+    """The table with its blanks doubled where ``i`` has a 1: another text of the same meaning."""
+    first, *others = text.split(" ")
+    return first + "".join(" " * (1 + (i >> k & 1)) + each for k, each in enumerate(others))
+
+
+def fill(
+    store: AttemptStore, exercise: Exercise, count: int, *, no_two_alike: bool = False
+) -> None:
+    """Record ``count`` attempts, as a class sends them or no two alike."""
     dice = random.Random(1)
-    graded = [new_attempt(exercise, "l", table(dice)) for _ in range(min(TABLES, count))]
-    rows = []
-    ids: dict[str, int] = {}
-    with store.engine.connect() as connection:
-        connection = connection.execution_options(writes=True)
-        with connection.begin():
-            for i in range(count):
-                new, outcome = dice.choice(graded)
-                if outcome.digest not in ids:
-                    ids[outcome.digest] = outcome_id(connection, outcome)
-                new = replace(
-                    new, learner=f"l{i // 5}", ordinal=i % 5 + 1, at=NOON + timedelta(minutes=i)
-                )
-                values = {name: getattr(new, name) for name in new.__dataclass_fields__}
-                rows.append(values | {"id": f"{i:032x}", "outcome": ids[outcome.digest]})
+    tables = [table(dice) for _ in range(count if no_two_alike else min(TABLES, count))]
+    if no_two_alike:
+        tables = [spelled(each, i) for i, each in enumerate(tables)]
+    graded = [new_attempt(exercise, "l", each) for each in tables]
+
+    def row(i: int, new: NewAttempt, outcome: int) -> dict[str, object]:
+        moment = NOON + timedelta(minutes=i)
+        new = replace(new, learner=f"l{i // 5}", ordinal=i % 5 + 1, at=moment)
+        values = {name: getattr(new, name) for name in new.__dataclass_fields__}
+        return values | {"id": f"{i:032x}", "outcome": outcome}
+
+    def write(connection: Connection) -> int:
+        ids = outcome_ids(connection, [outcome for _, outcome in graded])
+        for begin in range(0, count, AT_ONCE):
+            rows = []
+            for i in range(begin, min(begin + AT_ONCE, count)):
+                new, outcome = graded[i] if no_two_alike else dice.choice(graded)
+                rows.append(row(i, new, ids[outcome]))
             connection.execute(insert(attempts), rows)
-    show(f"{count} attempts, {len(ids)} outcomes, {len(graded)} different tables")
+        return len(ids)
+
+    outcomes = in_transaction(store.engine, write)
+    show(f"{count} attempts, {outcomes} outcomes, {len(set(tables))} different tables")
 
 
 def timed(work: Callable[[], object]) -> float:
@@ -100,47 +113,16 @@ def read(store: AttemptStore) -> None:
         show(f"statistics: {seconds:.2f} s (at most 1)")
 
 
-def regrade(store: AttemptStore, exercise: Exercise) -> None:
-    """Time the regrade of ten thousand attempts in this process."""
+def regrade(store: AttemptStore, exercise: Exercise, most: int) -> None:
+    """Time the regrade of so many attempts in this process."""
     regrading = Regrading(replace(exercise, version="corrected"), FeedbackLevel.HINTS)
     in_transaction(store.engine, regrading.enqueue)
     done, begun, used = 0, time.perf_counter(), time.process_time()
-    while done < REGRADED and (batch := in_transaction(store.engine, regrading.work)):
+    while done < most and (batch := in_transaction(store.engine, regrading.work)):
         done += len(batch)
     took, used = time.perf_counter() - begun, time.process_time() - used
-    show(f"regrade of {done}: {took:.1f} s, {used:.1f} s of processor time (at most 60)")
-
-
-def posts(catalogue: Mapping[str, Exercise]) -> None:
-    """Compare graded POSTs with recorded ones, in turn on one server."""
-    with tempfile.TemporaryDirectory() as folder:
-        database = str(Path(folder) / "attempts.db")
-        with served(Path(folder), DH_GRADER_DATABASE=database) as server:
-            rates: dict[str, list[float]] = {"grade": [], "attempts": []}
-            for _ in range(3):
-                for route, found in rates.items():
-                    found.append(rate(f"{server.address}/v1/exercises/scara/{route}", route))
-        graded, recorded = (max(found) for found in rates.values())
-        show(f"POST grade: {graded:.0f}/s, POST attempts: {recorded:.0f}/s")
-        show(f"a recorded one keeps {recorded / graded:.0%} of the throughput (at least 67 %)")
-
-
-def rate(url: str, route: str) -> float:
-    """Answers a second for clients that post different tables."""
-    dice = random.Random(2)
-    bodies = [{"answers": {"table": table(dice)}} for _ in range(POSTS)]
-    with httpx.Client(limits=httpx.Limits(max_connections=CLIENTS), timeout=60) as client:
-
-        def post(i: int) -> int:
-            more = {"learner": f"l{i}-{time.monotonic_ns()}"} if route == "attempts" else {}
-            return client.post(url, json=bodies[i] | more).status_code
-
-        begun = time.perf_counter()
-        with ThreadPoolExecutor(CLIENTS) as pool:
-            statuses = set(pool.map(post, range(POSTS)))
-        took = time.perf_counter() - begun
-    assert statuses in ({200}, {201}), statuses
-    return POSTS / took
+    took, used = 1e4 / done * took, 1e4 / done * used
+    show(f"regrade of 10,000: {took:.1f} s, {used:.1f} s of processor time (at most 60)")
 
 
 def main() -> None:
@@ -149,16 +131,18 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=100_000)
     parser.add_argument("--url", help="an empty database; by default a new file of SQLite")
     options = parser.parse_args()
-    catalogue = load_catalogue(shipped_folder())
+    scara = load_catalogue(shipped_folder())["scara"]
+    show(f"floor of make bench: {floor_seconds() * 1e3:.3f} ms")
     with tempfile.TemporaryDirectory() as folder:
         store = AttemptStore.open(options.url or str(Path(folder) / "attempts.db"))
-        fill(store, catalogue["scara"], options.count)
-        with store.engine.connect() as connection:
-            assert connection.scalar(select(func.count()).select_from(attempts)) == options.count
+        fill(store, scara, options.count)
         read(store)
-        regrade(store, catalogue["scara"])
+        regrade(store, scara, REGRADED)
         store.close()
-    posts(catalogue)
+        store = AttemptStore.open(str(Path(folder) / "different.db"))
+        fill(store, scara, ALL_DIFFERENT, no_two_alike=True)
+        regrade(store, scara, ALL_DIFFERENT)
+        store.close()
 
 
 if __name__ == "__main__":

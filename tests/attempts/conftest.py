@@ -1,3 +1,5 @@
+import multiprocessing
+import shutil
 from collections.abc import Iterator
 from itertools import count
 from pathlib import Path
@@ -5,31 +7,55 @@ from typing import Any
 
 import pytest
 
+from service.attempts.database import open_database
 from service.attempts.store import AttemptStore
 from tests.attempts.databases import KINDS, new_database, new_file, postgresql_server
 
+TEMPLATE = "with_tables"
 _number = count()
 
 
 @pytest.fixture(scope="session")
 def server() -> Iterator[Any]:
     with postgresql_server() as running:
+        open_database(new_database(running, TEMPLATE)).dispose()
         yield running
 
 
-@pytest.fixture(params=KINDS)
-def database_url(request: pytest.FixtureRequest, tmp_path: Path) -> str:
-    """An empty database of each kind."""
-    if request.param == "sqlite":
-        return new_file(tmp_path)
-    url: str = request.getfixturevalue("postgresql_url")
-    return url
+@pytest.fixture(scope="session")
+def killable() -> Any:
+    """Makes processes that begin at once; one of its own imports what they need, for all."""
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(
+        ["service.attempts.regrading", "service.attempts.store", "service.server.start"]
+    )
+    return context.Process
+
+
+@pytest.fixture(scope="session")
+def file_with_tables(tmp_path_factory: pytest.TempPathFactory) -> str:
+    file = new_file(tmp_path_factory.mktemp("sqlite"))
+    open_database(file).dispose()
+    return file
+
+
+@pytest.fixture
+def sqlite_url(file_with_tables: str, tmp_path: Path) -> str:
+    """A database of SQLite with its tables, made by the migrations."""
+    return str(shutil.copy(file_with_tables, new_file(tmp_path)))
 
 
 @pytest.fixture
 def postgresql_url(server: Any) -> str:
-    """An empty database of the PostgreSQL server."""
-    return new_database(server, f"attempts{next(_number)}")
+    """The same in PostgreSQL."""
+    return new_database(server, f"attempts{next(_number)}", TEMPLATE)
+
+
+@pytest.fixture(params=KINDS)
+def database_url(request: pytest.FixtureRequest) -> str:
+    """The same of each kind."""
+    url: str = request.getfixturevalue(f"{request.param}_url")
+    return url
 
 
 @pytest.fixture

@@ -30,12 +30,12 @@ def postgresql_server() -> Iterator[Any]:
             server.cleanup()
 
 
-def new_database(server: Any, name: str) -> str:
-    """The URL of a new, empty database of the server."""
+def new_database(server: Any, name: str, like: str = "template1") -> str:
+    """The URL of a new database of the server, which is empty or a copy of another."""
     url = make_url(server.get_uri().replace("postgresql://", "postgresql+psycopg://"))
     engine = create_engine(url, isolation_level="AUTOCOMMIT")
     with engine.connect() as connection:
-        connection.execute(text(f"CREATE DATABASE {name}"))
+        connection.execute(text(f"CREATE DATABASE {name} TEMPLATE {like}"))
     engine.dispose()
     host = quote(str(url.query["host"]), safe="/")
     return f"postgresql://{url.username}:@/{name}?host={host}"

@@ -1,21 +1,33 @@
-"""An acknowledged attempt survives the death of the process that took it."""
+"""An acknowledged attempt survives the death of the process that took it, and is recorded once."""
 
+import asyncio
 import os
 import random
-import signal
-import subprocess
-import sys
+import re
 import threading
 import time
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from itertools import count
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
 from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
+from pydantic import SecretStr
 from sqlalchemy import select
 
 from service.attempts.database import open_database
+from service.attempts.store import AttemptStore
 from service.attempts.tables import attempts
-from tests.api.serving import ROOT, announced_port
+from service.catalogue import Exercise
+from service.server.start import serve
+from service.settings import Settings
+from tests.attempts.recorded import RIGHT, new_attempt
 from tests.guards import ANSWER
 
 CLIENTS = 4
@@ -23,10 +35,14 @@ TABLE = "a1 0 0 θ1\na2 {} 0 θ2\n0 0 d3 0\n0 0 d4 θ4"
 
 
 class Acknowledged:
-    """Posts attempts from several threads until the server is gone; keeps what it was told."""
+    """Posts attempts from several threads while there is a replica; keeps what it was told.
 
-    def __init__(self, port: int) -> None:
-        self._url = f"http://127.0.0.1:{port}/v1/exercises/scara/attempts"
+    Where one has died, a request is sent again to the next, with the same key; every fifth is sent
+    to all of them.
+    """
+
+    def __init__(self, ports: Sequence[int]) -> None:
+        self._urls = [f"http://127.0.0.1:{port}/v1/exercises/scara/attempts" for port in ports]
         self.ids: dict[str, str] = {}
         self._threads = [threading.Thread(target=self._post, args=(i,)) for i in range(CLIENTS)]
 
@@ -43,53 +59,134 @@ class Acknowledged:
             for i in range(100_000):
                 key = f"{client}.{i}"
                 body = {"learner": f"learner {client}", "answers": {"table": TABLE.format(i)}}
-                try:
-                    answer = http.post(self._url, json=body, headers={"Idempotency-Key": key})
-                except httpx.TransportError:
+                told: set[str] = set()
+                for k in range(len(self._urls)):
+                    url = self._urls[(client + k) % len(self._urls)]
+                    try:
+                        answer = http.post(url, json=body, headers={"Idempotency-Key": key})
+                    except httpx.TransportError:
+                        continue
+                    assert answer.status_code == 201, answer.text
+                    told.add(answer.json()["attempt"]["id"])
+                    if i % 5:
+                        break
+                if not told:
                     return
-                assert answer.status_code == 201, answer.text
-                self.ids[key] = answer.json()["attempt"]["id"]
+                (self.ids[key],) = told
 
 
-def killed_at_random(url: str, folder: Path, seed: int) -> tuple[dict[str, str], list[str]]:
-    """What was acknowledged by key before a kill, and the keys that are in the database after it.
+def _serve(url: str, log: Path) -> None:
+    """What ``dh-grader serve`` does, with its log in a file."""
+    output = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+    os.dup2(output, 1)
+    os.dup2(output, 2)
+    serve(Settings(port=0, database=SecretStr(url)))
 
-    The second list repeats a key that was recorded twice.
+
+def _port(process: BaseProcess, log: Path) -> int:
+    """Where the server listens, as soon as it says so."""
+    while True:
+        alive = process.is_alive()
+        text = log.read_text(encoding="utf-8") if log.exists() else ""
+        if found := re.search(r"running on http://127\.0\.0\.1:(\d+)", text):
+            return int(found[1])
+        assert alive, text
+        time.sleep(0.02)
+
+
+def killed_at_random(
+    url: str, folder: Path, killable: Any, replicas: int, seed: int, most: float
+) -> None:
+    """Kill one replica and then the others; all that was acknowledged must be there, once.
+
+    Each lives up to ``most`` seconds after the first answers, or after the death of another.
     """
-    log = folder / "log"
-    environment = os.environ | {"NO_COLOR": "1", "DH_GRADER_DATABASE": url}
-    command = [sys.executable, "-m", "service", "serve", "--port", "0"]
-    with (
-        log.open("wb") as output,
-        subprocess.Popen(
-            command, cwd=ROOT, stdout=output, stderr=output, env=environment
-        ) as process,
-    ):
-        clients = Acknowledged(announced_port(process, log))
-        clients.start()
-        while not clients.ids and process.poll() is None:
+    dice = random.Random(seed)
+    logs = [folder / f"log{i}" for i in range(replicas)]
+    processes = [killable(target=_serve, args=(url, log), daemon=True) for log in logs]
+    for process in processes:
+        process.start()
+    clients = Acknowledged(list(map(_port, processes, logs)))
+    clients.start()
+    for process in processes:
+        seen = len(clients.ids)
+        while len(clients.ids) == seen and process.is_alive():
             time.sleep(0.01)
-        time.sleep(random.Random(seed).uniform(0.2, 1.0))
-        process.send_signal(signal.SIGKILL)
-        clients.join()
+        time.sleep(dice.uniform(0.1, most))
+        process.kill()
+    clients.join()
+    assert_recorded_once(url, clients.ids)
+
+
+def assert_recorded_once(url: str, acknowledged: Mapping[str, str]) -> None:
+    """The database has all of these keys with these ids, and few besides."""
     engine = open_database(url)
     with engine.connect() as connection:
         rows = connection.execute(select(attempts.c.idempotency_key, attempts.c.id)).all()
     engine.dispose()
     recorded = {row.idempotency_key: row.id for row in rows}
-    assert {key: recorded.get(key) for key in clients.ids} == clients.ids
-    return clients.ids, [row.idempotency_key for row in rows]
-
-
-def test_what_was_acknowledged_is_there_once(database_url: str, tmp_path: Path) -> None:
-    acknowledged, recorded = killed_at_random(database_url, tmp_path, 1)
     assert acknowledged
-    assert len(recorded) == len(set(recorded))
+    assert {key: recorded.get(key) for key in acknowledged} == acknowledged
+    assert len(rows) == len(recorded)
     # At most the request that each client had under way was recorded without being acknowledged.
     assert len(recorded) - len(acknowledged) <= CLIENTS
 
 
+def _record(url: str, exercise: Exercise, told: Connection) -> None:
+    """Records attempts by several at once, and tells of each that is acknowledged, for ever."""
+    new, outcome = new_attempt(exercise, "ada", RIGHT, None)
+    store = AttemptStore.open(url)
+    store.start()
+
+    async def client(number: int) -> None:
+        for i in count():
+            written = await store.record(replace(new, idempotency_key=f"{number}.{i}"), outcome)
+            assert written is not None
+            told.send((written.idempotency_key, written.id))
+
+    async def clients() -> None:
+        await asyncio.gather(*map(client, range(CLIENTS)))
+
+    asyncio.run(clients())
+
+
+def test_what_was_acknowledged_is_in_the_file_once(
+    sqlite_url: str, catalogue: Mapping[str, Exercise], killable: Any
+) -> None:
+    told, telling = Pipe(duplex=False)
+    process = killable(target=_record, args=(sqlite_url, catalogue["scara"], telling))
+    process.start()
+    telling.close()
+    acknowledged: dict[str, str] = {}
+    # The end may come in the midst of a message.
+    with suppress(EOFError, OSError):
+        while True:
+            key, attempt = told.recv()
+            acknowledged[key] = attempt
+            if len(acknowledged) == 150:
+                process.kill()
+    process.join()
+    assert_recorded_once(sqlite_url, acknowledged)
+
+
+def test_what_one_of_two_replicas_acknowledged_is_there_once(
+    postgresql_url: str, tmp_path: Path, killable: Any
+) -> None:
+    killed_at_random(postgresql_url, tmp_path, killable, 2, 1, 0.2)
+
+
 @pytest.mark.campaign
 @pytest.mark.parametrize("seed", range(20))
-def test_every_one_of_many_runs(database_url: str, tmp_path: Path, seed: int) -> None:
-    killed_at_random(database_url, tmp_path, seed)
+@pytest.mark.parametrize(
+    ("kind", "replicas"), [("sqlite", 1), ("sqlite", 2), ("postgresql", 1), ("postgresql", 2)]
+)
+def test_every_one_of_many_runs(
+    request: pytest.FixtureRequest,
+    tmp_path: Path,
+    killable: Any,
+    kind: str,
+    replicas: int,
+    seed: int,
+) -> None:
+    url = request.getfixturevalue(f"{kind}_url")
+    killed_at_random(url, tmp_path, killable, replicas, seed, 0.8)

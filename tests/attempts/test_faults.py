@@ -4,15 +4,14 @@ import asyncio
 import sqlite3
 import time
 from collections.abc import Mapping
-from pathlib import Path
+from typing import Any
 
 import pytest
 from sqlalchemy import event
 
-from service.attempts.database import StoreDownError
+from service.attempts.errors import StoreDownError
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
-from tests.attempts.databases import new_database, new_file, postgresql_server
 from tests.attempts.recorded import RIGHT, new_attempt
 
 
@@ -22,14 +21,13 @@ def record(store: AttemptStore, exercise: Exercise, ordinal: int) -> bool:
 
 
 def test_a_locked_file_is_told_after_a_wait_and_works_when_it_is_free(
-    tmp_path: Path, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
+    sqlite_url: str, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("service.attempts.database._LOCK_WAIT", 0.5)
     scara = catalogue["scara"]
-    file = new_file(tmp_path)
-    store = AttemptStore.open(file)
+    store = AttemptStore.open(sqlite_url)
     store.start()
-    other = sqlite3.connect(file, isolation_level=None)
+    other = sqlite3.connect(sqlite_url, isolation_level=None)
     other.execute("BEGIN EXCLUSIVE")
     begun = time.monotonic()
     with pytest.raises(StoreDownError, match="locked"):
@@ -42,10 +40,10 @@ def test_a_locked_file_is_told_after_a_wait_and_works_when_it_is_free(
 
 
 def test_a_full_disk_is_told_and_costs_nothing_that_was_recorded(
-    tmp_path: Path, catalogue: Mapping[str, Exercise]
+    sqlite_url: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     scara = catalogue["scara"]
-    store = AttemptStore.open(new_file(tmp_path))
+    store = AttemptStore.open(sqlite_url)
     pages = 60
     event.listen(
         store.engine,
@@ -67,16 +65,18 @@ def test_a_full_disk_is_told_and_costs_nothing_that_was_recorded(
     store.close()
 
 
-def test_a_server_that_is_started_again_is_used_again(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_server_that_is_started_again_is_used_again(
+    postgresql_url: str, server: Any, catalogue: Mapping[str, Exercise]
+) -> None:
     scara = catalogue["scara"]
-    # One of its own: others use that of the session.
-    with postgresql_server() as server:
-        store = AttemptStore.open(new_database(server, "attempts"))
-        store.start()
-        assert record(store, scara, 1)
-        server.stop()
+    store = AttemptStore.open(postgresql_url)
+    store.start()
+    assert record(store, scara, 1)
+    server.stop()
+    try:
         with pytest.raises(StoreDownError):
             record(store, scara, 2)
+    finally:
         server.start()
-        assert record(store, scara, 2)
-        store.close()
+    assert record(store, scara, 2)
+    store.close()

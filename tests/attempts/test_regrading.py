@@ -1,10 +1,10 @@
-import multiprocessing
 import os
 import signal
 import time
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from sqlalchemy import func, select, text
@@ -94,19 +94,21 @@ def _worker(url: str, exercise: Exercise) -> None:
             with connection.begin():
                 regrading.work(connection)
                 # Held a moment, so that a kill comes in the midst of it.
-                time.sleep(0.05)
+                time.sleep(0.02)
 
 
 def test_what_a_killed_worker_was_at_is_regraded_once_by_another(
-    postgresql_url: str, catalogue: Mapping[str, Exercise], corrected: Exercise
+    postgresql_url: str,
+    catalogue: Mapping[str, Exercise],
+    corrected: Exercise,
+    killable: Any,
 ) -> None:
     count = 3 * BATCH
     store = AttemptStore.open(postgresql_url)
     recorded_all(store, [new_attempt(catalogue["scara"], f"l{i}", NO_TWIST) for i in range(count)])
     regrading = Regrading(corrected, FeedbackLevel.HINTS)
     in_transaction(store.engine, regrading.enqueue)
-    context = multiprocessing.get_context("spawn")
-    worker = context.Process(target=_worker, args=(postgresql_url, corrected), daemon=True)
+    worker = killable(target=_worker, args=(postgresql_url, corrected), daemon=True)
     worker.start()
     left = count
     deadline = time.monotonic() + ANSWER

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from datetime import timedelta
 
-from service.attempts.reading import AttemptFilter
+from service.attempts.attempt import AttemptFilter
 from service.attempts.statistics import exercise_statistics
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise

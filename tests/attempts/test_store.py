@@ -8,9 +8,10 @@ from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from sqlalchemy import text
 
-from service.attempts.database import StoreDownError, UnusableDatabaseError, open_database
+from service.attempts.attempt import NewAttempt, RecordedAttempt
+from service.attempts.database import open_database
+from service.attempts.errors import StoreDownError, UnusableDatabaseError
 from service.attempts.outcome import Outcome
-from service.attempts.recording import NewAttempt, RecordedAttempt
 from service.attempts.store import AttemptStore
 from service.attempts.tables import metadata
 

@@ -55,6 +55,8 @@ SHARES = {
     "tables, one in three wrong": 0.20,
     "the same and new poses": 0.08,
 }
+# The least share of graded POSTs that are recorded as well.
+RECORDED_SHARE = 2 / 3
 FIRST_ANSWER_SECONDS = 1.0
 # The most that a whole process may take, its start included.
 START_SECONDS = {"dh-grader --help": 0.3, "dh-grader grade, one file": 0.8}
@@ -147,6 +149,15 @@ def add_server_lines(printed: Table) -> None:
             "met" if share >= SHARES[what] else "missed",
             f"{1e3 / speed['graded']:.3f}",
         )
+    speed = server.recorded_per_second()
+    share = speed["recorded"] / speed["graded"]
+    printed.add_row(
+        f"POSTs recorded in SQLite of graded ones ({speed['graded']:.0f} /s)",
+        f"{share:.1%}",
+        f"≥ {RECORDED_SHARE:.0%}",
+        "met" if share >= RECORDED_SHARE else "missed",
+        f"{1e3 / speed['recorded']:.3f}",
+    )
     one = server.graded_per_second(1)
     for workers in (2, 3):
         many = server.graded_per_second(workers)

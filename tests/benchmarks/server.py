@@ -10,7 +10,7 @@ import statistics
 import tempfile
 import time
 import urllib.request
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from tests.benchmarks.answers import T06, distinct, one_student_s_table, table
@@ -23,6 +23,7 @@ ROUNDS = 20
 # The bodies of one turn.
 MOST = 900
 GRADE = "/v1/exercises/stanford-arm/grade"
+RECORD = "/v1/exercises/stanford-arm/attempts"
 TRIVIAL = "/trivial"
 CLOCK = "/processor-seconds"
 
@@ -42,6 +43,11 @@ def tables_and_poses(i: int) -> bytes:
     """A table, and a pose in which every entry is a text that nobody has written before."""
     answers = {"table": table(one_student_s_table(i)), "pose": distinct(T06, i)}
     return json.dumps({"answers": answers}).encode()
+
+
+def attempts(i: int) -> bytes:
+    """One of ``tables``, sent by a learner who has sent none yet."""
+    return json.dumps(json.loads(tables(i)) | {"learner": f"learner {i}"}).encode()
 
 
 BODIES: dict[str, Callable[[int], bytes]] = {
@@ -66,11 +72,13 @@ def request(path: str, body: bytes) -> bytes:
 
 
 @contextlib.contextmanager
-def running_server(workers: int = 1, module: str = "tests.benchmarks.app") -> Iterator[int]:
+def running_server(
+    workers: int = 1, /, module: str = "tests.benchmarks.app", **settings: str
+) -> Iterator[int]:
     """The service with one trivial route more, in processes of its own; yields the port."""
     with tempfile.TemporaryDirectory() as folder:
         options = ("--workers", str(workers))
-        with service(Path(folder), *options, module=module) as running:
+        with service(Path(folder), *options, module=module, **settings) as running:
             while running.log.count("startup complete") < workers:
                 time.sleep(0.02)
             yield running.port
@@ -84,7 +92,7 @@ async def _post_all(port: int, requests: list[bytes], deadline: float) -> int:
             break
         writer.write(message)
         head = await reader.readuntil(b"\r\n\r\n")
-        if not head.startswith(b"HTTP/1.1 200"):
+        if not head.startswith((b"HTTP/1.1 200", b"HTTP/1.1 201")):
             raise RuntimeError(head.decode())
         length = int(head.lower().split(b"content-length:")[1].split(b"\r\n")[0])
         await reader.readexactly(length)
@@ -104,20 +112,33 @@ async def _posted(port: int, path: str, messages: list[bytes]) -> tuple[int, flo
 
 
 def posts_per_second(body: Callable[[int], bytes]) -> dict[str, float]:
-    """Trivial and graded POSTs in a second, in turn many times; every graded body is different."""
-    messages = [body(i) for i in range(100 + ROUNDS * MOST)]
-    taken: dict[str, list[tuple[int, float]]] = {TRIVIAL: [], GRADE: []}
-    with running_server() as port:
-        for path in taken:
-            asyncio.run(_posted(port, path, messages[:100]))
-        for i in range(100, len(messages), MOST):
-            for path, posted in taken.items():
-                posted.append(asyncio.run(_posted(port, path, messages[i : i + MOST])))
-    trivial, graded = (
-        sum(count for count, _ in posted) / sum(seconds for _, seconds in posted)
-        for posted in taken.values()
-    )
+    """Trivial and graded POSTs in a second; every graded body is different."""
+    trivial, graded = _in_turn({TRIVIAL: body, GRADE: body})
     return {"trivial": trivial, "graded": graded}
+
+
+def recorded_per_second() -> dict[str, float]:
+    """Graded and recorded POSTs in a second, of a service with a database of SQLite."""
+    with tempfile.TemporaryDirectory() as folder:
+        database = str(Path(folder) / "attempts.db")
+        graded, recorded = _in_turn({GRADE: tables, RECORD: attempts}, DH_GRADER_DATABASE=database)
+    return {"graded": graded, "recorded": recorded}
+
+
+def _in_turn(bodies: Mapping[str, Callable[[int], bytes]], **settings: str) -> Iterator[float]:
+    """POSTs to each path in a second, in turn many times on one server."""
+    messages = {
+        path: [body(i) for i in range(100 + ROUNDS * MOST)] for path, body in bodies.items()
+    }
+    taken: dict[str, list[tuple[int, float]]] = {path: [] for path in bodies}
+    with running_server(**settings) as port:
+        for path in taken:
+            asyncio.run(_posted(port, path, messages[path][:100]))
+        for i in range(100, 100 + ROUNDS * MOST, MOST):
+            for path, posted in taken.items():
+                posted.append(asyncio.run(_posted(port, path, messages[path][i : i + MOST])))
+    for posted in taken.values():
+        yield sum(count for count, _ in posted) / sum(seconds for _, seconds in posted)
 
 
 def graded_per_second(workers: int) -> float:

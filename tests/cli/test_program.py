@@ -14,6 +14,7 @@ import typer
 from service.cli.program import COMMANDS
 
 ROOT = Path(__file__).parents[2]
+DATABASES = {"sqlalchemy", "alembic", "psycopg", "sqlite3"}
 TABLE = {"answers": {"table": {"rows": [{"a": "l1 +", "alpha": 0, "d": 0, "theta": "q1"}]}}}
 
 
@@ -66,7 +67,7 @@ def test_help_and_version_load_nothing_of_the_grader() -> None:
         assert {name for name in modules if name.startswith("service.")} <= {
             "service.cli", "service.cli.program", "service.version",
         }  # fmt: skip
-        assert not {"numpy", "pydantic", "fastapi", "sympy", "httpx"} & modules
+        assert not {"numpy", "pydantic", "fastapi", "sympy", "httpx", *DATABASES} & modules
 
 
 def test_grading_loads_what_it_needs_and_no_more(answer: Path) -> None:
@@ -74,6 +75,7 @@ def test_grading_loads_what_it_needs_and_no_more(answer: Path) -> None:
     assert json.loads(output)[0]["exercise"] == "planar-rrr"
     assert {"numpy", "pydantic", "service.grading.kinds.dh_table"} <= modules
     heavy = {"fastapi", "httptools", "httpx", "starlette", "sympy", "mpmath", "uvicorn", "uvloop"}
+    heavy |= DATABASES
     # http.client would be loaded with all of the mail package, for nothing.
     slow = {"http.client", "rich.markdown", "rich.table", "scipy", "unittest"}
     unused = {"service.api", "service.authoring", "service.server", "service.solutions"}
@@ -89,8 +91,8 @@ def test_the_help_says_of_each_command_what_the_command_says_itself() -> None:
 
 
 def test_the_service_loads_nothing_that_it_is_not_asked_for() -> None:
-    heavy = {"sympy", "scipy", "prometheus_client"}
-    probe = f"import sys, service.app; print(sorted({heavy} & set(sys.modules)))"
+    unwanted = {"sympy", "scipy", "prometheus_client", *DATABASES}
+    probe = f"import sys, service.app; print(sorted({unwanted} & set(sys.modules)))"
     assert process(python=("-c", probe)).stdout.decode().strip() == "[]"
 
 

@@ -15,6 +15,10 @@ _NOW = {
     "ix_attempts_learner": ["learner", "at", "number", "ordinal"],
     "ix_attempts_outcome": ["exercise", "outcome", "answers_digest", "learner", "at"],
 }
+_UNCOUNTED = {
+    "ix_attempts_uncounted": ["at", "number"],
+    "ix_attempts_exercise_uncounted": ["exercise", "at", "number"],
+}
 
 
 def upgrade() -> None:
@@ -23,6 +27,9 @@ def upgrade() -> None:
         op.drop_index(f"ix_attempts_{'_'.join(columns)}", "attempts")
     for name, columns in _NOW.items():
         op.create_index(name, "attempts", columns)
+    few = sa.text("ordinal IS NULL")
+    for name, columns in _UNCOUNTED.items():
+        op.create_index(name, "attempts", columns, sqlite_where=few, postgresql_where=few)
     op.add_column("attempts", sa.Column("awarded", sa.Float))
     op.create_table(
         "overrides",

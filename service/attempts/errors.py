@@ -1,0 +1,13 @@
+"""The failures that callers of the store tell apart; it loads no database driver."""
+
+
+class StoreDownError(Exception):
+    """The database cannot be reached, or cannot write; what was asked for was not done."""
+
+
+class UnusableDatabaseError(Exception):
+    """The URL names no database that can be used; the text says why."""
+
+
+class BadCursorError(ValueError):
+    """The text is no cursor of a page."""
