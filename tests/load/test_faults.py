@@ -53,12 +53,15 @@ def cramped(folder: Path, url: str, most: int) -> Iterator[Service]:
         "sys.argv = ['service', 'serve', '--port', '0'];"
         "runpy.run_module('service', run_name='__main__')"
     )
-    (log := folder / "cramped-log").touch()
     environment = os.environ | {"NO_COLOR": "1", "DH_GRADER_DATABASE": url}
-    with subprocess.Popen(
-        [sys.executable, "-c", limited], env=environment, stderr=log.open("wb"),
-        stdout=subprocess.DEVNULL,
-    ) as process:  # fmt: skip
+    log = folder / "cramped-log"
+    with (
+        log.open("wb") as output,
+        subprocess.Popen(
+            [sys.executable, "-c", limited], env=environment, stdout=subprocess.DEVNULL,
+            stderr=output,
+        ) as process,
+    ):  # fmt: skip
         try:
             yield Service(process, log)
         finally:
