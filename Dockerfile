@@ -30,7 +30,9 @@ WORKDIR /srv
 # By number, so that a cluster which demands a non-root user can see that this is one.
 USER 10001:10001
 # Inside a container the service must listen on all addresses; which of them reach it, docker decides.
+# It needs no keys until there are some.
 ENV DH_GRADER_HOST=0.0.0.0 \
+    DH_GRADER_OPEN=until-keys \
     DH_GRADER_PORT=8000
 EXPOSE 8000
 

@@ -9,12 +9,17 @@ from urllib.parse import urlsplit
 from pydantic import Field, SecretStr, ValidationError, field_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
+from service.access.keys import SHORTEST_SECRET, Secret
+from service.access.open_access import OpenAccess, open_access
 from service.catalogue import FeedbackLevel, shipped_folder
 from service.submissions.lookup import nearest
 
 PREFIX = "DH_GRADER_"
 # Stands for the folder of the exercises that come with the program.
 SHIPPED = "shipped"
+
+
+_SHORT_SECRET = f"is short; it needs {SHORTEST_SECRET} characters, such as openssl rand -hex 32"
 
 
 class SettingsError(Exception):
@@ -43,6 +48,33 @@ class Settings(BaseSettings):
         None,
         description="Where attempts are recorded: the path of an SQLite file, or the URL of a "
         "PostgreSQL database (postgresql://user:password@host/name). Without it nothing is.",
+    )
+    secret: SecretStr | None = Field(
+        None,
+        description="The secret that keys are hashed and tokens signed with: at least "
+        f"{SHORTEST_SECRET} characters that nobody can guess, the same for all processes.",
+    )
+    secret_file: Path | None = Field(
+        None, description="The file that holds this secret, instead of the variable."
+    )
+    open: str | None = Field(
+        None,
+        description="What needs no key: `until-keys` for grading and recording until there is a "
+        "key, `grade` or `grade,record` for these even then, `none`. By default `until-keys`, but "
+        "only if the service listens to this machine alone.",
+    )
+    key_rate: str | None = Field(
+        None,
+        description="How often each key, or each learner with a token, may ask: 600/minute, or "
+        "several with semicolons between them. By default as often as they like.",
+    )
+    address_rate: str | None = Field(
+        None, description="The same for each address of clients without a key."
+    )
+    rates_store: SecretStr | None = Field(
+        None,
+        description="The Redis in which several processes count together, "
+        "redis://:password@host:6379/0. By default each counts for itself.",
     )
     read_attempts: bool | None = Field(
         None,
@@ -97,6 +129,19 @@ class Settings(BaseSettings):
             raise ValueError("is no address; write 127.0.0.1 for this machine, 0.0.0.0 for all")
         return host
 
+    @field_validator("secret")
+    @classmethod
+    def _is_long(cls, secret: SecretStr | None) -> SecretStr | None:
+        if secret is not None and len(secret.get_secret_value()) < SHORTEST_SECRET:
+            raise ValueError(_SHORT_SECRET)
+        return secret
+
+    @field_validator("open")
+    @classmethod
+    def _opens(cls, value: str | None) -> str | None:
+        open_access(value)
+        return value
+
     @field_validator("feedback", "metrics", "log_format", "log_level", mode="before")
     @classmethod
     def _lowered(cls, value: object) -> object:
@@ -129,6 +174,25 @@ class Settings(BaseSettings):
                     "path, such as https://course.example.edu"
                 )
         return origins
+
+    @property
+    def open_access(self) -> OpenAccess:
+        """What needs no key."""
+        return open_access(self.open)
+
+    def known_secret(self) -> Secret | None:
+        """The secret, or None where none is set. Raises SettingsError."""
+        if self.secret is not None:
+            return Secret(self.secret.get_secret_value())
+        if self.secret_file is None:
+            return None
+        try:
+            text = self.secret_file.read_text(encoding="utf-8").strip()
+        except (OSError, UnicodeDecodeError) as error:
+            raise SettingsError(f"{PREFIX}SECRET_FILE: cannot be read: {error}") from error
+        if len(text) < SHORTEST_SECRET:
+            raise SettingsError(f"{PREFIX}SECRET_FILE: the secret {_SHORT_SECRET}")
+        return Secret(text)
 
 
 def load_settings(**options: Any) -> Settings:

@@ -20,8 +20,10 @@ from service.api import (
     problems,
     recorded,
     reference,
+    tokens,
 )
 from service.api import solutions as model_solutions
+from service.api.access import Access
 from service.api.boundary import (
     EXPOSED_HEADERS,
     BoundaryMiddleware,
@@ -29,11 +31,11 @@ from service.api.boundary import (
     RouteNoting,
 )
 from service.api.compression import PackedGets
+from service.api.door import DoorMiddleware, RequestRates
 from service.api.lookup import Catalogue
 from service.api.monitor import Monitor
 from service.api.openapi import HEADING, completed, other_failures
 from service.api.request_context import HEADER
-from service.api.tutor import tutor_right
 from service.catalogue import FeedbackLevel
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.version import VERSION
@@ -63,11 +65,15 @@ class _Api(FastAPI):
         cors_origins: tuple[str, ...],
         turns: Layer | None,
         store: "AttemptStore | None",
+        access: Access,
+        rates: RequestRates | None,
         monitor: Monitor | None,
     ) -> None:
         self._cors_origins = cors_origins
         self._turns = turns
         self._store = store
+        self._access = access
+        self._rates = rates
         self._monitor = monitor
         super().__init__(
             **HEADING,
@@ -85,11 +91,14 @@ class _Api(FastAPI):
             self._store.start()
         _freeze_gc()
         yield
+        self._access.close()
+        if self._rates is not None:
+            self._rates.close()
         if self._store is not None:
             self._store.close()
 
     def build_middleware_stack(self) -> ASGIApp:
-        """The framework's layers, packed answers, the turns between clients, the boundary.
+        """The framework's layers, packed answers, turns between clients, the door, the boundary.
 
         Then CORS: a page may read problems, too. Outermost, so that whatever is answered has one,
         the id of the request.
@@ -100,13 +109,15 @@ class _Api(FastAPI):
         app = PackedGets(app)
         if self._turns is not None:
             app = self._turns(app)
+        if self._access.keys is not None or self._rates is not None:
+            app = DoorMiddleware(app, self._access, self._rates)
         app = BoundaryMiddleware(app)
         if self._cors_origins:
             app = CORSMiddleware(
                 app,
                 allow_origins=self._cors_origins,
                 allow_methods=["GET", "POST"],
-                allow_headers=["Content-Type", "Idempotency-Key", HEADER],
+                allow_headers=["Authorization", "Content-Type", "Idempotency-Key", HEADER],
                 expose_headers=EXPOSED_HEADERS,
             )
         if self._monitor is not None:
@@ -124,35 +135,36 @@ def application(
     catalogue: Catalogue,
     cors_origins: tuple[str, ...] = (),
     *,
-    solutions: bool | None = False,
+    access: Access | None = None,
+    rates: RequestRates | None = None,
     feedback: FeedbackLevel = FeedbackLevel.FULL,
     turns: Layer | None = None,
     store: "AttemptStore | None" = None,
-    read_attempts: bool | None = False,
     pages: APIRouter | None = None,
     monitor: Monitor | None = None,
 ) -> FastAPI:
     """The HTTP service for these exercises; pages of ``cors_origins`` may call it.
 
-    With ``solutions`` it shows the model solutions to whoever asks; None means whoever asks from
-    this machine. Reports tell no more than
-    ``feedback``, nor than their exercise allows. ``turns`` decides who comes next, ``pages`` are
-    the web pages of the service itself. Attempts are recorded in ``store``; without one none are.
-    With ``read_attempts`` they are shown to whoever asks; None means whoever asks from this
-    machine. ``monitor`` counts what happens.
+    ``access`` says who may do what; without it anybody may grade and record, and nobody see what
+    tutors see. ``rates`` count requests. Reports tell no more than ``feedback``, nor than their
+    exercise allows. ``turns`` decides who comes next, ``pages`` are the web pages of the service
+    itself. Attempts are recorded in ``store``; without one none are. ``monitor`` counts what
+    happens.
     """
-    app = _Api(cors_origins, turns, store, monitor)
+    access = access or Access()
+    app = _Api(cors_origins, turns, store, access, rates, monitor)
     problems.install(app)
     for router in (
         exercises.routes(catalogue, feedback),
-        grading.routes(catalogue, feedback, monitor),
-        attempts.routes(catalogue, feedback, store, monitor),
-        recorded.routes(catalogue, store, tutor_right(read_attempts)),
-        preview.routes(catalogue),
+        grading.routes(catalogue, feedback, access, monitor),
+        attempts.routes(catalogue, feedback, store, access, monitor),
+        recorded.routes(catalogue, store, access),
+        preview.routes(catalogue, access),
         figures.routes(catalogue),
-        frames.routes(catalogue),
+        frames.routes(catalogue, access),
         health.routes(catalogue, store),
-        model_solutions.routes(catalogue, tutor_right(solutions)),
+        model_solutions.routes(catalogue, access),
+        tokens.routes(catalogue, access),
     ):
         app.include_router(router, responses=other_failures())
     app.include_router(reference.routes())

@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 from fastapi import APIRouter, Header, Request, Response
 
+from service.access.caller import Scope
+from service.api.access import Access
+from service.api.access_problems import other_learner
 from service.api.bodies import body_as
 from service.api.lookup import Catalogue, ExerciseId, exercise_or_404, require_parts
 from service.api.monitor import Monitor
@@ -45,6 +48,7 @@ def routes(
     catalogue: Catalogue,
     feedback: FeedbackLevel,
     store: "AttemptStore | None",
+    access: Access,
     monitor: Monitor | None = None,
 ) -> APIRouter:
     """The routes that record; no report tells more than ``feedback``."""
@@ -74,12 +78,17 @@ def routes(
         Attempts are counted and limited as the exercise says; one in which nothing could be read
         does not count. What is answered with 201 is not lost, whatever happens to the service.
         """
+        caller = access.require(request, Scope.RECORD, exercise_id)
         if store is None:
             raise not_recorded()
         exercise = exercise_or_404(catalogue, exercise_id)
         body = await body_as(AttemptRequest, request)
+        if caller.learner not in (None, body.learner):
+            raise other_learner()
         require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
-        attempting = _Attempting(exercise, body, feedback, store, "", idempotency_key, monitor)
+        attempting = _Attempting(
+            exercise, body, feedback, store, caller.owner, idempotency_key, monitor
+        )
         try:
             recorded = await attempting.recorded()
         except StoreDownError as error:

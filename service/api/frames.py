@@ -7,6 +7,8 @@ from typing import Any, Final
 import numpy as np
 from fastapi import APIRouter, Request, Response
 
+from service.access.caller import Scope
+from service.api.access import Access, require_reach
 from service.api.bodies import body_as
 from service.api.lookup import Catalogue, Location, require_exercise
 from service.api.openapi import posting
@@ -59,7 +61,7 @@ class _Mechanisms:
         return self._kept[key]
 
 
-def routes(catalogue: Catalogue) -> APIRouter:
+def routes(catalogue: Catalogue, access: Access) -> APIRouter:
     """The route that gives frames."""
     router = APIRouter(prefix="/v1", tags=["drawing"])
     mechanisms = _Mechanisms()
@@ -77,7 +79,9 @@ def routes(catalogue: Catalogue) -> APIRouter:
         A table may be wrong, or half written: its frames go as far as it can be read. Nothing of a
         mechanism answers the exercise: no frames, no parameters, only what a picture shows.
         """
+        caller = access.require(request, Scope.GRADE)
         body = await body_as(FramesRequest, request)
+        require_reach(caller, body.exercise)
         answer = _answered(catalogue, body, mechanisms)
         content = answer.model_dump_json(exclude_none=True)
         return Response(content, media_type="application/json")

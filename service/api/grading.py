@@ -6,6 +6,8 @@ from time import perf_counter
 
 from fastapi import APIRouter, Request, Response
 
+from service.access.caller import Caller, Scope
+from service.api.access import Access, require_reach
 from service.api.bodies import body_as, checked
 from service.api.lookup import Catalogue, ExerciseId, Location, exercise_or_404, require_parts
 from service.api.monitor import Monitor
@@ -22,7 +24,7 @@ _log = logging.getLogger(__name__)
 
 
 def routes(
-    catalogue: Catalogue, feedback: FeedbackLevel, monitor: Monitor | None = None
+    catalogue: Catalogue, feedback: FeedbackLevel, access: Access, monitor: Monitor | None = None
 ) -> APIRouter:
     """The routes that grade; no report tells more than ``feedback``."""
     router = APIRouter(prefix="/v1", tags=["grading"])
@@ -43,6 +45,7 @@ def routes(
         with the reason, and everything else is graded. The same answers give the same report. It
         tells no more than the exercise and the service allow; `feedback` may ask for less.
         """
+        access.require(request, Scope.GRADE, exercise_id)
         exercise = exercise_or_404(catalogue, exercise_id)
         body = await body_as(GradeRequest, request)
         return Response(_report(exercise, body, ()), media_type="application/json")
@@ -60,20 +63,22 @@ def routes(
         The results stand in the order of the submissions. One that cannot be graded, because its
         exercise or one of its parts does not exist, has a problem in its place and costs no other.
         """
+        caller = access.require(request, Scope.GRADE)
         body = await body_as(GradeManyRequest, request)
         results = []
         for i, submission in enumerate(body.submissions):
             if i:
                 # Others wait for one grading at most, and not for all of them.
                 await give_way(request)
-            results.append(_result(submission, i, request.url.path))
+            results.append(_result(submission, i, request.url.path, caller))
         content = b'{"results":[%b]}' % b",".join(results)
         return Response(content, media_type="application/json")
 
-    def _result(value: object, i: int, path: str) -> bytes:
+    def _result(value: object, i: int, path: str, caller: Caller) -> bytes:
         at = ("submissions", i)
         try:
             submission = checked(ExerciseSubmission, value, at)
+            require_reach(caller, submission.exercise)
             exercise = exercise_or_404(catalogue, submission.exercise)
             return b'{"report":%b}' % _report(exercise, submission, at)
         except ProblemError as error:

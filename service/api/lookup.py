@@ -37,6 +37,18 @@ def require_exercise(catalogue: Catalogue, exercise_id: str) -> Exercise:
         raise invalid([detail]) from error
 
 
+def require_exercises(catalogue: Catalogue, exercise_ids: Iterable[str], field: str) -> None:
+    """Check that the exercises of a list in a body exist. Raises ProblemError."""
+    details = []
+    for i, exercise_id in enumerate(exercise_ids):
+        try:
+            find_exercise(catalogue, exercise_id)
+        except UnknownExerciseError as error:
+            details.append({"type": "unknown", "loc": (field, i), "msg": str(error)[:-1]})
+    if details:
+        raise invalid(details)
+
+
 def require_parts(exercise: Exercise, located: Iterable[tuple[str, Location]]) -> None:
     """Check that the exercise has these parts, each with its place in the body.
 

@@ -19,6 +19,7 @@ EXAMPLES = Path(__file__).parent / "examples"
 
 _REFUSALS = {
     HTTPStatus.BAD_REQUEST: "The body is not JSON.",
+    HTTPStatus.UNAUTHORIZED: "There is no key, or one that is not valid.",
     HTTPStatus.FORBIDDEN: "It is not allowed: the detail says why.",
     HTTPStatus.NOT_FOUND: "There is no such exercise.",
     HTTPStatus.REQUEST_ENTITY_TOO_LARGE: "The body is larger than 256 KiB.",
@@ -68,6 +69,10 @@ message of a code that your program does not know. A field that says nothing is 
             "description": "The model solutions, for tutors: off unless the service is started "
             "with them on.",
         },
+        {
+            "name": "tokens",
+            "description": "Tokens of learners, for pages that must not show a key.",
+        },
         {"name": "health", "description": "What a supervisor asks."},
     ],
 }
@@ -78,6 +83,16 @@ def example(name: str) -> Any:
     return json.loads((EXAMPLES / f"{name}.json").read_text(encoding="utf-8"))
 
 
+# What a route says of itself that needs a key, where the service knows keys.
+MAY_NEED_KEY: Final[dict[str, Any]] = {"security": [{"key": []}, {}]}
+_SCHEMES: Final = {
+    "key": {
+        "type": "http",
+        "scheme": "bearer",
+        "description": "A key of `dh-grader keys create`, or a token of a learner. A service that "
+        "was given no keys needs none.",
+    }
+}
 _REF_TEMPLATE: Final = "#/components/schemas/{model}"
 
 
@@ -97,7 +112,7 @@ def posting(
     request = {"required": True, "content": {"application/json": content}}
     refused = sorted([*_REFUSED_BODIES, *further])
     responses = answers(model, f"{name}-response", *refused, success=success)
-    return {"openapi_extra": {"requestBody": request}, "responses": responses}
+    return {"openapi_extra": {"requestBody": request, **MAY_NEED_KEY}, "responses": responses}
 
 
 def answers(
@@ -134,7 +149,8 @@ def _problem_schema() -> dict[str, Any]:
 def completed(document: dict[str, Any]) -> dict[str, Any]:
     """FastAPI's document with what generators of clients and linters ask for besides."""
     tidy_schemas(document)
-    # Whoever can reach the service may use it; a proxy in front may ask for more.
+    document["components"]["securitySchemes"] = _SCHEMES
+    # Unless an operation says otherwise, whoever can reach the service may use it.
     document["security"] = []
     for path in document["paths"].values():
         for operation in path.values():

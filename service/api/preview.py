@@ -4,6 +4,8 @@ from typing import Final
 
 from fastapi import APIRouter, Request, Response
 
+from service.access.caller import Scope
+from service.api.access import Access, require_reach
 from service.api.bodies import body_as
 from service.api.lookup import Catalogue, require_exercise, require_parts
 from service.api.openapi import posting
@@ -82,7 +84,7 @@ def preview_grid(body: PreviewRequest, exercise: Exercise, part: str) -> Preview
     )
 
 
-def routes(catalogue: Catalogue) -> APIRouter:
+def routes(catalogue: Catalogue, access: Access) -> APIRouter:
     """The route that previews."""
     router = APIRouter(prefix="/v1", tags=["preview"])
 
@@ -98,7 +100,9 @@ def routes(catalogue: Catalogue) -> APIRouter:
 
         With `exercise` and `part` the text may also be a whole pasted table or matrix.
         """
+        caller = access.require(request, Scope.GRADE)
         body = await body_as(PreviewRequest, request)
+        require_reach(caller, body.exercise)
         exercise = _exercise(catalogue, body)
         shown = preview(body, exercise.vocabulary if exercise else GENERIC)
         if not shown.ok and exercise and body.part and _BETWEEN_CELLS & set(body.text):
@@ -121,7 +125,9 @@ def routes(catalogue: Catalogue) -> APIRouter:
         They are read as a grading reads them: a star marks a joint's variable in a table. Entries
         beyond the work that one submission may cost are shown as text only.
         """
+        caller = access.require(request, Scope.GRADE)
         body = await body_as(PreviewManyRequest, request)
+        require_reach(caller, body.exercise)
         exercise = require_exercise(catalogue, body.exercise)
         require_parts(exercise, [(body.part, ("part",))])
         content = preview_many(body, exercise).model_dump_json(exclude_none=True)

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, TypeVar
 from fastapi import APIRouter, Path, Query, Request, Response
 from pydantic import AfterValidator, AwareDatetime, BaseModel, StringConstraints
 
+from service.access.caller import Caller
+from service.api.access import Access
+from service.api.access_problems import other_learner
 from service.api.attempts import not_recorded
 from service.api.lookup import Catalogue, ExerciseId, exercise_or_404
-from service.api.openapi import refusals
+from service.api.openapi import MAY_NEED_KEY, refusals
 from service.api.problems import ProblemError, invalid, store_down
-from service.api.tutor import TutorRight
 from service.attempts.attempt import MOST_ON_A_PAGE, AttemptFilter
 from service.attempts.errors import BadCursorError, StoreDownError
 from service.contract.attempts import (
@@ -57,12 +59,11 @@ _REFUSED: Final = refusals(
 )
 
 
-def routes(catalogue: Catalogue, store: "AttemptStore | None", is_tutor: TutorRight) -> APIRouter:
-    """The routes that read what is recorded, for those with a tutor's right."""
+def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -> APIRouter:
+    """The routes that read what is recorded: for tutors, and for learners what is their own."""
     router = APIRouter(prefix="/v1", tags=["attempts"])
 
-    async def read(request: Request, ask: Callable[["AttemptStore"], Awaitable[R]]) -> R:
-        _require_right(request, is_tutor)
+    async def read(ask: Callable[["AttemptStore"], Awaitable[R]]) -> R:
         if store is None:
             raise not_recorded()
         try:
@@ -77,6 +78,7 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", is_tutor: TutorRi
         response_model=AttemptList,
         response_description="A page of attempts.",
         responses=_REFUSED,
+        openapi_extra=MAY_NEED_KEY,
     )
     async def list_attempts(
         request: Request,
@@ -94,10 +96,14 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", is_tutor: TutorRi
             int, Query(ge=1, le=MOST_ON_A_PAGE, description="The most on a page.")
         ] = 50,
     ) -> Response:
-        """List recorded attempts for tutors, the newest first, without answers and reports."""
-        wanted = AttemptFilter(exercise, learner, since, until, counted)
+        """List recorded attempts for tutors, the newest first, without answers and reports.
+
+        To a learner with a token only the learner's own.
+        """
+        caller = access.require_reading(request, exercise)
+        wanted = AttemptFilter(exercise, _readable(caller, learner), since, until, counted)
         try:
-            shown, following = await read(request, lambda store: store.page(wanted, cursor, limit))
+            shown, following = await read(lambda store: store.page(wanted, cursor, limit))
         except BadCursorError as error:
             detail = {"type": "cursor", "loc": ("cursor",), "msg": "This is no cursor of a page."}
             raise invalid([detail]) from error
@@ -111,20 +117,25 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", is_tutor: TutorRi
         response_model=AttemptDetail,
         response_description="The attempt with its answers and reports.",
         responses=_REFUSED,
+        openapi_extra=MAY_NEED_KEY,
     )
     async def show_attempt(
         request: Request, attempt_id: Annotated[str, Path(description="The id of an attempt.")]
     ) -> Response:
-        """Show a recorded attempt for tutors: answers, report, earlier reports and overrides."""
-        found = await read(request, lambda store: store.history(attempt_id))
-        if found is None:
+        """Show a recorded attempt for tutors: answers, report, earlier reports and overrides.
+
+        To the learner with a token only answers and report.
+        """
+        caller = access.require_reading_one(request)
+        found = await read(lambda store: store.history(attempt_id))
+        if found is None or not _may_read(caller, found):
             raise ProblemError(
                 HTTPStatus.NOT_FOUND,
                 "No attempt with this id is recorded here.",
                 "unknown-attempt",
                 "There is no such attempt",
             )
-        return _json(json.dumps(_detail(found)).encode())
+        return _json(json.dumps(_detail(found, caller)).encode())
 
     @router.get(
         "/exercises/{exercise_id}/statistics",
@@ -133,29 +144,31 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", is_tutor: TutorRi
         response_model=ExerciseStatistics,
         response_description="The recorded attempts in counts.",
         responses=_REFUSED,
+        openapi_extra=MAY_NEED_KEY,
     )
     async def show_statistics(
         request: Request, exercise_id: ExerciseId, since: Since = None, until: Until = None
     ) -> Response:
         """Count recorded attempts for tutors: who is right where, which mistakes are common."""
+        access.require_tutor(request, exercise_id)
         exercise = exercise_or_404(catalogue, exercise_id)
         wanted = AttemptFilter(exercise=exercise.id, since=since, until=until)
-        figures = await read(request, lambda store: store.statistics(wanted))
+        figures = await read(lambda store: store.statistics(wanted))
         return _sent(figures)
 
     return router
 
 
-def _require_right(request: Request, is_tutor: TutorRight) -> None:
-    if not is_tutor(request):
-        raise ProblemError(
-            HTTPStatus.FORBIDDEN,
-            "Recorded attempts are for tutors, and this service does not show them. Ask from the "
-            "machine itself, use dh-grader attempts there, or have them shown to whoever can reach "
-            "the service: DH_GRADER_READ_ATTEMPTS=true.",
-            "attempts-not-shown",
-            "Recorded attempts are not shown here",
-        )
+def _readable(caller: Caller, learner: str | None) -> str | None:
+    """Whose attempts are listed, where those of ``learner`` are asked for. Raises ProblemError."""
+    if caller.learner is not None and learner not in (None, caller.learner):
+        raise other_learner()
+    return caller.learner or learner
+
+
+def _may_read(caller: Caller, found: "AttemptHistory") -> bool:
+    attempt = found.attempt
+    return caller.reaches(attempt.exercise) and caller.learner in (None, attempt.learner)
 
 
 def _sent(model: BaseModel) -> Response:
@@ -166,7 +179,9 @@ def _json(content: bytes) -> Response:
     return Response(content, HTTPStatus.OK, {"Cache-Control": "no-store"}, "application/json")
 
 
-def _detail(found: "AttemptHistory") -> dict[str, Any]:
+def _detail(found: "AttemptHistory", caller: Caller) -> dict[str, Any]:
+    # What a tutor has written, and what a regrade has replaced, is for tutors.
+    is_tutor = caller.learner is None
     attempt = AttemptSummary.model_validate(found.attempt, from_attributes=True)
     return {
         "attempt": attempt.model_dump(mode="json", exclude_none=True),
@@ -177,8 +192,9 @@ def _detail(found: "AttemptHistory") -> dict[str, Any]:
                 mode="json", exclude_none=True
             )
             for row in found.overrides
+            if is_tutor
         ],
-        "earlier_reports": [_earlier(row) for row in found.earlier],
+        "earlier_reports": [_earlier(row) for row in found.earlier if is_tutor],
     }
 
 

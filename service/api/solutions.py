@@ -7,10 +7,10 @@ from typing import Final
 from fastapi import APIRouter, Request, Response
 from pydantic import TypeAdapter
 
+from service.api.access import Access
 from service.api.kept import Kept
 from service.api.lookup import Catalogue, ExerciseId, exercise_or_404
-from service.api.openapi import answers
-from service.api.tutor import TutorRight, require_tutor
+from service.api.openapi import MAY_NEED_KEY, answers
 from service.catalogue import Exercise
 from service.solutions import ModelSolution, solve
 
@@ -21,7 +21,7 @@ def _solved(exercise: Exercise) -> bytes:
     return _SOLUTION.dump_json(solve(exercise), exclude_none=True)
 
 
-def routes(catalogue: Catalogue, is_tutor: TutorRight) -> APIRouter:
+def routes(catalogue: Catalogue, access: Access) -> APIRouter:
     """The route that shows model solutions, or says how to have them shown."""
     router = APIRouter(prefix="/v1/exercises", tags=["solutions"])
     solutions = Kept()
@@ -34,10 +34,11 @@ def routes(catalogue: Catalogue, is_tutor: TutorRight) -> APIRouter:
         responses=answers(
             ModelSolution, "solution-response", HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND
         ),
+        openapi_extra=MAY_NEED_KEY,
     )
     async def show_solution(request: Request, exercise_id: ExerciseId) -> Response:
         """Show the right answer to each part, each link transform and the pose, for tutors."""
-        require_tutor(request, is_tutor)
+        access.require_solutions(request, exercise_id)
         exercise = exercise_or_404(catalogue, exercise_id)
         key = (exercise.id, exercise.version)
         content = await solutions.of(key, partial(_solved, exercise))

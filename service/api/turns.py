@@ -8,6 +8,8 @@ from fastapi import Request
 
 # Where a layer around the application leaves, in the scope of a request, what waits for its turn.
 TURN: Final = "dh_grader.turn"
+# Where a layer before it leaves whose request it is, if that is not known by the address alone.
+CLIENT: Final = "dh_grader.client"
 
 
 async def give_way(request: Request) -> None:

@@ -140,3 +140,19 @@ regrade_queue = Table(
     Column("exercise", String(100), nullable=False),
     Index(None, "exercise", "attempt"),
 )
+
+# ``digest`` is a keyed hash of the key's text; ``scopes`` are words with blanks between them,
+# ``exercises`` a JSON list, or NULL for all.
+keys = Table(
+    "keys",
+    metadata,
+    Column("id", String(8), primary_key=True),
+    Column("digest", String(64), nullable=False, unique=True),
+    Column("name", String(200), nullable=False),
+    Column("scopes", String(100), nullable=False),
+    Column("exercises", Text),
+    Column("created_at", UtcTime, nullable=False),
+    Column("expires_at", UtcTime, nullable=False),
+    Column("revoked_at", UtcTime),
+    Column("last_used_at", UtcTime),
+)

@@ -17,6 +17,7 @@ COMMANDS: Final = {
     "grade": "Grade submissions: JSON, TOML, or the pasted answer to one part (csv, md, tex, m, "
     "py, …).",
     "attempts": "Recorded attempts: read, export, regrade, forget.",
+    "keys": "Who may use the service, and for what: create, list, revoke keys.",
     "bundle": "Write the zip file that a grading platform takes.",
 }
 

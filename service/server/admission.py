@@ -23,7 +23,7 @@ from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.api.problems import ProblemError
-from service.api.turns import TURN
+from service.api.turns import CLIENT, TURN
 from service.server.costs import CLASSES, REST, Costs, rest
 from service.server.crowd import client_key
 from service.server.fair_queue import FairQueue, Ticket
@@ -171,7 +171,7 @@ class FairAdmission:
             return ended and _gone(receive)
 
         host, port = scope.get("client") or ("", 0)
-        ticket = Ticket(client_key(host), port, len(body))
+        ticket = Ticket(scope.get(CLIENT) or client_key(host), port, len(body))
         place = self._class(ticket)
         if self._others_first(place):
             refusal = self._refusal(ticket)

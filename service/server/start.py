@@ -20,10 +20,10 @@ from service.settings import Settings
 def serve(settings: Settings) -> bool:
     """Serve until a signal comes; false where the port cannot be had.
 
-    Raises CatalogueError.
+    Raises CatalogueError, SettingsError.
     """
     with counting_together(settings) as forget:
-        app = installed_app(settings)
+        app = installed_app(settings, settings.host)
         if settings.workers == 1:
             server = Server(_config(settings, app), origins=settings.cors_origins)
             server.run()

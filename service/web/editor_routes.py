@@ -7,10 +7,10 @@ from typing import Final
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, JSONResponse, Response
 
+from service.api.access import is_at_the_machine
 from service.api.bodies import body_as
 from service.api.lookup import Catalogue, exercise_or_404
 from service.api.problems import ProblemError
-from service.api.tutor import is_at_the_machine
 from service.web.assets import Assets
 from service.web.bounded_work import BoundedWork
 from service.web.exercise_check import CheckRequest, checked

@@ -6,10 +6,10 @@ from typing import Final
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
+from service.api.access import Access
 from service.api.lookup import Catalogue, exercise_or_404
 from service.api.piecewise import PiecewiseResponse
 from service.api.problems import ProblemError
-from service.api.tutor import tutor_right
 from service.web.assets import Asset, load_assets
 from service.web.page_headers import PAGE_HEADERS
 from service.web.pages import catalogue_page, exercise_page, play_page
@@ -32,7 +32,7 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> APIRou
     router = APIRouter(include_in_schema=False)
     assets = load_assets()
     files = assets.by_name
-    tutoring = tutoring or Tutoring(tutor_right(solutions=False))
+    tutoring = tutoring or Tutoring(Access())
     router.include_router(tutor_routes(catalogue, assets, tutoring))
 
     @router.get("/")
@@ -42,7 +42,7 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> APIRou
             known = exercise_or_404(catalogue, exercise)
             return RedirectResponse(f"exercises/{known.id}", HTTPStatus.SEE_OTHER)
         return HTMLResponse(
-            catalogue_page(catalogue, assets, tutor=tutoring.is_tutor(request)),
+            catalogue_page(catalogue, assets, tutor=tutoring.access.shows_solutions(request)),
             headers=PAGE_HEADERS,
         )
 
@@ -51,13 +51,14 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> APIRou
         """One exercise; its statement and figure are there without a script, too."""
         shown = exercise_or_404(catalogue, exercise_id)
         return HTMLResponse(
-            exercise_page(shown, assets, tutor=tutoring.is_tutor(request)), headers=PAGE_HEADERS
+            exercise_page(shown, assets, tutor=tutoring.access.shows_solutions(request)),
+            headers=PAGE_HEADERS,
         )
 
     @router.get("/play")
     async def play(request: Request) -> Response:
         """Any table of any robot; it is in the browser alone."""
-        shown = play_page(assets, tutor=tutoring.is_tutor(request))
+        shown = play_page(assets, tutor=tutoring.access.shows_solutions(request))
         return HTMLResponse(shown, headers=PAGE_HEADERS)
 
     @router.get(f"/{_ENTRY}")

@@ -9,11 +9,11 @@ from pathlib import Path
 from fastapi import APIRouter, Depends, Request
 from starlette.responses import HTMLResponse, Response
 
+from service.api.access import Access
 from service.api.kept import Kept
 from service.api.lookup import Catalogue, exercise_or_404
 from service.api.piecewise import PiecewiseResponse
 from service.api.problems import ProblemError
-from service.api.tutor import TutorRight, require_tutor
 from service.catalogue import Exercise, Robot
 from service.web.assets import Assets
 from service.web.bounded_work import BoundedWork
@@ -26,9 +26,9 @@ from service.web.tutor_pages import solution_page, tutor_page
 
 @dataclass(frozen=True, slots=True)
 class Tutoring:
-    """Who is a tutor here, the folders of exercise files, and the one that may be written to."""
+    """Who may see solutions, the folders of exercise files, and the one that may be written to."""
 
-    is_tutor: TutorRight
+    access: Access
     folders: Sequence[Path] = field(default=())
     editor_dir: Path | None = None
 
@@ -36,8 +36,8 @@ class Tutoring:
 def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
     """The pages and the routes that they ask; each asks for the tutor's right first."""
 
-    def require(request: Request) -> None:
-        require_tutor(request, tutoring.is_tutor)
+    async def require(request: Request) -> None:
+        tutoring.access.require_solutions(request, request.path_params.get("exercise_id"))
 
     router = APIRouter(
         prefix="/tutor", include_in_schema=False, dependencies=[Depends(require, scope="function")]

@@ -7,6 +7,7 @@ import pytest
 from jsonschema import Draft202012Validator
 from sqlalchemy import text
 
+from service.api.access import Access
 from service.api.application import application
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
@@ -34,7 +35,7 @@ def tutor_of(catalogue: Mapping[str, Exercise], store: AttemptStore) -> Tutor:
     def make(
         read_attempts: bool | None = None, at: str = "http://127.0.0.1:8000", **headers: str
     ) -> httpx.Client:
-        app = application(catalogue, store=store, read_attempts=read_attempts)
+        app = application(catalogue, store=store, access=Access(read_attempts=read_attempts))
         return httpx.Client(transport=InProcess(app), base_url=at, headers=headers)
 
     return make
@@ -127,7 +128,7 @@ def test_a_query_is_checked(tutor_of: Tutor, query: str, status: int) -> None:
 def test_what_is_not_there_is_not_found(tutor_of: Tutor, catalogue: Any) -> None:
     assert tutor_of().get("/v1/attempts/%00").status_code == 404
     assert tutor_of().get("/v1/exercises/no-such/statistics").status_code == 404
-    nothing = application(catalogue, read_attempts=True)
+    nothing = application(catalogue, access=Access(read_attempts=True))
     with httpx.Client(transport=InProcess(nothing), base_url="http://a") as client:
         assert client.get("/v1/attempts").json()["type"].endswith("attempts-not-recorded")
 

@@ -13,6 +13,7 @@ import httpx
 import pytest
 from fastapi import FastAPI
 
+from service.api.access import Access
 from service.api.application import application
 from service.api.kept import Kept
 from service.api.solutions import _solved
@@ -24,7 +25,7 @@ PATH = "/v1/exercises/{}/solution"
 
 @pytest.fixture(scope="module")
 def tutor(catalogue: Mapping[str, Exercise]) -> Iterator[httpx.Client]:
-    app = application(catalogue, solutions=True)
+    app = application(catalogue, access=Access(solutions=True))
     with httpx.Client(transport=InProcess(app), base_url="http://service") as client:
         yield client
 
@@ -85,7 +86,7 @@ def test_a_changed_exercise_has_a_solution_of_its_own(
 ) -> None:  # fmt: skip
     monkeypatch.setattr("service.api.solutions._solved", lambda each: each.version.encode())
     live = {"scara": catalogue["scara"]}
-    with client_of(application(live, solutions=True)) as tutor:
+    with client_of(application(live, access=Access(solutions=True))) as tutor:
         assert tutor.get(PATH.format("scara")).text == catalogue["scara"].version
         live["scara"] = replace(catalogue["scara"], version="other")
         assert tutor.get(PATH.format("scara")).text == "other"

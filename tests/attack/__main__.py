@@ -26,7 +26,7 @@ from tests.attack.floods import (
     many_costly,
 )
 from tests.attack.honest import Waits, watched
-from tests.attack.interface import faults
+from tests.attack.interface import faults, with_key
 from tests.server.raw import HEALTH, Service, service
 
 MEMORY = 100.0
@@ -111,6 +111,11 @@ def attack(seconds: float, scale: float, only: str = "") -> list[str]:
         if only in INTERFACE:
             told = list(faults(running, Path(folder), max(1, int(EXAMPLES * scale))))
             print(f"{INTERFACE}: {'faults' if told else 'no fault'}", flush=True)  # noqa: T201
+            broken += told
+            settings, key = with_key(Path(folder))
+            with service(Path(folder), **settings) as keyed:
+                told = list(faults(keyed, Path(folder), max(1, int(EXAMPLES * scale)), key=key))
+            print(f"{INTERFACE}, with keys: {'faults' if told else 'no fault'}", flush=True)  # noqa: T201
             broken += told
         began = time.monotonic()
         code = running.end()

@@ -4,9 +4,15 @@ import json
 import subprocess
 import sys
 from collections.abc import Iterator
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
+from service.access.caller import Scope
+from service.access.key_table import add_key
+from service.access.key_text import new_key_text
+from service.access.keys import Secret
+from service.attempts.database import in_transaction, open_database
 from tests.server.raw import Service
 
 # What is right by its shape is refused all the same where it names another exercise or part (404,
@@ -32,7 +38,24 @@ def as_taken(document: dict[str, Any]) -> dict[str, Any]:
     return document
 
 
-def faults(running: Service, folder: Path, examples: int, *options: str) -> Iterator[str]:
+SECRET: Final = "0123456789abcdef" * 4
+
+
+def with_key(folder: Path) -> tuple[dict[str, str], str]:
+    """The settings of a service that needs keys, and a key with every scope."""
+    database = str(folder / "attempts.db")
+    text, now = new_key_text(), datetime.now(UTC)
+    until = now + timedelta(days=1)
+    digest = Secret(SECRET).key_digest(text)
+    engine = open_database(database)
+    in_transaction(engine, lambda c: add_key(c, "a", digest, list(Scope), None, now, until))
+    engine.dispose()
+    return {"DH_GRADER_DATABASE": database, "DH_GRADER_SECRET": SECRET}, text
+
+
+def faults(
+    running: Service, folder: Path, examples: int, *options: str, key: str = ""
+) -> Iterator[str]:
     """Try every operation with so many requests; what schemathesis says if a check fails."""
     [answer] = running.ask(b"GET /openapi.json HTTP/1.1\r\nHost: x\r\n\r\n")
     document, config = folder / "openapi.json", folder / "schemathesis.toml"
@@ -42,6 +65,7 @@ def faults(running: Service, folder: Path, examples: int, *options: str) -> Iter
         sys.executable, "-m", "schemathesis.cli", "--config-file", str(config), "--no-color",
         "run", str(document), "--url", f"http://127.0.0.1:{running.port}",
         "--checks", "all", "--max-examples", str(examples), "--warnings", "off", *options,
+        *(["--header", f"Authorization: Bearer {key}"] if key else []),
     ]  # fmt: skip
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode:

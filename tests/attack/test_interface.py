@@ -2,11 +2,18 @@
 
 from pathlib import Path
 
-from tests.attack.interface import faults
+import pytest
+
+from tests.attack.interface import SECRET, faults, with_key
 from tests.server.raw import service
 
 
-def test_the_service_does_what_its_document_says(tmp_path: Path) -> None:
+@pytest.mark.parametrize("keyed", [False, True])
+def test_the_service_does_what_its_document_says(tmp_path: Path, keyed: bool) -> None:
     sample = ["--phases", "examples,fuzzing", "--no-shrink", "--generation-database", "none"]
-    with service(tmp_path) as running:
-        assert list(faults(running, tmp_path, 3, "--seed", "1", *sample)) == []
+    settings, key = with_key(tmp_path) if keyed else ({}, "")
+    with service(tmp_path, **settings) as running:
+        assert list(faults(running, tmp_path, 2, "--seed", "1", *sample, key=key)) == []
+    log = (tmp_path / "log").read_text(encoding="utf-8")
+    assert "/v1/attempts" in log
+    assert not any(secret in log for secret in (key or "dhg_", SECRET))

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from starlette.requests import ClientDisconnect, Request
 
-from service.api.turns import give_way
+from service.api.turns import CLIENT, give_way
 from service.server import admission
 from service.server.admission import OF_ALL, OF_ONE, SLICE, FairAdmission, Metered
 from service.submissions.strict_json import MAX_BODY_SIZE
@@ -109,6 +109,24 @@ def test_whoever_comes_last_of_many_connections_is_the_second_to_be_served() -> 
         await asyncio.gather(*tasks)
         assert inner.served[:3] == ["attacker", "honest", "attacker"]
         assert len(inner.served) == 17
+
+    run(story())
+
+
+@pytest.mark.usefixtures("alike")
+def test_requests_with_keys_take_turns_by_their_keys_whatever_their_addresses() -> None:
+    async def story() -> None:
+        inner = Application()
+        app = FairAdmission(inner)
+        clients = [Client(f"10.0.0.{port}", port) for port in range(16)]
+        for client in clients:
+            client.scope[CLIENT] = "a key"
+        # The same address as one of these, without a key; and another key from there.
+        other = Client("10.0.0.3", 20)
+        other.scope[CLIENT] = "another key"
+        await asyncio.gather(*begin(app, *clients, Client("10.0.0.3", 21), other))
+        assert inner.served[:3] == ["10.0.0.0", "10.0.0.3", "10.0.0.3"]
+        assert len(inner.served) == 18
 
     run(story())
 

@@ -15,6 +15,7 @@ from tests.server.raw import ROOT, service
 def test_it_follows_the_port_and_says_when_nobody_answers(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setenv("DH_GRADER_OPEN", "until-keys")
     with service(tmp_path, "--host", "0.0.0.0") as running:
         monkeypatch.setenv("DH_GRADER_PORT", str(running.port))
         for host in ("0.0.0.0", "127.0.0.1"):

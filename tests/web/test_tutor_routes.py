@@ -13,8 +13,8 @@ import httpx
 import pytest
 from typer.testing import CliRunner
 
+from service.api.access import Access
 from service.api.application import application
-from service.api.tutor import tutor_right
 from service.catalogue import Exercise, shipped_folder
 from service.cli.grade import commands
 from service.web import Tutoring, web_routes
@@ -40,8 +40,9 @@ class Tutor:
     """Asks the application in this process, from the machine itself unless ``host`` says other."""
 
     def __init__(self, catalogue: Mapping[str, Exercise], editor_dir: Path | None = None) -> None:
-        tutoring = Tutoring(tutor_right(None), (shipped_folder(),), editor_dir)
-        self.app = application(catalogue, pages=web_routes(catalogue, tutoring))
+        access = Access(solutions=None)
+        tutoring = Tutoring(access, (shipped_folder(),), editor_dir)
+        self.app = application(catalogue, access=access, pages=web_routes(catalogue, tutoring))
 
     def ask(
         self, method: str, path: str, host: str = "127.0.0.1:8000", **more: Any

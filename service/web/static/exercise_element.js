@@ -61,7 +61,8 @@ export class DhExercise extends HTMLElement {
   async #load(turn) {
     const id = this.getAttribute("exercise");
     if (!id) return this.#tell("No exercise is chosen", "Name one in the attribute “exercise”.");
-    this.service = new Service(new URL(this.getAttribute("api") ?? HOME, document.baseURI).href.replace(/\/?$/, "/"));
+    const base = new URL(this.getAttribute("api") ?? HOME, document.baseURI).href.replace(/\/?$/, "/");
+    this.service = new Service(base, () => this.getAttribute("token"));
     this.main.setAttribute("aria-busy", "true");
     this.state.replaceChildren(h("div", { class: "progress", role: "progressbar", "aria-label": "Loading the exercise" }));
     try {

@@ -13,9 +13,10 @@ export class ServiceError extends Error {
 }
 
 export class Service {
-  /** `base` is the address of the service, with a slash at its end. */
-  constructor(base) {
+  /** `base` is the address of the service, with a slash at its end; `token` gives that of the learner, if any. */
+  constructor(base, token = () => null) {
     this.base = base;
+    this.token = token;
   }
 
   address(path) {
@@ -43,11 +44,14 @@ export class Service {
   }
 
   async #ask(path, body) {
-    const options = { credentials: "omit", signal: AbortSignal.timeout(PATIENCE) };
+    const options = { credentials: "omit", headers: {}, signal: AbortSignal.timeout(PATIENCE) };
     if (body !== undefined) {
       options.method = "POST";
-      options.headers = { "Content-Type": "application/json" };
+      options.headers["Content-Type"] = "application/json";
       options.body = JSON.stringify(body);
+      // What is only read needs none, and is asked for without a question beforehand.
+      const token = this.token();
+      if (token) options.headers.Authorization = `Bearer ${token}`;
     }
     let answer, content;
     try {

@@ -6,7 +6,7 @@ import httpx
 import pytest
 from fastapi import FastAPI, Request
 
-from service.api.tutor import tutor_right
+from service.api.access import Access
 
 PROGRAM = {"host": "127.0.0.1:8000"}
 
@@ -20,11 +20,11 @@ def answered(
 ) -> bool:
     """Whether the request has the right, with these ends of its connection."""
     app = FastAPI()
-    right = tutor_right(solutions)
+    access = Access(solutions=solutions)
 
     @app.get("/")
     def asked(request: Request) -> bool:
-        return right(request)
+        return access.shows_solutions(request)
 
     async def ask() -> bool:
         transport = httpx.ASGITransport(app, client=(client, 40000))

@@ -1,0 +1,157 @@
+"""The keys of the database, kept for some seconds in memory."""
+
+import asyncio
+from collections import OrderedDict
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from time import monotonic
+from typing import Final, TypeVar
+
+from sqlalchemy import Connection, Engine
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.access.caller import Caller, Scope
+from service.access.key_table import any_key, key_with, note_use
+from service.access.key_text import PREFIX, is_spelt_right
+from service.access.keys import CredentialError, Key, KeysUnreachableError, Secret
+from service.attempts.database import in_transaction
+
+R = TypeVar("R")
+
+# So many seconds a revoked key goes on working at the most, if the database answers.
+KEPT: Final = 5.0
+# How many keys are kept.
+_MOST: Final = 2000
+# So many unknown keys are looked up at once: somebody may invent any number of them.
+_ASKED: Final = 64
+# A key's last use is written so seldom (seconds).
+_NOTED: Final = timedelta(minutes=1)
+
+
+# So long a known key is not asked about again, while the database is down (seconds).
+_DOWN: Final = 15.0
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    key: Key
+    until: float
+
+
+class KeyRing:
+    """The keys of one database. One that was known stays so while the database is down."""
+
+    def __init__(self, engine: Engine, secret: Secret | None, seconds: float = KEPT) -> None:
+        """Look whether there are keys. Raises KeysUnreachableError."""
+        self._engine = engine
+        self._secret = secret
+        self._seconds = seconds
+        # One reads while the other waits to write when a key was used.
+        self._threads = ThreadPoolExecutor(2, "keys")
+        self._found: OrderedDict[tuple[str, str], _Found] = OrderedDict()
+        self._asking: dict[tuple[str, str], asyncio.Task[Key | None]] = {}
+        self._noted: dict[str, datetime] = {}
+        self.has_keys = self._read(any_key)
+        self._look_again = monotonic() + seconds
+        # No connection may be carried into processes that are started later.
+        engine.dispose()
+
+    async def are_needed(self) -> bool:
+        """Whether there is any key; where there was one, it stays so."""
+        if not self.has_keys and monotonic() >= self._look_again:
+            self._look_again = monotonic() + self._seconds
+            with suppress(KeysUnreachableError):
+                self.has_keys = await self._in_thread(lambda: self._read(any_key))
+        return self.has_keys
+
+    async def caller(self, credential: str) -> Caller:
+        """The holder of a key or token. Raises CredentialError, KeysUnreachableError."""
+        if self._secret is None:
+            raise CredentialError("The service knows no keys: DH_GRADER_SECRET is not set.")
+        if not credential.startswith(PREFIX):
+            # Only here: most installations have no tokens.
+            from service.access.tokens import verified
+
+            token = verified(credential, self._secret.token_secret)
+            return token.caller(await self._holder("id", token.key_id))
+        if not is_spelt_right(credential):
+            raise CredentialError("The key is misspelt: its checksum is wrong.")
+        return await self._holder("digest", self._secret.key_digest(credential))
+
+    def token(self, caller: Caller, expires_at: datetime) -> str:
+        """A token with the rights of ``caller``, who is bound to a learner."""
+        from service.access.tokens import LearnerToken, signed
+
+        assert self._secret is not None
+        assert caller.learner is not None
+        scopes = caller.scopes - {Scope.TUTOR}
+        token = LearnerToken(caller.key_id, caller.learner, scopes, caller.exercises)
+        return signed(token, expires_at, self._secret.token_secret)
+
+    def close(self) -> None:
+        """Write what waits, and end."""
+        self._threads.shutdown()
+
+    async def _holder(self, column: str, value: str) -> Caller:
+        key = await self._key(column, value)
+        if key is None:
+            raise CredentialError("No key of this service reads so.")
+        now = datetime.now(UTC)
+        caller = key.caller(now)
+        self._note(key, now)
+        return caller
+
+    async def _key(self, column: str, value: str) -> Key | None:
+        place = column, value
+        found = self._found.get(place)
+        if found is not None and monotonic() < found.until:
+            return found.key
+        asking = self._asking.get(place)
+        if asking is None:
+            if found is None and len(self._asking) >= _ASKED:
+                raise KeysUnreachableError
+            asking = self._asking[place] = asyncio.create_task(self._ask(place))
+        # Others may wait for it when this client has gone.
+        return await asyncio.shield(asking)
+
+    async def _ask(self, place: tuple[str, str]) -> Key | None:
+        try:
+            key = await self._in_thread(lambda: self._read(lambda c: key_with(c, *place)))
+        except KeysUnreachableError:
+            before = self._found.get(place)
+            if before is None:
+                raise
+            self._found[place] = _Found(before.key, monotonic() + _DOWN)
+            return before.key
+        finally:
+            del self._asking[place]
+        if key is not None:
+            self._found[place] = _Found(key, monotonic() + self._seconds)
+            self._found.move_to_end(place)
+            while len(self._found) > _MOST:
+                self._found.popitem(last=False)
+        return key
+
+    def _note(self, key: Key, now: datetime) -> None:
+        before = self._noted.get(key.id, key.last_used_at)
+        if before is None or now - before >= _NOTED:
+            self._noted[key.id] = now
+            self._threads.submit(self._write_use, key.id, now)
+
+    def _write_use(self, key_id: str, now: datetime) -> None:
+        # It is noted anew a minute later.
+        with suppress(SQLAlchemyError):
+            in_transaction(self._engine, lambda connection: note_use(connection, key_id, now))
+
+    async def _in_thread(self, work: Callable[[], R]) -> R:
+        return await asyncio.get_running_loop().run_in_executor(self._threads, work)
+
+    def _read(self, work: Callable[[Connection], R]) -> R:
+        try:
+            with self._engine.connect() as connection:
+                return work(connection)
+        except SQLAlchemyError as error:
+            raise KeysUnreachableError from error

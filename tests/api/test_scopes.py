@@ -1,0 +1,387 @@
+"""Every route, asked with each kind of key and token, answers as docs/keys.md says."""
+
+import asyncio
+import gzip
+import json
+from collections.abc import AsyncIterator, Iterator, Mapping
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from fastapi import FastAPI
+from fastapi.routing import iter_route_contexts
+from sqlalchemy import Connection
+
+from service.access.caller import Caller, Scope
+from service.access.key_ring import KeyRing
+from service.access.key_table import add_key, revoke_key
+from service.access.key_text import new_key_text
+from service.access.keys import Secret
+from service.access.open_access import OPEN_HERE, open_access
+from service.access.rates import Rates
+from service.api.access import Access
+from service.api.application import application
+from service.api.openapi import example
+from service.attempts.database import in_transaction
+from service.attempts.store import AttemptStore
+from service.attempts.tutoring import override
+from service.catalogue import Exercise, shipped_folder
+from service.web import Tutoring, web_routes
+
+DOCS = Path(__file__).parents[2] / "docs" / "keys.md"
+EXERCISE, OTHER = "planar-rr", "scara"
+SECRET = Secret("0123456789abcdef" * 4)
+NOW = datetime.now(UTC)
+YEAR = timedelta(days=365)
+ANSWERS = {"answers": {"table": "a1 0 0 θ1\na2 0 0 θ2"}}
+ADA = {"learner": "ada", **ANSWERS}
+FILE = {"id": EXERCISE, "text": (shipped_folder() / f"{EXERCISE}.toml").read_text("utf-8")}
+CLASS = {"exercise": EXERCISE, "files": [{"path": "ada.json", "text": json.dumps(ANSWERS)}]}
+# What each route is sent, where it is sent anything.
+BODIES: Mapping[str, Any] = {
+    "POST /v1/exercises/{exercise_id}/grade": ANSWERS,
+    "POST /v1/grade": {"submissions": [{"exercise": EXERCISE, **ANSWERS}]},
+    "POST /v1/preview": {"text": "2*q1", "exercise": EXERCISE},
+    "POST /v1/previews": {"exercise": EXERCISE, "part": "table", "entries": [{"text": "a1"}]},
+    "POST /v1/frames": {**example("frames-request"), "exercise": EXERCISE, "table": None},
+    "POST /v1/tokens": {"learner": "ada", "exercises": [EXERCISE], "minutes": 480},
+    "POST /v1/exercises/{exercise_id}/attempts": {"learner": "ada", **ANSWERS},
+    "POST /tutor/check": FILE,
+    "POST /tutor/files": {**FILE, "before": ""},
+    "POST /tutor/class": CLASS,
+}
+
+
+@dataclass(frozen=True)
+class Guarded:
+    """A service with keys, one for each column of the table, by the column's heading."""
+
+    app: FastAPI
+    ring: KeyRing
+    store: AttemptStore
+    credentials: Mapping[str, list[str]]
+    editor_dir: Path
+    names: dict[str, str]
+
+    def filled(self, route: str) -> str:
+        """A route with names for what its path leaves open."""
+        for place, name in self.names.items():
+            route = name if place == route else route.replace(f"{{{place}}}", name)
+        return route
+
+    @asynccontextmanager
+    async def client(self, credential: str = "") -> AsyncIterator[httpx.AsyncClient]:
+        headers = {"authorization": f"Bearer {credential}"} if credential else {}
+        transport = httpx.ASGITransport(self.app)
+        address = "http://127.0.0.1:8000"
+        async with httpx.AsyncClient(
+            transport=transport, base_url=address, headers=headers
+        ) as client:
+            yield client
+
+    def ask(self, method: str, path: str, credential: str = "", **more: Any) -> httpx.Response:
+        async def asked() -> httpx.Response:
+            async with self.client(credential) as client:
+                return await client.request(method, path, **more)
+
+        return asyncio.run(asked())
+
+
+@pytest.fixture(scope="module")
+def guarded(
+    catalogue: Mapping[str, Exercise], tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Guarded]:
+    folder = tmp_path_factory.mktemp("guarded")
+    store = AttemptStore.open(str(folder / "attempts.db"))
+
+    def key(*scopes: Scope, exercises: Any = None, until: datetime = NOW + YEAR) -> tuple[str, str]:
+        text = new_key_text()
+        digest = SECRET.key_digest(text)
+        made = in_transaction(
+            store.engine,
+            lambda connection: add_key(connection, "", digest, scopes, exercises, NOW, until),
+        )
+        return text, made.id
+
+    everything = tuple(Scope)
+    record, record_id = key(Scope.RECORD)
+    expired, expired_id = key(*everything, until=NOW)
+    revoked, revoked_id = key(*everything)
+    in_transaction(store.engine, lambda connection: revoke_key(connection, revoked_id, NOW))
+    ring = KeyRing(store.engine, SECRET, seconds=0.2)
+
+    def token(key_id: str, until: datetime = NOW + YEAR, by: KeyRing = ring) -> str:
+        bound = None if key_id == record_id else frozenset({EXERCISE})
+        return by.token(Caller(frozenset(everything), bound, "ada", key_id), until)
+
+    stranger = KeyRing(store.engine, Secret("another secret of thirty-two chars"))
+    misspelt = record[:-1] + ("a" if record[-1] != "a" else "b")
+    elsewhere, _ = key(*everything, exercises=[OTHER])
+    credentials = {
+        "no key": [""],
+        "`grade`": [key(Scope.GRADE)[0], key(Scope.GRADE, exercises=[EXERCISE])[0]],
+        "`record`": [record],
+        "`tutor`": [key(Scope.TUTOR)[0]],
+        "token": [token(record_id)],
+        "not valid": [
+            expired, revoked, misspelt, new_key_text(), "dhg_", "nonsense", "a.b.c",
+            token(record_id, NOW - YEAR), token(expired_id), token(revoked_id),
+            token("00000000"), token(record_id, by=stranger),
+        ],
+        "other exercise": [elsewhere],
+    }  # fmt: skip
+    stranger.close()
+    access = Access(OPEN_HERE, solutions=None, read_attempts=None, keys=ring)
+    editor_dir = folder / "exercises"
+    editor_dir.mkdir()
+    pages = web_routes(catalogue, Tutoring(access, (shipped_folder(),), editor_dir))
+    app = application(
+        catalogue, ("https://course.example.edu",), access=access, store=store, pages=pages
+    )
+    store.start()
+    service = Guarded(app, ring, store, credentials, editor_dir, {})
+    path = f"/v1/exercises/{EXERCISE}/attempts"
+    recorded = service.ask("POST", path, record, json={"learner": "ada", **ANSWERS})
+    file = service.ask("GET", "/").text.partition("static/")[2].partition('"')[0]
+    service.names.update(
+        {
+            "exercise_id": EXERCISE,
+            "attempt_id": recorded.json()["attempt"]["id"],
+            "GET /static/{name}": f"GET /static/{file}",
+            "GET /docs/{name}": "GET /docs/start.js",
+        }
+    )
+    yield service
+    ring.close()
+    store.close()
+
+
+def routes_of(app: FastAPI) -> set[str]:
+    return {
+        f"{method} {route.path}"
+        for route in iter_route_contexts(app.routes)
+        for method in (route.methods or {"ANY"}) - {"HEAD"}
+    }
+
+
+def table() -> dict[str, dict[str, int]]:
+    """The rows of the page's table by their routes, each with its columns by their headings."""
+    lines = [line for line in DOCS.read_text(encoding="utf-8").splitlines() if line[:1] == "|"]
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+    start = next(i for i, row in enumerate(rows) if row[0] == "route")
+    headings = rows[start][1:]
+    return {
+        row[0].strip("`"): dict(zip(headings, map(int, row[1:]), strict=True))
+        for row in rows[start + 2 :]
+        if len(row) == len(headings) + 1
+    }
+
+
+def test_every_route_answers_each_scope_as_the_table_says(guarded: Guarded) -> None:
+    promised = table()
+    assert set(promised) == routes_of(guarded.app)
+
+    async def told(client: httpx.AsyncClient, route: str) -> int:
+        for file in guarded.editor_dir.iterdir():
+            file.unlink()
+        body = json.dumps(BODIES[route]).encode() if route in BODIES else b""
+        if route == "POST /tutor/class":
+            body = gzip.compress(body)
+        method, path = guarded.filled(route).split()
+        return (await client.request(method, path, content=body)).status_code
+
+    async def with_each() -> AsyncIterator[tuple[str, int, httpx.AsyncClient]]:
+        for heading, credentials in guarded.credentials.items():
+            for i, credential in enumerate(credentials):
+                async with guarded.client(credential) as client:
+                    yield heading, i, client
+
+    async def wrong() -> list[tuple[str, str, int, int]]:
+        return [
+            (route, f"{heading} {i}", status, statuses[heading])
+            async for heading, i, client in with_each()
+            for route, statuses in promised.items()
+            # What asks for no key is asked with one of each kind.
+            if i == 0 or statuses["no key"] == 401
+            if (status := await told(client, route)) != statuses[heading]
+        ]
+
+    assert asyncio.run(wrong()) == []
+
+
+def test_a_learner_reads_what_is_the_learner_s_own(guarded: Guarded) -> None:
+    [token] = guarded.credentials["token"]
+    [record], [tutor] = guarded.credentials["`record`"], guarded.credentials["`tutor`"]
+    path = f"/v1/exercises/{EXERCISE}/attempts"
+    of_grace = guarded.ask("POST", path, record, json={"learner": "grace", **ANSWERS}).json()
+    own = guarded.names["attempt_id"]
+    other = of_grace["attempt"]["id"]
+    assert guarded.ask("POST", path, token, json={"learner": "grace", **ANSWERS}).status_code == 403
+    listed = guarded.ask("GET", "/v1/attempts", token).json()["attempts"]
+    assert {each["learner"] for each in listed} == {"ada"}
+    assert guarded.ask("GET", "/v1/attempts?learner=grace", token).status_code == 403
+    assert guarded.ask("GET", f"/v1/attempts/{other}", token).status_code == 404
+    assert guarded.ask("GET", f"/v1/attempts/{other}", tutor).status_code == 200
+    reason = "Copied from a friend."
+
+    def judged(connection: Connection) -> None:
+        override(connection, own, 1.0, reason, "Prof. X", NOW)
+
+    in_transaction(guarded.store.engine, judged)
+    assert reason in guarded.ask("GET", f"/v1/attempts/{own}", tutor).text
+    read = guarded.ask("GET", f"/v1/attempts/{own}", token)
+    assert (read.json()["attempt"]["awarded"], read.json()["overrides"]) == (1.0, [])
+    assert reason not in read.text
+
+
+def test_idempotency_keys_belong_to_who_sends_them(guarded: Guarded) -> None:
+    path, body = f"/v1/exercises/{EXERCISE}/attempts", {"learner": "ada", **ANSWERS}
+    [record], [token] = guarded.credentials["`record`"], guarded.credentials["token"]
+
+    def recorded(credential: str) -> str:
+        headers = {"Idempotency-Key": "first"}
+        answer = guarded.ask("POST", path, credential, json=body, headers=headers)
+        return str(answer.json()["attempt"]["id"])
+
+    assert recorded(record) == recorded(record) != recorded(token) == recorded(token)
+
+
+def test_a_token_has_no_right_that_its_key_has_not(guarded: Guarded) -> None:
+    def made(credential: str, **more: Any) -> httpx.Response:
+        return guarded.ask("POST", "/v1/tokens", credential, json={"learner": "ada", **more})
+
+    graded = made(guarded.credentials["`grade`"][1], minutes=1)
+    assert graded.headers["Cache-Control"] == "no-store"
+    left = datetime.fromisoformat(graded.json()["expires_at"]) - datetime.now(UTC)
+    assert timedelta(seconds=30) < left <= timedelta(minutes=1)
+    token = graded.json()["token"]
+    for exercise, status in ((EXERCISE, 200), (OTHER, 403)):
+        path = f"/v1/exercises/{exercise}/grade"
+        assert guarded.ask("POST", path, token, json={"answers": {}}).status_code == status
+    path = f"/v1/exercises/{EXERCISE}/attempts"
+    refused = guarded.ask("POST", path, token, json={"learner": "ada", **ANSWERS})
+    assert refused.json()["type"].endswith("scope-missing")
+    [record] = guarded.credentials["`record`"]
+    wrong: list[dict[str, Any]] = [
+        {"exercises": []}, {"exercises": ["nothing"]}, {"minutes": 481}, {"key": "x"}
+    ]  # fmt: skip
+    assert [made(record, **each).status_code for each in wrong] == [422] * len(wrong)
+
+
+def test_each_of_many_submissions_is_held_to_the_exercises_of_the_key(guarded: Guarded) -> None:
+    [elsewhere] = guarded.credentials["other exercise"]
+    many = [{"exercise": exercise, "answers": {}} for exercise in (EXERCISE, OTHER)]
+    answer = guarded.ask("POST", "/v1/grade", elsewhere, json={"submissions": many}).json()
+    assert [next(iter(each)) for each in answer["results"]] == ["problem", "report"]
+    assert answer["results"][0]["problem"]["type"].endswith("other-exercise")
+    # Its attempts are listed where it names its exercise.
+    assert guarded.ask("GET", f"/v1/attempts?exercise={OTHER}", elsewhere).status_code == 200
+    assert guarded.ask("GET", f"/v1/attempts?exercise={EXERCISE}", elsewhere).status_code == 403
+
+
+def test_a_browser_sends_the_key_as_a_password(guarded: Guarded) -> None:
+    [tutor] = guarded.credentials["`tutor`"]
+    asked = guarded.ask("GET", "/tutor")
+    assert "Basic" in asked.headers["WWW-Authenticate"]
+    graded = guarded.ask("POST", f"/v1/exercises/{EXERCISE}/grade", json=ANSWERS)
+    assert graded.headers["WWW-Authenticate"] == "Bearer"
+    assert guarded.ask("GET", "/tutor", auth=("anybody", tutor)).status_code == 200
+    # It would send it for a page of another origin, too; a program that shows it, does so itself.
+    path, headers = f"/v1/exercises/{EXERCISE}/solution", {"Origin": "https://evil.example"}
+    assert guarded.ask("GET", path, auth=("", tutor), headers=headers).status_code == 403
+    assert guarded.ask("GET", path, tutor, headers=headers).status_code == 200
+    # The password of a proxy in front is no key, and no mistake.
+    for password in ("secret", "dhg_"):
+        refused = guarded.ask("GET", "/v1/attempts", auth=("proxy", password))
+        kind = "key-needed" if password == "secret" else "key-not-valid"
+        assert refused.json()["type"].endswith(kind)
+
+
+def test_a_page_of_an_allowed_origin_may_send_a_token(guarded: Guarded) -> None:
+    origin = {"Origin": "https://course.example.edu"}
+    wanted = {
+        "Access-Control-Request-Method": "POST",
+        "Access-Control-Request-Headers": "authorization,content-type",
+    }
+    path = f"/v1/exercises/{EXERCISE}/grade"
+    assert guarded.ask("OPTIONS", path, headers={**origin, **wanted}).status_code == 200
+    refused = guarded.ask("POST", path, json=ANSWERS, headers=origin)
+    assert refused.status_code == 401
+    assert refused.headers["Access-Control-Allow-Origin"] == origin["Origin"]
+    assert refused.headers["X-Content-Type-Options"] == "nosniff"
+    assert "Access-Control-Allow-Credentials" not in refused.headers
+
+
+@pytest.mark.parametrize(
+    ("says", "needed", "grades", "records"),
+    [
+        (None, False, True, True), (None, True, False, False),
+        ("until-keys", False, True, True), ("until-keys", True, False, False),
+        ("grade", False, True, False), ("grade", True, True, False),
+        ("grade,record", False, True, True), ("grade,record", True, True, True),
+        ("none", False, False, False), ("none", True, False, False),
+    ],
+)  # fmt: skip
+def test_what_needs_no_key_is_said_by_the_setting(
+    guarded: Guarded, catalogue: Mapping[str, Exercise],
+    says: str | None, needed: bool, grades: bool, records: bool,
+) -> None:  # fmt: skip
+    keys = guarded.ring if needed else None
+    access = Access(open_access(says), solutions=None, read_attempts=None, keys=keys)
+    app = application(catalogue, access=access, store=guarded.store)
+
+    def asked(to: str = "127.0.0.1", credential: str = "", **more: str) -> tuple[bool, bool, bool]:
+        async def ask() -> list[int]:
+            headers = {"authorization": f"Bearer {credential}"} if credential else {}
+            async with httpx.AsyncClient(
+                transport=httpx.ASGITransport(app), base_url=f"http://{to}", headers=headers | more
+            ) as client:
+                path = f"/v1/exercises/{EXERCISE}"
+                return [
+                    (await client.post(f"{path}/grade", json=ANSWERS)).status_code,
+                    (await client.post(f"{path}/attempts", json=ADA)).status_code,
+                    (await client.get(f"{path}/solution")).status_code,
+                ]
+
+        statuses = asyncio.run(ask())
+        assert set(statuses) <= {200, 201, 401, 403}
+        return tuple(status < 300 for status in statuses)  # type: ignore[return-value]
+
+    assert asked() == (grades, records, not needed)
+    # Reached from another machine, by an address that is not this machine's alone.
+    far = says is not None
+    assert asked("192.0.2.1") == (grades and far, records and far, False)
+    [record] = guarded.credentials["`record`"]
+    # Where there are no keys, what a proxy in front may have asked for is not looked at.
+    assert asked("192.0.2.1", record) == (
+        (True, True, False) if needed else (grades and far, records and far, False)
+    )
+    if needed:
+        assert asked(credential=record[:-1] + "!") == (False, False, False)
+
+
+def test_without_keys_nobody_makes_tokens(client: httpx.Client) -> None:
+    made = client.post("/v1/tokens", json={"learner": "ada"})
+    assert made.json()["type"].endswith("tokens-not-made")
+
+
+def test_who_asks_too_often_is_told_when_to_come_again(
+    guarded: Guarded, catalogue: Mapping[str, Exercise]
+) -> None:
+    rates = Rates("2/hour", "1/hour")
+    app = application(catalogue, access=Access(keys=guarded.ring), rates=rates)
+    limited = replace(guarded, app=app)
+    [record], [tutor] = guarded.credentials["`record`"], guarded.credentials["`tutor`"]
+    path = "/v1/exercises"
+    asked = [limited.ask("GET", path, each) for each in (record, record, record, tutor, "", "")]
+    assert [each.status_code for each in asked] == [200, 200, 429, 200, 200, 429]
+    for refused in (asked[2], asked[5]):
+        assert refused.headers["Content-Type"] == "application/problem+json"
+        assert 0 < int(refused.headers["Retry-After"]) <= 2 * 3600
+        assert refused.json()["type"].endswith("too-often")
+    assert limited.ask("GET", "/healthz").status_code == 200
+    rates.close()
