@@ -1,14 +1,18 @@
 """What a real process tells Prometheus, alone and with workers of which one is lost."""
 
+import asyncio
 import json
 import os
 import signal
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
-import pytest
+import httpx
 from prometheus_client.parser import text_string_to_metric_families
 
+from service.server.installed import installed_app
+from service.settings import Settings
 from tests.attempts.databases import new_file
 from tests.attempts.recorded import NO_TWIST, RIGHT
 from tests.server.raw import Service, service
@@ -58,27 +62,46 @@ def check_counts(samples: Samples, attempts: int) -> None:
     assert value(samples, "requests_waiting") == 0
 
 
-@pytest.mark.parametrize("number", [1, 2])
-def test_what_happened_is_told_by_whichever_process_is_asked(tmp_path: Path, number: int) -> None:
-    settings = {
-        "DH_GRADER_METRICS": "local",
-        "DH_GRADER_DATABASE": new_file(tmp_path),
-        "DH_GRADER_LOG_LEVEL": "info",
-    }
-    with service(tmp_path, "--workers", str(number), **settings) as running:
-        until(lambda: running.log.count("startup complete") == number)
+def test_what_happened_is_told_by_whichever_process_is_asked(tmp_path: Path) -> None:
+    settings = {"DH_GRADER_METRICS": "local", "DH_GRADER_DATABASE": new_file(tmp_path)}
+    with service(tmp_path, "--workers", "2", **settings) as running:
+        until(lambda: running.log.count("startup complete") == 2)
         attempt(running, "ada", NO_TWIST)
         attempt(running, "ada", RIGHT)
         attempt(running, "bob", RIGHT)
         for i in range(3):
             running.ask(b"GET /nowhere/%d HTTP/1.1\r\nHost: x\r\n\r\n" % i)
         check_counts(asked(running), 3)
-        if number > 1:
-            os.kill(min(workers(running)), signal.SIGKILL)
-            until(lambda: running.log.count("startup complete") == number + 1)
-            attempt(running, "bob", RIGHT)
-            check_counts(asked(running), 4)
+        os.kill(min(workers(running)), signal.SIGKILL)
+        until(lambda: running.log.count("startup complete") == 3)
+        attempt(running, "bob", RIGHT)
+        check_counts(asked(running), 4)
         through_a_proxy = b"GET /metrics HTTP/1.1\r\nHost: localhost\r\nVia: 1.1 x\r\n\r\n"
         (answer,) = running.ask(through_a_proxy)
         assert answer.status == 403
         assert running.end() == 0
+
+
+def told(client: tuple[str, int], **settings: Any) -> httpx.Response:
+    """What one process tells a client at this address after another has asked for an exercise."""
+    app = installed_app(Settings(**settings))
+
+    async def ask() -> httpx.Response:
+        transport = httpx.ASGITransport(app, client=client)
+        async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1") as http:
+            await http.get("/v1/exercises/scara")
+            return await http.get("/metrics")
+
+    return asyncio.run(ask())
+
+
+def test_one_process_tells_its_own_memory_too_and_strangers_only_where_it_may() -> None:
+    here, elsewhere = ("127.0.0.1", 1), ("192.0.2.7", 1)
+    own = told(here, metrics="local").text
+    count = (
+        'dh_grader_requests_total{method="GET",route="/v1/exercises/{exercise_id}",status="200"}'
+    )
+    assert f"{count} 1.0" in own
+    assert "process_resident_memory_bytes" in own
+    assert [told(elsewhere, metrics=whom).status_code for whom in ("local", "all")] == [403, 200]
+    assert told(here).status_code == 404
