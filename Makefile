@@ -25,7 +25,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test browser screenshots coverage lint format bench fuzz attack load worst campaign policies prints slips durability attempts clients wheel image lock clean
+.PHONY: help install run test thorough browser screenshots coverage lint format bench fuzz attack load worst campaign policies prints slips durability attempts clients wheel image lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
@@ -35,12 +35,15 @@ install: $(dev) ## create .venv with everything for work on the project
 run: $(runtime) ## start the service on http://127.0.0.1:8000 (HOST=, PORT=)
 	$(python) -m service serve --host "$(HOST)" --port "$(PORT)"
 
-# Each core has a worker; one that has finished takes over tests of another.
+# A worker that has finished takes over tests of another.
 pytest := $(python) -m pytest -n auto --dist worksteal
 
 test: lint ## lint, type-check and test on every core
 	-@$(python) -m tests.browser.chromium
 	$(pytest)
+
+thorough: $(dev) ## the same tests, and all of which the suite has a sample (half an hour)
+	$(pytest) -m "campaign or not campaign" --ignore tests/installed
 
 browser: $(dev) ## say which Chromium the browser tests use; fetch one from npm where there is none
 	$(python) -m tests.browser.chromium

@@ -1,5 +1,6 @@
 """What every test folder may use: the shipped exercises, and exercises written for one test."""
 
+import os
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -17,6 +18,12 @@ settings.register_profile(
 settings.load_profile("suite")
 
 FIGURE = "figure"
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers() -> int:
+    """One more than there are cores: a fifth of the time, a test waits for a process or a page."""
+    return (os.cpu_count() or 1) + 1
 
 
 @pytest.fixture

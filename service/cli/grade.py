@@ -10,20 +10,22 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
-from service.cli.interrupts import terminable
+from service.cli.choices import choice, listed, one_of
+from service.cli.interrupts import interruptible
 from service.cli.output import console_of, write
 from service.cli.output_folder import UnusableFolderError, is_for_folder, write_folder
 from service.cli.processes import WorkerLostError, jobs_for, mapped
 from service.cli.progress import Progress, progress
 from service.cli.server import REQUESTS, graded_by, require_no_own_files, server_of, set_exercise
-from service.cli.terminal import UNUSABLE, give_up
+from service.cli.terminal import UNUSABLE, complain, give_up
+from service.cli.written_files import remember, require_own
 from service.formats import FORMAT_NAMES, report_format
 from service.formats.shared.graded import GradedSubmission, Visibility
 from service.formats.shared.plain_text import visible
 from service.formats.shared.report_format import Setting, UnusableSettingError
 from service.grading import FeedbackLevel
 from service.local_grading import GradingTerms, graded
-from service.settings import load_settings
+from service.settings import Settings, load_settings
 from service.submissions.assignment import (
     Assignment,
     UnknownPartNameError,
@@ -39,12 +41,6 @@ if TYPE_CHECKING:
 BELOW_PASS_MARK = 1
 
 commands = typer.Typer(add_completion=False)
-
-
-def _known(name: str) -> str:
-    if name not in FORMAT_NAMES:
-        raise typer.BadParameter(f"{name!r} is not one of {', '.join(_NAMES)}.")
-    return name
 
 
 # Text is for people, so it comes first.
@@ -90,7 +86,10 @@ def command(
     output_format: Annotated[
         str,
         typer.Option(
-            "--format", metavar="NAME", callback=_known, help=f"One of {', '.join(_NAMES)}."
+            "--format",
+            metavar="NAME",
+            callback=lambda name: one_of(name, _NAMES),
+            help=f"One of {', '.join(_NAMES)}.",
         ),
     ] = "text",
     output: Annotated[
@@ -113,9 +112,11 @@ def command(
     feedback: Annotated[
         FeedbackLevel | None,
         typer.Option(
+            parser=choice(FeedbackLevel),
+            metavar=listed(FeedbackLevel),
             help="How much to tell: hints and corrections, what to look at, right and wrong, or "
             "bare marks. What could not be read is told in any case. By default what the file asks "
-            "for, else full, or what the exercise allows in a format that students read."
+            "for, else full, or what the exercise allows in a format that students read.",
         ),
     ] = None,
     echo: Annotated[bool, typer.Option("--echo", help="Tell how each cell was read.")] = False,
@@ -146,7 +147,12 @@ def command(
         ),
     ] = None,
     visibility: Annotated[
-        Visibility, typer.Option(help="When Gradescope shows the result to students.")
+        Visibility,
+        typer.Option(
+            parser=choice(Visibility),
+            metavar=listed(Visibility),
+            help="When Gradescope shows the result to students.",
+        ),
     ] = Visibility.VISIBLE,
 ) -> None:
     """Grade submissions: JSON, TOML, or the pasted answer to one part (csv, md, tex, m, py, …).
@@ -170,8 +176,10 @@ def command(
             f"{output_format} holds one submission, and {len(paths)} files are given: grade them "
             "one by one, or take a format for several."
         )
+    folders = [path for path in paths if path.is_dir()]
     if output is not None:
         _keep(output, [*paths, *filter(None, [assignment])])
+        require_own(output, folders)
     terms = GradingTerms(
         chosen,
         chosen.pass_mark if pass_mark is None else pass_mark,
@@ -184,30 +192,29 @@ def command(
     )
     if not found:
         give_up(f"{', '.join(map(str, paths))}: holds no submission")
-    is_class = any(path.is_dir() for path in paths) and not one_student
+    is_class = bool(folders) and not one_student
     setting = Setting(terms.answered, console_of(output), datetime.now(UTC), os.environ, visibility)
     try:
         with (
-            terminable(),
+            interruptible() as check,
             progress(len(found)) as shown,
-            _grading(grader, terms, found, jobs, output) as all_graded,
+            _grading(grader, terms, found, jobs, output, settings) as all_graded,
         ):
-            run = _Run(all_graded, shown)
-            if (
-                output
-                and taken.folder
-                and is_for_folder(output, several=is_class or len(found) > 1)
-            ):
+            run = _Run(all_graded, shown, check)
+            several = is_class or len(found) > 1
+            if output and taken.folder and is_for_folder(output, several=several):
                 write_folder(taken.folder(run.submissions(), setting), output)
             else:
                 pieces = taken.pieces(run.submissions(), setting)
                 write(pieces, output, at_once=shown.is_shown or not taken.is_stream)
+            remember(output, folders)
     except UnusableFolderError as error:
         give_up(f"{output}: {error}")
     except UnusableSettingError as error:
         give_up(f"{output_format}: {error}")
     except WorkerLostError:
         give_up("A process that grades has been ended from outside; try again with fewer --jobs.")
+    _explain_one_student(output_format, () if one_student else folders, run.exit_code)
     raise SystemExit(run.exit_code)
 
 
@@ -234,30 +241,50 @@ def _keep(output: Path, read: Iterable[Path]) -> None:
             give_up(f"{output}: is read, and would be overwritten; name another --output")
 
 
+def _explain_one_student(output_format: str, folders: Sequence[Path], exit_code: int) -> None:
+    """Tell who graded a class in a format for one submission why that went wrong."""
+    if folders and exit_code == UNUSABLE and report_format(output_format).is_single:
+        complain(
+            f"{output_format} holds one submission, so the folder {folders[0]} was taken for that "
+            "of one student; for a class take another --format, such as csv or html."
+        )
+
+
 def _grading(
     server: "GraderClient | None",
     terms: GradingTerms,
     found: Sequence[HandedIn],
     jobs: int | None,
     output: Path | None,
+    settings: Settings,
 ) -> AbstractContextManager[Iterator[GradedSubmission]]:
     """The submissions in order as they are graded, by the server or else here."""
     if server is not None:
-        return graded_by(server, terms, found, jobs or REQUESTS, output)
+        return graded_by(server, terms, found, jobs or REQUESTS, output, settings)
     jobs = min(jobs or jobs_for(len(found)), len(found))
     return mapped(partial(graded, terms=terms), found, jobs)
 
 
 class _Run:
-    """The submissions as they are graded; ``exit_code`` is that of the worst so far."""
+    """The submissions as they are graded; ``exit_code`` is that of the worst so far.
 
-    def __init__(self, submissions: Iterable[GradedSubmission], shown: Progress) -> None:
+    ``check`` is called between them, and may end the run.
+    """
+
+    def __init__(
+        self,
+        submissions: Iterable[GradedSubmission],
+        shown: Progress,
+        check: Callable[[], None],
+    ) -> None:
         self._submissions = submissions
         self._shown = shown
+        self._check = check
         self.exit_code = 0
 
     def submissions(self) -> Iterator[GradedSubmission]:
         for submission in self._submissions:
+            self._check()
             for told in _complaints(submission):
                 self._shown.complain(told)
             self.exit_code = max(self.exit_code, _exit_code(submission))

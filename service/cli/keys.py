@@ -16,7 +16,9 @@ from service.formats.shared.plain_text import visible
 from service.settings import load_settings
 
 commands = typer.Typer(
-    help="Keys: create, list, revoke.", no_args_is_help=True, add_completion=False
+    help="Who may use the service, and for what: create, list, revoke keys.",
+    no_args_is_help=True,
+    add_completion=False,
 )
 
 

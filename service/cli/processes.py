@@ -3,7 +3,7 @@
 import os
 import signal
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from itertools import islice
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
@@ -17,10 +17,11 @@ _Result = TypeVar("_Result")
 _CHUNK: Final = 8
 # A process takes half a second to start, in which one alone grades a hundred submissions.
 _WORTH_A_PROCESS: Final = 100
+_FOR_THE_GROUP: Final = (signal.SIGINT, signal.SIGTERM)
 
 
 class WorkerLostError(Exception):
-    """A process ended before its work was done: it was killed, or the memory did not suffice."""
+    """A process did not start, or ended before its work was done: it was killed, say."""
 
 
 def jobs_for(count: int) -> int:
@@ -97,7 +98,7 @@ def _workers(function: Callable[[Any], Any], jobs: int) -> Iterator[list["Connec
     # A fork of a process with threads, as numpy has, may hang.
     context = get_context("spawn")
     if os.name == "posix":
-        # The first process would start it, and let interrupts through again in its own start.
+        # The first process would start it, and let signals through again in its own start.
         resource_tracker.ensure_running()
     processes, connections = [], []
     try:
@@ -105,8 +106,11 @@ def _workers(function: Callable[[Any], Any], jobs: int) -> Iterator[list["Connec
             ours, theirs = context.Pipe()
             connections.append(ours)
             process = context.Process(target=_work, args=(theirs, function), daemon=True)
-            with _no_interrupt():
-                process.start()
+            try:
+                with _unreached():
+                    process.start()
+            except OSError as error:
+                raise WorkerLostError from error
             processes.append(process)
             # Where this process ends, however it does, the other then finds the pipe closed.
             theirs.close()
@@ -121,12 +125,15 @@ def _workers(function: Callable[[Any], Any], jobs: int) -> Iterator[list["Connec
 
 
 @contextmanager
-def _no_interrupt() -> Iterator[None]:
-    """Start processes that Ctrl-C does not reach: this one ends them."""
+def _unreached() -> Iterator[None]:
+    """Start processes that no signal to the whole group ends, as Ctrl-C sends one.
+
+    This process ends them; if they ended first, it would take that for the fault.
+    """
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, _FOR_THE_GROUP)
     try:
         yield
     finally:
@@ -135,10 +142,10 @@ def _no_interrupt() -> Iterator[None]:
 
 def _work(connection: "Connection", function: Callable[[Any], Any]) -> None:
     """Apply the function to one chunk after the other."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    while True:
-        try:
+    for number in _FOR_THE_GROUP:
+        signal.signal(number, signal.SIG_IGN)
+    # Where the other end is closed, nobody waits for results.
+    with suppress(EOFError, OSError):
+        while True:
             chunk = connection.recv()
-        except (EOFError, OSError):
-            return
-        connection.send([function(item) for item in chunk])
+            connection.send([function(item) for item in chunk])

@@ -1,5 +1,6 @@
 """The commands put together."""
 
+import gc
 import os
 import sys
 from importlib import import_module
@@ -28,13 +29,16 @@ class _Commands(TyperGroup):
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         name, _, rest = super().resolve_command(ctx, args)
         commands: typer.Typer = import_module(f"service.cli.{name}").commands
+        if not gc.isenabled():
+            gc.freeze()
+            gc.enable()
         return name, typer.main.get_command(commands), rest
 
     def invoke(self, ctx: Any) -> Any:
         # Only here, for the same reason.
         from service.catalogue import CatalogueError
         from service.cli.interrupts import INTERRUPTED
-        from service.cli.terminal import complain, give_up
+        from service.cli.terminal import BROKEN_PIPE, complain, give_up
         from service.kinds_check import check_kinds
         from service.settings import SettingsError
         from service.submissions.lookup import UnknownExerciseError
@@ -49,6 +53,9 @@ class _Commands(TyperGroup):
         except KeyboardInterrupt:
             complain("Interrupted.")
             raise SystemExit(INTERRUPTED) from None
+        except BrokenPipeError:
+            _forget_output()
+            raise SystemExit(BROKEN_PIPE) from None
 
 
 program = typer.Typer(
@@ -101,7 +108,7 @@ def _open_closed_streams() -> None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115, PTH123
 
 
-def main() -> None:
+def run() -> None:
     """Run the command line of this process."""
     _open_closed_streams()
     # What a stream cannot show is replaced, not a reason to stop half-way through a report.

@@ -39,11 +39,14 @@ class RemoteGrading:
 
     ``ungraded`` are the names of the submissions that the server could not grade now, and
     ``reason`` is why. After an error that others would meet as well, nothing more is sent. Several
-    threads may use it.
+    threads may use it. ``key`` is the one that is shown to the server: it may tell another more.
     """
 
-    def __init__(self, server: GraderClient, terms: GradingTerms, journal: Journal) -> None:
+    def __init__(
+        self, server: GraderClient, key: str | None, terms: GradingTerms, journal: Journal
+    ) -> None:
         self._server = server
+        self._key = key
         self._terms = terms
         self._journal = journal
         self._has_ended = False
@@ -74,9 +77,8 @@ class RemoteGrading:
         exercise = assigned.exercise
         parts = tuple(part.id for part in exercise.parts)
         terms = (submission.angle_unit, submission.feedback, submission.echo)
-        of = digest(
-            (self._server.server, exercise.id, exercise.version, parts, terms, submission.answers)
-        )
+        asked = (self._server.server, self._key, exercise.id, exercise.version)
+        of = digest((*asked, parts, terms, submission.answers))
         if (known := self._journal.report(of)) is not None:
             return known
         if self._has_ended:

@@ -35,12 +35,15 @@ def server_of(settings: Settings) -> Iterator["GraderClient | None"]:
     from service.client import GraderClient
 
     try:
-        key = None if settings.key is None else settings.key.get_secret_value()
-        client = GraderClient(settings.server, key)
+        client = GraderClient(settings.server, _key(settings))
     except ValueError as error:
         give_up(visible(str(error)))
     with client:
         yield client
+
+
+def _key(settings: Settings) -> str | None:
+    return None if settings.key is None else settings.key.get_secret_value()
 
 
 def set_exercise(exercise_id: str, *, server: "GraderClient | None") -> SetExercise:
@@ -76,15 +79,17 @@ def graded_by(
     found: Sequence[HandedIn],
     requests: int,
     output: Path | None,
+    settings: Settings,
 ) -> Iterator[Iterator[GradedSubmission]]:
     """The submissions in order, graded by the server, with so many requests at once.
 
-    Where it fails, the reports that it gave stay beside the output, and the end says what to do.
+    ``settings`` are those of the client. Where the server fails, the reports that it gave stay
+    beside the output, and the end says what to do.
     """
     from service.cli.remote_grading import RemoteGrading
 
     journal = Journal(journal_beside(output))
-    grading = RemoteGrading(server, terms, journal)
+    grading = RemoteGrading(server, _key(settings), terms, journal)
     with mapped_in_threads(grading.graded, found, requests) as graded:
         yield graded
     if not grading.ungraded:

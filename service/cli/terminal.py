@@ -12,12 +12,25 @@ from service.settings import load_settings
 from service.submissions.lookup import find_exercise
 
 UNUSABLE = 2
+# As a shell says it: 128 and the number of the signal of a pipe that nobody reads any more.
+BROKEN_PIPE = 141
+
+
+class _Terminal(Console):
+    """A console that ends the program as a closed pipe ends others."""
+
+    def on_broken_pipe(self) -> None:
+        try:
+            # Drops what is left: Python would fail over it again at its end.
+            super().on_broken_pipe()
+        except SystemExit:
+            raise SystemExit(BROKEN_PIPE) from None
 
 
 def stdout() -> Console:
     """The terminal, or 80 columns without colour where the output goes elsewhere."""
     width = None if sys.stdout.isatty() or "COLUMNS" in os.environ else 80
-    return Console(file=sys.stdout, width=width, highlight=False, markup=False, soft_wrap=False)
+    return _Terminal(file=sys.stdout, width=width, highlight=False, markup=False, soft_wrap=False)
 
 
 def complain(message: str) -> None:

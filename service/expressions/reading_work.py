@@ -3,7 +3,7 @@
 import re
 from collections import Counter
 from functools import lru_cache
-from typing import Final
+from typing import Final, NamedTuple
 
 from service.expressions.characters.unicode import SUBSCRIPTS, SUPERSCRIPTS
 
@@ -14,7 +14,6 @@ _COMPOSED: Final = re.compile("[¼-¾⅐-⅞↉" + "".join((*SUPERSCRIPTS, *SUBS
 _SYMBOLS_IN_COMPOSED: Final = 5
 # Each character is looked at once, whatever it is.
 _CHARACTERS_PER_SYMBOL: Final = 16
-
 
 # A fraction in LaTeX costs as much as ten of its braces, a root as six, a quotient as three.
 _EXTRA: Final = {r"\frac": 9, r"\dfrac": 9, r"\tfrac": 9, r"\sqrt": 5, "√": 5, "/": 2}
@@ -29,16 +28,28 @@ _EXTRA_OF_FRACTION: Final = 3
 # c12 is the cosine of a sum.
 _SHORTHAND: Final = re.compile(r"(?<![A-Za-z\\])[cs]\d{2}")
 _EXTRA_OF_DEGREES, _EXTRA_OF_SHORT_NAME, _EXTRA_OF_SHORTHAND = 10, 4, 3
-# Shorter texts are not worth the second look: the largest answers have 300 of them.
+# Shorter texts are not worth the extra: the largest answers have 300 of them.
 _WORTH_IT: Final = 40
+
+# What is counted together: none of the patterns above looks beyond it.
+_WORD: Final = re.compile(r"\\?[A-Za-z0-9_.]+|[^ ]")
+# A formula has few words, which come again and again. Other texts are counted in one piece.
+_MOST_WORDS: Final = 100
 
 # Most texts are read again and again; longer ones are not worth the memory.
 _LONGEST_REMEMBERED: Final = 500
 
 
+class _Count(NamedTuple):
+    """The symbols of a text, and what some of them cost more than others."""
+
+    symbols: int
+    extra: int
+
+
 def symbols_in(text: str) -> int:
     """The names, numbers and signs that a text is read as, roughly and never far too few."""
-    return _remembered(text) if len(text) <= _LONGEST_REMEMBERED else _counted(text)
+    return _of_text(text).symbols
 
 
 def reading_cost(text: str) -> int:
@@ -46,29 +57,40 @@ def reading_cost(text: str) -> int:
 
     What LaTeX writes beside the others, as braces, costs little.
     """
-    return _weighed(text) if len(text) <= _LONGEST_REMEMBERED else _weigh(text)
+    symbols, extra = _of_text(text)
+    return symbols + extra if len(text) > _WORTH_IT else symbols
 
 
-def _weigh(text: str) -> int:
-    found = symbols_in(text)
-    if len(text) <= _WORTH_IT:
-        return found
-    for symbol, times in Counter(_SYMBOL.findall(text)).items():
-        found += times * _EXTRA.get(symbol, 0)
-    found += len(_NAME_OR_NUMBER.findall(text))
-    found += _EXTRA_OF_DEGREES * len(_OF_DEGREES.findall(text))
-    found += _EXTRA_OF_SHORTHAND * len(_SHORTHAND.findall(text))
+def _of_text(text: str) -> _Count:
+    count = _remembered(text) if len(text) <= _LONGEST_REMEMBERED else _by_words(text)
+    return _Count(count.symbols + len(text) // _CHARACTERS_PER_SYMBOL, count.extra)
+
+
+def _by_words(text: str) -> _Count:
+    words = Counter(_WORD.findall(text))
+    if len(words) > _MOST_WORDS:
+        return _scanned(text)
+    symbols = extra = 0
+    for word, times in words.items():
+        symbols_of_word, extra_of_word = _of_word(word)
+        symbols += times * symbols_of_word
+        extra += times * extra_of_word
+    return _Count(symbols, extra)
+
+
+def _scanned(text: str) -> _Count:
+    found = _SYMBOL.findall(text)
+    symbols = len(found)
+    extra = sum(times * _EXTRA.get(symbol, 0) for symbol, times in Counter(found).items())
+    extra += len(_NAME_OR_NUMBER.findall(text))
+    extra += _EXTRA_OF_DEGREES * len(_OF_DEGREES.findall(text))
+    extra += _EXTRA_OF_SHORTHAND * len(_SHORTHAND.findall(text))
+    extra += _EXTRA_OF_SHORT_NAME * len(_SHORT_NAME.findall(text))
     if not text.isascii():
-        found += _EXTRA_OF_FRACTION * len(_FRACTION.findall(text))
-    return found + _EXTRA_OF_SHORT_NAME * len(_SHORT_NAME.findall(text))
+        symbols += _SYMBOLS_IN_COMPOSED * len(_COMPOSED.findall(text))
+        extra += _EXTRA_OF_FRACTION * len(_FRACTION.findall(text))
+    return _Count(symbols, extra)
 
 
-def _counted(text: str) -> int:
-    found = len(_SYMBOL.findall(text)) + len(text) // _CHARACTERS_PER_SYMBOL
-    if text.isascii():
-        return found
-    return found + _SYMBOLS_IN_COMPOSED * len(_COMPOSED.findall(text))
-
-
-_remembered: Final = lru_cache(maxsize=8192)(_counted)
-_weighed: Final = lru_cache(maxsize=8192)(_weigh)
+_remembered: Final = lru_cache(maxsize=8192)(_by_words)
+_of_word: Final = lru_cache(maxsize=2048)(_scanned)

@@ -31,8 +31,17 @@ def _total(submission: GradedSubmission) -> str:
     if not submission.is_graded:
         return visible(f"Nothing could be graded: {'; '.join(submission.problems)}")
     total = f"{points(submission.points, submission.max_points)} points"
-    unread = "" if submission.is_gradable else " Nothing in this submission could be read."
-    return f"{total}, {percent(submission.score)}.{unread}"
+    return f"{total}, {percent(submission.score)}.{_unread(submission)}"
+
+
+def _unread(submission: GradedSubmission) -> str:
+    if submission.is_gradable:
+        return ""
+    return (
+        " Nothing in this submission could be read."
+        if submission.is_answered
+        else " Nothing is answered."
+    )
 
 
 def _test(result: PartResult) -> dict[str, Any]:

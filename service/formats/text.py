@@ -13,7 +13,7 @@ from rich.text import Text
 
 from service.formats.shared.aligned import AlignedColumn, AlignedTable, StyledText
 from service.formats.shared.class_summary import ClassSummary, pass_line, result_line
-from service.formats.shared.graded import GradedSubmission
+from service.formats.shared.graded import GradedSubmission, is_answered
 from service.formats.shared.messages import SIGNS, Message, messages
 from service.formats.shared.plain_text import percent, points, visible
 from service.formats.shared.report_format import ReportFormat, Setting
@@ -109,7 +109,8 @@ class _Page:
         total = f"{points(report.points, report.max_points)} points, {percent(report.score)}"
         self._print(Text.assemble((f"Total for {visible(report.exercise)}: ", "bold"), total))
         if not report.gradable:
-            self._print(Text("Nothing in this submission could be read."))
+            unread = "Nothing in this submission could be read."
+            self._print(Text(unread if is_answered(report) else "It is not answered."))
         if any(part.rows for part in report.parts):
             signs = [Verdict.CORRECT, Verdict.INCORRECT, Verdict.UNREADABLE, Verdict.MISSING]
             # The mark of an error in a part or row that is right elsewhere.

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from service.expressions.reading_work import reading_cost
+from service.grids.limits import GRID_LIMITS
 
 # The pose of a seven-joint arm, multiplied out, not simplified and printed as LaTeX or JavaScript,
 # has up to 13,900, each symbol counted by what it costs.
@@ -29,7 +30,7 @@ MAX_SEARCHES = 240.0
 # What the search for values of unread cells leaves for judging the table.
 JUDGING_WORK = 90.0
 # All of it together. What was read and searched leaves so much less for explanations.
-MAX_WORK = 330.0
+MAX_WORK = 300.0
 # The work of reading a symbol, of cutting a character out of a pasted text, of a repair.
 SYMBOL_WORK, PASTED_WORK, REPAIR_WORK = 1 / 100, 1 / 800, 1.5
 
@@ -67,7 +68,7 @@ class WorkBudget:
     def left(self) -> float:
         """How much of all work the reading, also that to come, and the searches have left."""
         if self._expected < 0:
-            self._expected = min(_symbols_of(self.answers), MAX_SYMBOLS)
+            self._expected = _symbols_of(self.answers)
         read = (
             SYMBOL_WORK * max(MAX_SYMBOLS - max(self.symbols, 0), self._expected)
             + PASTED_WORK * (MAX_PASTED - max(self.pasted, 0))
@@ -109,15 +110,16 @@ class WorkBudget:
 
 
 def _symbols_of(answer: object) -> int:
-    """The names, numbers and signs in all texts of a JSON value."""
+    """The names, numbers and signs in all texts of a JSON value, up to the most that is read."""
     found, waiting = 0, [answer]
     # Without recursion: lists may stand in each other deeper than Python calls.
-    while waiting:
+    while waiting and found < MAX_SYMBOLS:
         match waiting.pop():
-            case str() as text:
+            # A longer text is read neither as a formula nor as a grid.
+            case str() as text if len(text) <= GRID_LIMITS.characters:
                 found += reading_cost(text)
             case Mapping() as fields:
                 waiting.extend(fields.values())
             case list() as items:
                 waiting.extend(items)
-    return found
+    return min(found, MAX_SYMBOLS)

@@ -16,7 +16,7 @@ _END: Final = b"\r\n"
 _BARE_NEWLINE: Final = re.compile(rb"(?<!\r)\n")
 _CHUNK_SIZE: Final = re.compile(rb"([0-9A-Fa-f]{1,8})[ \t]*(?:;.*)?")
 # A line of a chunked body counts as this many bytes at least: each costs work, however short it is.
-_LEAST_LINE: Final = 16
+_LEAST_LINE: Final = 64
 # Method and version beside the address.
 _REST_OF_LINE: Final = 64
 

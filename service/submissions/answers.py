@@ -4,13 +4,14 @@ The name of a file says which exercise and part it answers. Where it does not, t
 itself by its key ``exercise``, or there is one exercise only.
 """
 
+import json
 import re
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from os.path import commonpath
 from pathlib import PurePosixPath
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from pydantic import ValidationError
 
@@ -25,6 +26,10 @@ from service.submissions.file_content import (
     read_content,
 )
 from service.submissions.handed_in import HandedFile, HandedIn
+from service.submissions.lookup import nearest
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
 
 # Names of files that a message tells.
 _TOLD: Final = 5
@@ -291,7 +296,24 @@ def _first(error: ValidationError) -> str:
     if detail["type"] == "extra_forbidden":
         known = ", ".join(["exercise", *GradeRequest.model_fields])
         return f"has the unknown field {key!r}; the fields are {known}"
-    return f"{key}: {detail['msg']}"
+    return f"{key} {_fault(detail)}"
+
+
+def _fault(detail: "ErrorDetails") -> str:
+    """The fault of a field, in plain words."""
+    given = detail["input"]
+    shown = json.dumps(given, ensure_ascii=False, default=str)[:_LONGEST_NAME]
+    match detail["type"]:
+        case "dict_type":
+            return f'is {shown}; write {{"PART": …}}, an answer for each part'
+        case "bool_type":
+            return f"is {shown}; write true or false"
+        case "literal_error":
+            known = re.findall("'([^']*)'", detail["ctx"]["expected"])
+            meant = nearest(given, known) if isinstance(given, str) else None
+            hint = f". Did you mean {meant}?" if meant else ""
+            return f"is {shown}; it may be {', '.join(known)}{hint}"
+    return detail["msg"]
 
 
 def _quoted(name: object) -> str:

@@ -1,7 +1,8 @@
 """The one table or matrix in a document: what would be pasted of it.
 
-A file of LaTeX or Markdown has words around the answer, which a pasted text may not have. Where
-there is not exactly one table, the text stays as it is, and the reader says what it lacks.
+A file of LaTeX or Markdown has words around the answer, and a MATLAB script has statements, which a
+pasted text may not have. Where there is not exactly one table, the text stays as it is, and the
+reader says what it lacks.
 """
 
 import re
@@ -11,6 +12,17 @@ from typing import Final
 _ENVIRONMENT: Final = re.compile(
     r"\\begin\{(tabular[x*]?|longtable|array|smallmatrix|[pbBvV]?matrix)\}"
 )
+
+_ASSIGNED: Final = re.compile(r"^[ \t]*([A-Za-z]\w{0,60})[ \t]*=[ \t]*\[", re.MULTILINE)
+
+_NAME: Final = re.compile(r"[A-Za-z]\w*")
+# A value for a name, other than itself as a symbol: q1 = sym('q1').
+_GIVEN: Final = re.compile(
+    r"(?:^|[;,])[ \t]*([A-Za-z]\w{0,60})[ \t]*=(?!=)(?![ \t]*sym\(['\"]\1['\"][,)])", re.MULTILINE
+)
+_SEVERAL_GIVEN: Final = re.compile(r"\][ \t]*=(?!=)")
+# A value for a name, or for some of its entries.
+_CHANGED: Final = re.compile(r"\b([A-Za-z]\w{0,60})[ \t]*(?:\([^()\n]{0,80}\)[ \t]*)?=(?!=)")
 
 
 def pasted_from(text: str, suffix: str) -> str:
@@ -50,7 +62,35 @@ def _markdown(text: str) -> Iterator[str]:
         is_code = is_fence and not is_code
 
 
+def _matlab(text: str) -> Iterator[str]:
+    """The matrices that are written out and assigned, as far as nothing else changes a letter."""
+    at = 0
+    while opening := _ASSIGNED.search(text, at):
+        before, at = opening.start(), _closing(text, opening.end())
+        matrix = text[before:at]
+        given = set(_GIVEN.findall(text[:before])) & set(_NAME.findall(matrix))
+        if (
+            at == 0
+            or given
+            or _SEVERAL_GIVEN.search(text)
+            or opening[1] in _CHANGED.findall(text, at)
+        ):
+            return
+        yield matrix
+
+
+def _closing(text: str, start: int) -> int:
+    """The place behind the bracket that closes the one before ``start``, or 0."""
+    depth = 1
+    for bracket in re.finditer(r"[\[\]]", text[start:]):
+        depth += 1 if bracket[0] == "[" else -1
+        if depth == 0:
+            return start + bracket.end()
+    return 0
+
+
 _TABLES: Final[Mapping[str, Callable[[str], Iterator[str]]]] = {
     ".tex": _latex,
     ".md": _markdown,
+    ".m": _matlab,
 }

@@ -1,15 +1,25 @@
 """The names that learning platforms give to what they download, and the student in them.
 
-Moodle writes ``Ada Lovelace_1234_assignsubmission_file_`` as the name of a folder, or before the
-name of a file; Canvas writes ``lovelaceada_LATE_1234_56789_`` before the name of a file.
+Moodle (``mod/assign/classes/downloader.php``, earlier ``mod/assign/locallib.php``) writes
+``Ada Byron_1234_assignsubmission_file`` as the name of a folder, with another ``_`` in older
+versions, or before the name of a file. Canvas (``lib/content_zipper.rb``) writes
+``byronada_LATE_1234_56789_`` before the name of a file; a text that was typed there is
+``byronada_1234_text.html``, an address ``byronada_1234_link.html``, and where students are
+anonymous ``anon_x7Gh2`` stands for the name and the number.
 """
 
 import re
 from dataclasses import dataclass
 from typing import Final
 
-_MOODLE: Final = re.compile(r"(?P<student>.+?)_(?P<id>\d+)_assignsubmission_[a-z]+_(?P<file>.*)")
-_CANVAS: Final = re.compile(r"(?P<student>[^_]+)_(?:LATE_)?(?P<id>\d{2,})_\d{3,}_(?P<file>.+)")
+_MOODLE: Final = re.compile(
+    r"(?P<student>.+?)_(?P<id>\d+)_assignsubmission_[a-z]+(?:_(?P<file>.*))?"
+)
+# Canvas leaves letters, digits and _ of a name; marks of many scripts are letters there.
+_CANVAS: Final = re.compile(
+    r"(?:(?P<student>[^\s.,()-]+?)_)??(?:LATE_)?(?P<id>\d{2,}|anon_[A-Za-z0-9]+)"
+    r"_(?:\d{3,}_(?P<file>.+)|(?P<entry>(?:text|link)(?:-\d+)?\.html))"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,8 +40,9 @@ def platform_name(name: str) -> PlatformName | None:
     if found := _MOODLE.fullmatch(name):
         # Moodle's grading worksheet has this in the column "Identifier".
         learner = f"Participant {found['id']}"
-    elif found := _CANVAS.fullmatch(name):
-        learner = found["id"]
-    else:
+        return PlatformName(f"{found['student']}_{found['id']}", learner, found["file"] or "")
+    found = _CANVAS.fullmatch(name)
+    if found is None or (found["student"] is None) == found["id"].isdigit():
         return None
-    return PlatformName(f"{found['student']}_{found['id']}", learner, found["file"])
+    student = "_".join(filter(None, (found["student"], found["id"])))
+    return PlatformName(student, found["id"], found["file"] or found["entry"])

@@ -127,3 +127,19 @@ def test_a_known_key_works_while_the_database_is_down(engine: Engine) -> None:
     ring.close()
     with pytest.raises(KeysUnreachableError):
         KeyRing(engine, SECRET)
+
+
+def test_invented_keys_take_no_place_of_known_ones(engine: Engine) -> None:
+    key, known = made(engine)
+    ring = KeyRing(engine, SECRET, 0.0)
+    asked(ring, key)
+
+    async def flood() -> list[BaseException | Caller]:
+        invented = (new_key_text() for _ in range(200))
+        return await asyncio.gather(*map(ring.caller, (*invented, key)), return_exceptions=True)
+
+    *refused, caller = asyncio.run(flood())
+    assert isinstance(caller, Caller)
+    assert caller.key_id == known.id
+    assert {type(each) for each in refused} == {CredentialError, KeysUnreachableError}
+    ring.close()

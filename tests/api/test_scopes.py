@@ -12,7 +12,7 @@ from typing import Any
 
 import httpx
 import pytest
-from fastapi import FastAPI
+from fastapi import FastAPI, Request
 from fastapi.routing import iter_route_contexts
 from sqlalchemy import Connection
 
@@ -26,6 +26,7 @@ from service.access.rates import Rates
 from service.api.access import Access
 from service.api.application import application
 from service.api.openapi import example
+from service.api.problems import ProblemError
 from service.attempts.database import in_transaction
 from service.attempts.store import AttemptStore
 from service.attempts.tutoring import override
@@ -299,6 +300,23 @@ def test_a_browser_sends_the_key_as_a_password(guarded: Guarded) -> None:
         refused = guarded.ask("GET", "/v1/attempts", auth=("proxy", password))
         kind = "key-needed" if password == "secret" else "key-not-valid"
         assert refused.json()["type"].endswith(kind)
+
+
+def test_no_way_leads_around_the_door(guarded: Guarded) -> None:
+    async def below_a_prefix() -> list[int]:
+        transport = httpx.ASGITransport(guarded.app, root_path="/grader")
+        address = "http://127.0.0.1:8000/grader/"
+        async with httpx.AsyncClient(transport=transport, base_url=address) as client:
+            paths = ("readyz", f"v1/exercises/{EXERCISE}", f"v1/exercises/{EXERCISE}/solution")
+            return [(await client.get(path)).status_code for path in paths]
+
+    assert asyncio.run(below_a_prefix()) == [200, 200, 401]
+    access = Access(OPEN_HERE, solutions=None, keys=guarded.ring)
+    scope = {"type": "http", "headers": [(b"host", b"127.0.0.1")], "path": "/"}
+    here = {"server": ("127.0.0.1", 8000), "client": ("127.0.0.1", 1)}
+    with pytest.raises(ProblemError, match="needs a key"):
+        access.require(Request({**scope, **here}), Scope.GRADE)
+    assert not access.shows_solutions(Request({**scope, **here}))
 
 
 def test_a_page_of_an_allowed_origin_may_send_a_token(guarded: Guarded) -> None:

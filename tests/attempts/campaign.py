@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import timedelta
+from functools import partial
 from pathlib import Path
 
 from rich.console import Console
@@ -85,14 +86,18 @@ def fill(
     show(f"{count} attempts, {outcomes} outcomes, {len(set(tables))} different tables")
 
 
-def timed(work: Callable[[], object]) -> float:
-    """The least seconds of five."""
-    took = []
+def timed(what: str, work: Callable[[], object], most: float) -> None:
+    """Print the least milliseconds of five, of the clock and of the processor."""
+    clock, processor = [], []
     for _ in range(5):
-        begun = time.perf_counter()
+        begun, used = time.perf_counter(), time.process_time()
         work()
-        took.append(time.perf_counter() - begun)
-    return min(took)
+        clock.append(time.perf_counter() - begun)
+        processor.append(time.process_time() - used)
+    show(
+        f"{what}: {min(clock) * 1e3:.1f} ms, {min(processor) * 1e3:.1f} ms of processor time "
+        f"(at most {most:g})"
+    )
 
 
 def read(store: AttemptStore) -> None:
@@ -106,11 +111,8 @@ def read(store: AttemptStore) -> None:
     }
     with store.engine.connect() as connection:
         for name, wanted in pages.items():
-            seconds = timed(lambda wanted=wanted: page(connection, wanted, None, 100))  # type: ignore[misc]
-            show(f"page, {name}: {seconds * 1e3:.1f} ms (at most 50)")
-        wanted = AttemptFilter(exercise="scara")
-        seconds = timed(lambda: exercise_statistics(connection, wanted))
-        show(f"statistics: {seconds:.2f} s (at most 1)")
+            timed(f"page, {name}", partial(page, connection, wanted, None, 100), 50)
+        timed("statistics", lambda: exercise_statistics(connection, pages["of an exercise"]), 1000)
 
 
 def regrade(store: AttemptStore, exercise: Exercise, most: int) -> None:

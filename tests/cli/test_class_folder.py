@@ -8,6 +8,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -97,17 +98,26 @@ def test_an_interrupt_ends_it_at_once_and_leaves_nothing(
     output.write_text("from yesterday", encoding="utf-8")
     command = [*PROGRAM, *[str(folder)] * 40, "--format", "csv", "--jobs", "2"]
     process = subprocess.Popen(
-        [*command, "--output", str(output)], stderr=subprocess.PIPE, start_new_session=True
+        [*command, "--output", str(output)],
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+        # The suite may run in the background of a script, where interrupts are ignored.
+        preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
     )
     try:
         # The file that is being written shows that the grading has begun.
         wait_for(lambda: (tmp_path / ".out.csv.part").exists())
-        wait_for(lambda: len(children(process.pid)) >= 2)
+        # A process that has just begun may not have its own command line yet.
+        wait_for(lambda: len(workers(process.pid)) == 2)
+        # The run does not end by itself before the signal comes.
+        for worker in workers(process.pid):
+            os.kill(worker, signal.SIGSTOP)
         # As a terminal does, which sends it to all processes of the group.
         os.killpg(process.pid, number)
         _, stderr = process.communicate(timeout=ANSWER)
     finally:
         process.kill()
+        process.wait()
     assert process.returncode == 128 + number, stderr
     assert b"Traceback" not in stderr
     assert [file.name for file in tmp_path.iterdir()] == ["out.csv"]
@@ -135,6 +145,15 @@ def processes() -> Iterator[tuple[int, int, int]]:
 
 def children(pid: int) -> list[int]:
     return [each for each, parent, _ in processes() if parent == pid]
+
+
+def workers(pid: int) -> list[int]:
+    """The children that grade; another one keeps track of them."""
+    return [each for each in children(pid) if b"spawn_main" in command_of(each)]
+
+
+def command_of(pid: int) -> bytes:
+    return Path(f"/proc/{pid}/cmdline").read_bytes()
 
 
 def group(pid: int) -> list[int]:

@@ -266,6 +266,67 @@ def test_an_output_takes_the_place_of_nothing_that_is_read(
         assert output.read_bytes() == before
 
 
+def test_an_output_takes_the_place_of_no_submission_but_of_an_earlier_output(
+    run: Run, save: Save, tmp_path: Path
+) -> None:
+    (tmp_path / "class" / "bert").mkdir(parents=True)
+    command = ("grade", tmp_path / "class", "--exercise", "planar-rrr", "--format", "csv")
+    for name in ("class/anna.json", "class/bert/answer.json"):
+        answer = save({"answers": {"table": RIGHT}}, name)
+        before = answer.read_bytes()
+        refused = run(*command, "--output", answer)
+        assert (refused.exit_code, answer.read_bytes()) == (2, before)
+        assert "stands among the submissions" in refused.stderr
+    points = tmp_path / "class" / "points.csv"
+    for _ in range(2):
+        assert run(*command, "--output", points).exit_code == 1
+        assert points.read_text(encoding="utf-8").count("\n") == 3
+
+
+@pytest.mark.parametrize(
+    ("option", "word", "meant"),
+    [
+        ("--format", "htlm", "html"),
+        ("--feedback", "verdict", "verdicts"),
+        ("--visibility", "visable", "visible"),
+    ],
+)
+def test_a_mistyped_choice_brings_the_nearest(
+    run: Run, save: Save, option: str, word: str, meant: str
+) -> None:
+    result = table_only(run, save(RIGHT), option, word)
+    assert result.exit_code == 2
+    told = " ".join(result.stderr.replace("│", " ").split())
+    assert f"{word!r} is not one of " in told
+    assert f"Did you mean {meant}?" in told
+    assert "Value error" not in told
+
+
+def test_a_class_in_a_format_for_one_submission_says_what_it_was_taken_for(
+    run: Run, save: Save, tmp_path: Path
+) -> None:
+    for name in ("class/anna/answer.json", "class/bert/answer.json"):
+        (tmp_path / name).parent.mkdir(parents=True)
+        save({"answers": {"table": RIGHT}}, name)
+    folder = tmp_path / "class"
+    result = run("grade", folder, "--exercise", "planar-rrr", "--format", "gradescope")
+    assert result.exit_code == 2
+    assert f"so the folder {folder} was taken for that of one student" in result.stderr
+
+
+def test_an_exercise_without_an_answer_is_not_called_unreadable(run: Run, save: Save) -> None:
+    empty, unread = save({"answers": {}}), save({"answers": {"table": "l1 +"}}, "unread.json")
+    command = ("--exercise", "planar-rrr", "--format")
+    told = {
+        (file.name, name): run("grade", file, *command, name).stdout
+        for file in (empty, unread)
+        for name in ("text", "gradescope")
+    }
+    for (file, _), page in told.items():
+        assert ("could be read" in page) == (file == "unread.json")
+        assert ("not answered" in page or "Nothing is answered" in page) == (file != "unread.json")
+
+
 @pytest.mark.parametrize(
     ("content", "name", "reason"),
     [
@@ -276,7 +337,13 @@ def test_an_output_takes_the_place_of_nothing_that_is_read(
         (b" " * 300_000, "a.json", "larger than 256 KiB"),
         (b'{"answers": {"table": 1, "table": 2}}', "a.json", "twice"),
         (b'{"rows": []}', "a.json", "--part"),
-        (b'{"answers": []}', "a.json", "answers"),
+        (b'{"answers": []}', "a.json", 'answers is []; write {"PART": '),
+        (b'{"answers": null}', "a.json", 'answers is null; write {"PART": '),
+        (b'{"answers": {}, "echo": 1}', "a.json", "echo is 1; write true or false"),
+        (
+            b'{"answers": {}, "angle_unit": "deg"}', "a.json",
+            'angle_unit is "deg"; it may be radians, degrees. Did you mean degrees?',
+        ),
         (b'{"answers": {}, "unit": "deg"}', "a.json", "unit"),
         (b'{"answers": {"tabel": 1}}', "a.json", "table, pose"),
         (b"answers = \n", "a.toml", "line 1, column 11"),
@@ -285,7 +352,7 @@ def test_an_output_takes_the_place_of_nothing_that_is_read(
         (b"a = " + b"[" * 100 + b"]" * 100, "a.toml", "deep"),
         (b"a = " + b"9" * 5000, "a.toml", "not usable TOML: a number has thousands of digits\n"),
     ],
-)
+)  # fmt: skip
 def test_an_unusable_file_says_why(
     run: Run, save: Save, content: bytes, name: str, reason: str
 ) -> None:

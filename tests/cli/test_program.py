@@ -140,3 +140,16 @@ def test_closed_streams_cost_no_report(answer: Path, tmp_path: Path) -> None:
     done = subprocess.run(["sh", "-c", command, "sh", *grade], cwd=ROOT, check=False)
     assert done.returncode == 1
     assert output.read_text(encoding="utf-8").count("\n") == 2
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs a POSIX pipe")
+@pytest.mark.parametrize("arguments", [("exercises", "list"), ("grade", "--exercise", "rrrp")])
+def test_a_reader_that_goes_ends_it_quietly(arguments: tuple[str, ...], answer: Path) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    files = (str(answer),) * (arguments[0] == "grade")
+    with open(writer, "wb") as gone:  # noqa: PTH123 - it has no path
+        command = [sys.executable, "-m", "service", *arguments, *files]
+        done = subprocess.run(command, cwd=ROOT, stdout=gone, stderr=subprocess.PIPE, check=False)
+    # As a shell says it of a program that the signal has ended.
+    assert (done.returncode, done.stderr) == (141, b"")

@@ -164,6 +164,26 @@ def test_what_the_server_refuses_or_fails_at_costs_no_other(
     assert list(Path().glob(".*")) == []
 
 
+def test_another_key_is_given_reports_of_its_own(
+    run: Run, server: Served, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with httpx.Client(base_url=server.address, trust_env=False) as client:
+        view = http(200, client.get("/v1/exercises/planar-rr").text)
+        answers = {"answers": {"position": POSITION}}
+        report = http(200, client.post("/v1/exercises/planar-rr/grade", json=answers).text)
+    for name in "ab":
+        answers = {"answers": {"position": [*POSITION[:1], f"{POSITION[1]} + 0 {ord(name)}"]}}
+        Path(f"{name}.json").write_text(json.dumps(answers), encoding="utf-8")
+    command = ["grade", "a.json", "b.json", "--exercise", "planar-rr", "--format", "csv"]
+    command += ["--jobs", "1", "--server"]
+    with scripted(view, report, http(500), view, report, report) as scripted_server:
+        first = run(*command, scripted_server.address, "--key", "dhg_1")
+        assert "Not graded: 1 of 2" in first.stderr
+        run(*command, scripted_server.address, "--key", "dhg_2")
+        assert len(scripted_server.requests) == 6
+
+
 def test_the_environment_names_server_and_key(
     run: Run, homework: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

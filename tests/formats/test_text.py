@@ -158,7 +158,7 @@ def test_a_part_that_was_not_handed_in_says_so() -> None:
     page = text(report(missing, gradable=False))
     assert "pose (transform): missing, 0 / 4 points" in page
     assert "– Nothing was handed in." in page
-    assert "could be read" in page
+    assert "It is not answered." in page
 
 
 @pytest.mark.parametrize("width", [40, 80, 200])

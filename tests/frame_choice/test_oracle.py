@@ -116,11 +116,11 @@ def test_drawn_tables_are_valid_and_differ(robot: Robot) -> None:
     seen = set()
     for policy in POLICIES:
         for convention in conventions(robot, policy):
-            for _ in range(4):
+            for _ in range(2):
                 table, _ = reassignment(robot, policy, convention, rng)
                 assert equivalent(table), table.texts
                 seen.add(str(table.texts))
-    assert len(seen) > 20
+    assert len(seen) > 10
 
 
 def test_the_cells_that_repair_a_table() -> None:

@@ -39,7 +39,7 @@ def valid(file: Path, platform: str) -> dict[str, Any]:
     return result
 
 
-@pytest.mark.parametrize("sorts", [("wrong", "hostile"), ALL])
+@pytest.mark.parametrize("sorts", [("hostile",), ALL])
 def test_gradescope_gets_a_valid_result(
     sorts: tuple[str, ...], programs: Path, tmp_path: Path
 ) -> None:
@@ -64,7 +64,7 @@ def test_gradescope_gets_a_valid_result(
         assert_nothing_ran(place, text, done.stdout, done.stderr)
 
 
-@pytest.mark.parametrize("sorts", [("unreadable", "hostile"), ALL])
+@pytest.mark.parametrize("sorts", [("hostile",), ALL])
 def test_prairielearn_gets_a_valid_result(
     sorts: tuple[str, ...], programs: Path, tmp_path: Path
 ) -> None:

@@ -4,6 +4,7 @@ from service.submissions.documents import pasted_from
 
 TABULAR = "\\begin{tabular}{cc}\n$a$ & $d$ \\\\ 0 & 1\n\\end{tabular}"
 BARS = "| a | d |\n|---|---|\n| 0 | 1 |"
+MATRIX = "DH = [a1 0 0 q1;\n      a2 0 0 q2]"
 
 
 @pytest.mark.parametrize(
@@ -13,8 +14,13 @@ BARS = "| a | d |\n|---|---|\n| 0 | 1 |"
         (f"# Homework\n\n{BARS}\n\nDone.", ".md", BARS),
         ("Matrix:\n```python\n[[1, 0],\n [0, 1]]\n```\nDone", ".md", "[[1, 0],\n [0, 1]]"),
         (TABULAR, ".tex", TABULAR),
+        (
+            (f"clear; clc;\nsyms q1 a1 real\nq2 = sym('q2');\n{MATRIX};  % a alpha d theta\n"
+            "T = eye(4);\nfor i = 1:2\n  T = T * A(DH(i, :));\nend\ndisp(T)"),
+            ".m", MATRIX,
+        ),
     ],
-)
+)  # fmt: skip
 def test_the_words_around_a_table_are_left_out(text: str, suffix: str, pasted: str) -> None:
     assert pasted_from(text, suffix) == pasted
 
@@ -27,6 +33,15 @@ def test_the_words_around_a_table_are_left_out(text: str, suffix: str, pasted: s
         (f"{BARS}\n\n{BARS}", ".md"),
         ("a, d\n0, 1", ".md"),
         (f"x\n{BARS}\n\ny", ".csv"),
+        (f"{MATRIX};\nB = [1 2; 3 4];", ".m"),
+        # The matrix that was written out is not the answer, or its letters are not the student's.
+        (f"{MATRIX};\nDH(1, 3) = d1;", ".m"),
+        (f"{MATRIX};\nDH = DH * 2;", ".m"),
+        (f"q1 = pi/2; a1 = 3;\n{MATRIX};", ".m"),
+        (f"q1 = sym('q2');\n{MATRIX};", ".m"),
+        (f"[q1, q2] = deal(0, 1);\n{MATRIX};", ".m"),
+        ("A = [", ".m"),
+        ("A = [0]\n" * 10_000, ".m"),
     ],
 )
 def test_without_just_one_the_text_stays(text: str, suffix: str) -> None:

@@ -18,8 +18,26 @@ from service.submissions.platform_names import PlatformName, platform_name
             "Ada Lovelace_1234_assignsubmission_onlinetext_onlinetext.html",
             "Ada Lovelace_1234", "Participant 1234", "onlinetext.html",
         ),
+        # The forms of newer versions of Moodle: no _ at the end of a folder's name.
+        (
+            "Ada Lovelace_1234_assignsubmission_file",
+            "Ada Lovelace_1234", "Participant 1234", "",
+        ),
+        (
+            "Ada Lovelace_1234_assignsubmission_onlinetext",
+            "Ada Lovelace_1234", "Participant 1234", "",
+        ),
+        ("Group 3_77_assignsubmission_file", "Group 3_77", "Participant 77", ""),
         ("lovelaceada_12345_678_answer.json", "lovelaceada_12345", "12345", "answer.json"),
         ("lovelaceada_LATE_12345_678_a_b.csv", "lovelaceada_12345", "12345", "a_b.csv"),
+        # Canvas keeps an underscore of a name, and every script's letters.
+        ("de_souzaana_12345_678_x.csv", "de_souzaana_12345", "12345", "x.csv"),
+        ("शर्माकविता_LATE_12345_678_x.csv", "शर्माकविता_12345", "12345", "x.csv"),
+        ("lovelaceada_12345_678_table-1.csv", "lovelaceada_12345", "12345", "table-1.csv"),
+        ("lovelaceada_LATE_12345_text.html", "lovelaceada_12345", "12345", "text.html"),
+        ("lovelaceada_12345_link.html", "lovelaceada_12345", "12345", "link.html"),
+        ("anon_x7Gh2_678_table.csv", "anon_x7Gh2", "anon_x7Gh2", "table.csv"),
+        ("LATE_anon_x7Gh2_678_table.csv", "anon_x7Gh2", "anon_x7Gh2", "table.csv"),
     ],
 )  # fmt: skip
 def test_the_student_is_found(name: str, student: str, learner: str, file: str) -> None:
@@ -27,7 +45,19 @@ def test_the_student_is_found(name: str, student: str, learner: str, file: str) 
 
 
 @pytest.mark.parametrize(
-    "name", ["anna.json", "anna_1.json", "table_2_3.csv", "hw_1_2_x.json", "_12345_678_", ""]
+    "name",
+    [
+        "anna.json",
+        "anna_1.json",
+        "table_2_3.csv",
+        "hw_1_2_x.json",
+        "_12345_678_",
+        "12345_678_x.csv",
+        "2024_lab_text.html",
+        "anon_text.html",
+        "my_text.html",
+        "",
+    ],
 )
 def test_a_name_that_somebody_chose_is_no_platform_s(name: str) -> None:
     assert platform_name(name) is None

@@ -64,6 +64,8 @@ KNOWN: Final[Mapping[str, Attack]] = {
     "long rows of names": Attack(
         GRADE, ARM, {"answers": {"table": [{f"k{i}": 0 for i in range(1500)}] * 12}}
     ),
+    "a cell as long as a body may be": _graded(pose=[["1+" * 125_000 + "1"]]),
+    "cells of many words": _graded(pose=[[" ".join(f"a{i}" for i in range(5_000))] * 4] * 2),
     "a long formula": _previewed("+".join(["(2q1c12q2)"] * 180), "pose"),
     "a formula of halves": _previewed("½" * 8_000, "pose"),
     "many previews": previews_of(ARM, "links", "c12 " * 16),

@@ -34,7 +34,7 @@ ENTRIES = (GRADE, PREVIEW, PREVIEWS, FRAMES, FILE)
 _PATHS = {PREVIEW: "/v1/preview", PREVIEWS: "/v1/previews", FRAMES: "/v1/frames"}
 _CACHES = (
     reader._remembered, reader._remembered_long, reader._parsed, reading_work._remembered,
-    reading_work._weighed, words.split, decimals.decimals_of,
+    reading_work._of_word, words.split, decimals.decimals_of,
 )  # fmt: skip
 
 

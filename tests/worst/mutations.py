@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from tests.grids.writers import FORMATS
-from tests.worst.entry_points import FILE, GRADE, PREVIEW, Attack
+from tests.worst.entry_points import FILE, FRAMES, GRADE, PREVIEW, PREVIEWS, Attack
 
 # A step from a list or object to what stands in it.
 Place = tuple[Any, Any]
@@ -26,7 +26,10 @@ WRAPS = (
     "{} = {}", "\\left({}\\right)", "sin {}", "{}deg", "{{{}}}", "cos({})*cos({})",
 )  # fmt: skip
 LENGTHS = (60, 120, 240, 250, 480, 500, 900, 1000, 1500, 2000, 4000, 7900, 15_000, 25_000)
-LONGEST = 200_000
+HUGE = (60_000, 240_000)
+LONGEST = 260_000
+# What is changed in a body that holds no answers.
+_ONLY = {PREVIEWS: "entries", FRAMES: "table"}
 
 
 class Mutator:
@@ -46,9 +49,14 @@ class Mutator:
         for _ in range(self._choose.choice((1, 1, 1, 2, 3))):
             if attack.entry == PREVIEW:
                 body["text"] = self._text(body["text"])
-                continue
-            other = self._choose.choice(others).body.get("answers", {}) if others else {}
-            self._answers(body, other)
+            elif attack.entry in _ONLY:
+                # Nothing of others fits there.
+                only = {_ONLY[attack.entry]: body[_ONLY[attack.entry]]}
+                self._answers(only, {})
+                body |= only
+            else:
+                other = self._choose.choice(others).body.get("answers", {}) if others else {}
+                self._answers(body["answers"], other)
         if self._choose.random() < 0.03:
             body["angle_unit"] = self._choose.choice(("radians", "degrees"))
         if attack.entry in (GRADE, FILE) and self._choose.random() < 0.03:
@@ -58,8 +66,11 @@ class Mutator:
         found = Attack(attack.entry, attack.exercise, body)
         return found if len(found.content) < LONGEST else attack
 
-    def _answers(self, body: dict[str, Any], other: dict[str, Any]) -> None:
-        answers = body["answers"]
+    def _answers(self, answers: dict[str, Any], other: dict[str, Any]) -> None:
+        if not answers:
+            if other:
+                self._borrowed(answers, other)
+            return
         steps: list[Callable[[], None]] = [lambda: self._in_leaf(answers)] * 6
         steps += [lambda: self._spread_leaf(answers), lambda: self._swapped(answers)] * 2
         steps += [lambda: self._other_length(answers), lambda: self._pasted(answers)]
@@ -161,7 +172,7 @@ class Mutator:
         answers[part] = copy.deepcopy(other[part])
 
     def _text(self, text: str) -> str:
-        return self._choose.choice(self._of_text)(text)[:30_000]
+        return self._choose.choice(self._of_text)(text)[:LONGEST]
 
     def _slice(self, text: str) -> tuple[int, int]:
         start = self._choose.randint(0, len(text))
@@ -173,7 +184,7 @@ class Mutator:
 
     def _lengthened(self, text: str) -> str:
         text = text or self._choose.choice(PIECES)
-        length = self._choose.choice(LENGTHS)
+        length = self._choose.choice((*LENGTHS, *HUGE))
         if self._choose.random() < 0.3:
             return text + self._choose.choice(PIECES) * (max(0, length - len(text)))
         return (text * (length // len(text) + 1))[:length]

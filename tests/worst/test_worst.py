@@ -1,5 +1,6 @@
 """The costliest bodies stay within what is promised, roughly; the search itself runs."""
 
+import random
 import time
 from collections.abc import Callable, Iterator
 
@@ -9,6 +10,7 @@ from tests.worst.__main__ import PROMISED
 from tests.worst.bodies import ARM, KNOWN
 from tests.worst.entry_points import GRADE, Attack, Target, floor_seconds
 from tests.worst.exercises import exercises
+from tests.worst.mutations import Mutator
 from tests.worst.search import Search
 from tests.worst.seeds import cells
 
@@ -33,6 +35,13 @@ def test_a_body_that_was_costly_once(
     assert status == (422 if "unknown" in name else 200)
     figure(f"{name}: {ratio:.0f} × the floor")
     assert ratio < GUARD
+
+
+def test_each_kind_of_body_is_changed() -> None:
+    mutator = Mutator(random.Random(1), cells())
+    for attack in KNOWN.values():
+        found = {mutator.mutated(attack, [*KNOWN.values()]).content for _ in range(5)}
+        assert len(found) > 1, attack.entry
 
 
 def test_the_search_keeps_what_costs_most(target: Target) -> None:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
-from service.grading import Report
+from service.grading import Report, Verdict
 from service.grading.report import rounded_points
 from service.submissions.outline import SetExercise
 
@@ -45,6 +45,11 @@ def answered(exercise: SetExercise, worth: float | None = None) -> AnsweredExerc
     parts = tuple(AnsweredPart(part.id, part.title, part.points) for part in exercise.parts)
     worth = sum(part.points for part in parts) if worth is None else worth
     return AnsweredExercise(exercise.id, exercise.title, exercise.source, parts, worth)
+
+
+def is_answered(report: Report) -> bool:
+    """Whether any part of the exercise has an answer, readable or not."""
+    return any(part.verdict is not Verdict.MISSING for part in report.parts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +114,11 @@ class GradedSubmission:
     def is_gradable(self) -> bool:
         """Whether anything that was handed in could be read."""
         return any(file.report and file.report.gradable for file in self.files)
+
+    @property
+    def is_answered(self) -> bool:
+        """Whether anything was handed in, readable or not."""
+        return any(file.report and is_answered(file.report) for file in self.files)
 
     @property
     def problems(self) -> tuple[str, ...]:

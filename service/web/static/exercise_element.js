@@ -1,9 +1,10 @@
 // <dh-exercise exercise="scara">: an exercise to read, fill in and check, on any page.
 //
 // Attributes: exercise, its id; api, the address of the service (that of this script by default);
-// parts, the ids of those to show; feedback, the most that a report tells; theme, "light", "dark" or
-// "auto" (by default that of the page). `linked` belongs to the service's own page: the element takes
-// answers from the address. The event `graded` (bubbling, composed) has the report as its detail.
+// parts, the ids of those to show; feedback, the most that a report tells; token, the learner's, where
+// the service needs keys; theme, "light", "dark" or "auto" (by default that of the page). `linked`
+// belongs to the service's own page: the element takes answers from the address. The event `graded`
+// (bubbling, composed) has the report as its detail.
 
 import { h, points, visible } from "./dom.js";
 import { History } from "./history.js";
