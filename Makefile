@@ -10,6 +10,7 @@ TABLES ?= 1000
 ROBOTS ?= 5000
 SEED   ?= 1
 MINUTES ?= 10
+SECONDS ?= 60
 
 python  := "$(VENV)/bin/python"
 install := $(python) -m pip install --quiet --disable-pip-version-check
@@ -24,7 +25,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test thorough browser screenshots coverage lint format bench fuzz attack worst campaign policies prints slips durability attempts clients wheel image lock clean
+.PHONY: help install run test thorough browser screenshots coverage lint format bench fuzz attack load worst campaign policies prints slips durability attempts clients wheel image lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
@@ -73,6 +74,11 @@ attack: $(dev) ## attack a real process; look for misread formulas; watch the me
 	$(python) -m tests.attack.misreadings
 	$(python) -m tests.attack.memory --count "$(COUNT)"
 	$(python) -m tests.attack.memory --count 10000 --http
+
+load: $(dev) ## 200 clients for SECONDS= (60), graded and recorded, on SQLite and on two replicas over PostgreSQL
+	$(python) -m tests.load --seconds "$(SECONDS)"
+	$(python) -m tests.load --seconds "$(SECONDS)" --database postgresql --replicas 2 --workers 1
+	$(python) -m pytest -m campaign tests/load
 
 worst: $(dev) ## search for the costliest request for MINUTES= (10), and say where its time goes (SEED=)
 	$(python) -m tests.worst --minutes "$(MINUTES)" --seed "$(SEED)"

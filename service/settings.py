@@ -105,6 +105,15 @@ class Settings(BaseSettings):
         None, description="The service that `grade` has submissions graded by; none grades here."
     )
     key: SecretStr | None = Field(None, description="The key that `grade` shows this service.")
+    metrics: Literal["off", "local", "all"] = Field(
+        "off",
+        description="Whether the service counts what it does, and to whom GET /metrics tells it "
+        "for Prometheus: nobody (off), whoever asks from this machine itself, without a proxy "
+        "(local), or whoever can reach the service (all).",
+    )
+    log_format: Literal["text", "json"] = Field(
+        "text", description="Whether a line of the log is text or a JSON object."
+    )
     log_level: Literal["critical", "error", "warning", "info", "debug"] = Field(
         "info", description="What is logged."
     )
@@ -133,7 +142,7 @@ class Settings(BaseSettings):
         open_access(value)
         return value
 
-    @field_validator("feedback", "log_level", mode="before")
+    @field_validator("feedback", "metrics", "log_format", "log_level", mode="before")
     @classmethod
     def _lowered(cls, value: object) -> object:
         return value.lower() if isinstance(value, str) else value

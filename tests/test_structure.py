@@ -50,6 +50,7 @@ SUITES = {
     "pose_slips",
     "benchmarks",
     "attack",
+    "load",
     "worst",
     "browser",
 }

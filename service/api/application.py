@@ -24,11 +24,18 @@ from service.api import (
 )
 from service.api import solutions as model_solutions
 from service.api.access import Access
-from service.api.boundary import BoundaryMiddleware
+from service.api.boundary import (
+    EXPOSED_HEADERS,
+    BoundaryMiddleware,
+    NamingMiddleware,
+    RouteNoting,
+)
 from service.api.compression import PackedGets
 from service.api.door import DoorMiddleware, RequestRates
 from service.api.lookup import Catalogue
+from service.api.monitor import Monitor
 from service.api.openapi import HEADING, completed, other_failures
+from service.api.request_context import HEADER
 from service.catalogue import FeedbackLevel
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.version import VERSION
@@ -60,12 +67,14 @@ class _Api(FastAPI):
         store: "AttemptStore | None",
         access: Access,
         rates: RequestRates | None,
+        monitor: Monitor | None,
     ) -> None:
         self._cors_origins = cors_origins
         self._turns = turns
         self._store = store
         self._access = access
         self._rates = rates
+        self._monitor = monitor
         super().__init__(
             **HEADING,
             version=VERSION,
@@ -91,9 +100,13 @@ class _Api(FastAPI):
     def build_middleware_stack(self) -> ASGIApp:
         """The framework's layers, packed answers, turns between clients, the door, the boundary.
 
-        Then CORS: a page may read problems, too.
+        Then CORS: a page may read problems, too. Outermost, so that whatever is answered has one,
+        the id of the request.
         """
-        app: ASGIApp = PackedGets(super().build_middleware_stack())
+        app = super().build_middleware_stack()
+        if self._monitor is not None:
+            app = RouteNoting(app)
+        app = PackedGets(app)
         if self._turns is not None:
             app = self._turns(app)
         if self._access.keys is not None or self._rates is not None:
@@ -104,10 +117,12 @@ class _Api(FastAPI):
                 app,
                 allow_origins=self._cors_origins,
                 allow_methods=["GET", "POST"],
-                allow_headers=["Authorization", "Content-Type", "Idempotency-Key"],
-                expose_headers=["Retry-After"],
+                allow_headers=["Authorization", "Content-Type", "Idempotency-Key", HEADER],
+                expose_headers=EXPOSED_HEADERS,
             )
-        return app
+        if self._monitor is not None:
+            app = self._monitor.watched(app)
+        return NamingMiddleware(app)
 
     def openapi(self) -> dict[str, Any]:
         """The description of the interface, made at the first call."""
@@ -126,21 +141,23 @@ def application(
     turns: Layer | None = None,
     store: "AttemptStore | None" = None,
     pages: APIRouter | None = None,
+    monitor: Monitor | None = None,
 ) -> FastAPI:
     """The HTTP service for these exercises; pages of ``cors_origins`` may call it.
 
     ``access`` says who may do what; without it anybody may grade and record, and nobody see what
     tutors see. ``rates`` count requests. Reports tell no more than ``feedback``, nor than their
     exercise allows. ``turns`` decides who comes next, ``pages`` are the web pages of the service
-    itself. Attempts are recorded in ``store``; without one none are.
+    itself. Attempts are recorded in ``store``; without one none are. ``monitor`` counts what
+    happens.
     """
     access = access or Access()
-    app = _Api(cors_origins, turns, store, access, rates)
+    app = _Api(cors_origins, turns, store, access, rates, monitor)
     problems.install(app)
     for router in (
         exercises.routes(catalogue, feedback),
-        grading.routes(catalogue, feedback, access),
-        attempts.routes(catalogue, feedback, store, access),
+        grading.routes(catalogue, feedback, access, monitor),
+        attempts.routes(catalogue, feedback, store, access, monitor),
         recorded.routes(catalogue, store, access),
         preview.routes(catalogue, access),
         figures.routes(catalogue),

@@ -4,6 +4,7 @@ import hashlib
 import json
 from datetime import UTC, datetime
 from http import HTTPStatus
+from time import perf_counter
 from typing import TYPE_CHECKING, Annotated, Final
 
 from fastapi import APIRouter, Header, Request, Response
@@ -13,6 +14,7 @@ from service.api.access import Access
 from service.api.access_problems import other_learner
 from service.api.bodies import body_as
 from service.api.lookup import Catalogue, ExerciseId, exercise_or_404, require_parts
+from service.api.monitor import Monitor
 from service.api.openapi import posting
 from service.api.problems import ProblemError, store_down
 from service.attempts.attempt import NewAttempt, RecordedAttempt
@@ -47,6 +49,7 @@ def routes(
     feedback: FeedbackLevel,
     store: "AttemptStore | None",
     access: Access,
+    monitor: Monitor | None = None,
 ) -> APIRouter:
     """The routes that record; no report tells more than ``feedback``."""
     router = APIRouter(prefix="/v1", tags=["attempts"])
@@ -83,7 +86,9 @@ def routes(
         if caller.learner not in (None, body.learner):
             raise other_learner()
         require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
-        attempting = _Attempting(exercise, body, feedback, store, caller.owner, idempotency_key)
+        attempting = _Attempting(
+            exercise, body, feedback, store, caller.owner, idempotency_key, monitor
+        )
         try:
             recorded = await attempting.recorded()
         except StoreDownError as error:
@@ -119,6 +124,7 @@ class _Attempting:
         store: "AttemptStore",
         owner: str,
         idempotency_key: str | None,
+        monitor: Monitor | None,
     ) -> None:
         self._exercise = exercise
         self._body = body
@@ -126,6 +132,7 @@ class _Attempting:
         self._store = store
         self._owner = owner
         self._key = idempotency_key
+        self._monitor = monitor
         content = {"exercise": exercise.id, **body.model_dump(mode="json", exclude_unset=True)}
         self._request_digest = _digest(content)
 
@@ -140,7 +147,10 @@ class _Attempting:
             now = datetime.now(UTC)
             taken = ruling(self._exercise.attempts, standing.counted, now)
             most = least(self._exercise.feedback_at(taken.ordinal), self._ceiling)
+            began = perf_counter()
             report, outcome = graded_attempt(self._exercise, self._body, most)
+            if self._monitor is not None:
+                self._monitor.graded(report, perf_counter() - began)
             new = self._new(taken, now, report)
             written = await self._store.record(new, outcome)
             if written is not None:

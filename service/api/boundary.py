@@ -1,11 +1,54 @@
-"""The outermost layer, which every request and answer passes."""
+"""The outermost layers, which every request and answer passes."""
+
+from typing import Final
 
 from fastapi import Request
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.api.problems import too_large
+from service.api.request_context import HEADER, begin_request, current_request
 from service.submissions.strict_json import MAX_BODY_SIZE
+
+# What a page of another origin may read of an answer besides its body.
+EXPOSED_HEADERS: Final = ("Retry-After", HEADER)
+
+
+class NamingMiddleware:
+    """Gives every request its id, and tells it in the answer."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one ASGI connection."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        request = begin_request(Headers(scope=scope).get(HEADER))
+
+        async def named(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                MutableHeaders(scope=message)[HEADER] = request.id
+            await send(message)
+
+        await self.app(scope, receive, named)
+
+
+class RouteNoting:
+    """Notes which route the application has found for a request."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one ASGI connection."""
+        try:
+            await self.app(scope, receive, send)
+        finally:
+            request = current_request()
+            if request is not None:
+                request.route = getattr(scope.get("route"), "path", "")
 
 
 class BoundaryMiddleware:

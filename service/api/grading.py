@@ -2,6 +2,7 @@
 
 import logging
 from http import HTTPStatus
+from time import perf_counter
 
 from fastapi import APIRouter, Request, Response
 
@@ -9,6 +10,7 @@ from service.access.caller import Caller, Scope
 from service.api.access import Access, require_reach
 from service.api.bodies import body_as, checked
 from service.api.lookup import Catalogue, ExerciseId, Location, exercise_or_404, require_parts
+from service.api.monitor import Monitor
 from service.api.openapi import posting
 from service.api.problems import ProblemError, failed
 from service.api.turns import give_way
@@ -21,7 +23,9 @@ from service.submissions.body import ExerciseSubmission, GradeManyRequest, Grade
 _log = logging.getLogger(__name__)
 
 
-def routes(catalogue: Catalogue, feedback: FeedbackLevel, access: Access) -> APIRouter:
+def routes(
+    catalogue: Catalogue, feedback: FeedbackLevel, access: Access, monitor: Monitor | None = None
+) -> APIRouter:
     """The routes that grade; no report tells more than ``feedback``."""
     router = APIRouter(prefix="/v1", tags=["grading"])
 
@@ -44,8 +48,7 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel, access: Access) -> API
         access.require(request, Scope.GRADE, exercise_id)
         exercise = exercise_or_404(catalogue, exercise_id)
         body = await body_as(GradeRequest, request)
-        report = _report(exercise, body, feedback, ())
-        return Response(report, media_type="application/json")
+        return Response(_report(exercise, body, ()), media_type="application/json")
 
     @router.post(
         "/grade",
@@ -77,7 +80,7 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel, access: Access) -> API
             submission = checked(ExerciseSubmission, value, at)
             require_reach(caller, submission.exercise)
             exercise = exercise_or_404(catalogue, submission.exercise)
-            return b'{"report":%b}' % _report(exercise, submission, feedback, at)
+            return b'{"report":%b}' % _report(exercise, submission, at)
         except ProblemError as error:
             problem = error
         except Exception:  # noqa: BLE001 -- the other submissions are graded all the same
@@ -85,10 +88,14 @@ def routes(catalogue: Catalogue, feedback: FeedbackLevel, access: Access) -> API
             problem = failed()
         return b'{"problem":%b}' % problem.content(f"{path}#/submissions/{i}")
 
+    def _report(exercise: Exercise, body: GradeRequest, at: Location) -> bytes:
+        """The report as JSON. Raises ProblemError for an unknown part of the submission."""
+        require_parts(exercise, ((part, (*at, "answers", part)) for part in body.answers))
+        submission = body.submission(least(exercise.feedback, feedback))
+        began = perf_counter()
+        report = grade(exercise, submission)
+        if monitor is not None:
+            monitor.graded(report, perf_counter() - began)
+        return rendered(report)
+
     return router
-
-
-def _report(exercise: Exercise, body: GradeRequest, ceiling: FeedbackLevel, at: Location) -> bytes:
-    """The report as JSON. Raises ProblemError for an unknown part of the submission at ``at``."""
-    require_parts(exercise, ((part, (*at, "answers", part)) for part in body.answers))
-    return rendered(grade(exercise, body.submission(least(exercise.feedback, ceiling))))

@@ -9,7 +9,7 @@ from pydantic import BaseModel
 
 from service.api.lookup import Catalogue
 from service.api.openapi import refusals
-from service.api.problems import store_down
+from service.api.problems import ProblemError, store_down
 from service.attempts.errors import StoreDownError
 
 if TYPE_CHECKING:  # it loads the drivers of databases
@@ -35,6 +35,7 @@ class Ready(BaseModel):
 def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
     """The routes that a supervisor asks."""
     router = APIRouter(tags=["health"])
+    checks = None if store is None else _Checks(store)
 
     @router.get(
         "/healthz",
@@ -55,11 +56,42 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
     )
     async def ready() -> Ready:
         """Tell whether submissions can be graded and, where there is a database, recorded."""
-        if store is not None:
+        exercises = len(catalogue)
+        if not exercises:
+            raise _no_exercises()
+        if checks is not None:
             try:
-                await asyncio.wait_for(store.check(), _PATIENCE)
+                await checks.passed()
             except (StoreDownError, TimeoutError) as error:
                 raise store_down("The database does not answer.") from error
-        return Ready(exercises=len(catalogue))
+        return Ready(exercises=exercises)
 
     return router
+
+
+class _Checks:
+    """Checks of the database, of which one at a time answers all who ask meanwhile."""
+
+    def __init__(self, store: "AttemptStore") -> None:
+        self._store = store
+        self._under_way: asyncio.Task[None] | None = None
+
+    async def passed(self) -> None:
+        """Return once a check has passed. Raises StoreDownError, TimeoutError."""
+        if self._under_way is None or self._under_way.done():
+            self._under_way = asyncio.create_task(self._check())
+        # Who asked may go away; the others still wait.
+        await asyncio.shield(self._under_way)
+
+    async def _check(self) -> None:
+        await asyncio.wait_for(self._store.check(), _PATIENCE)
+
+
+def _no_exercises() -> ProblemError:
+    return ProblemError(
+        HTTPStatus.SERVICE_UNAVAILABLE,
+        "No exercise is loaded.",
+        "no-exercises",
+        "The service has nothing to grade",
+        headers={"Retry-After": "5"},
+    )

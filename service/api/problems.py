@@ -1,20 +1,25 @@
 """Every answer that is not a success: RFC 9457 problem details."""
 
 import json
+import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from http import HTTPStatus
-from typing import Any
+from typing import Any, Final
 
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
+from service.api.request_context import current_request
 from service.contract.problems import MEDIA_TYPE, TYPE_PREFIX
 from service.submissions.strict_json import MAX_BODY_SIZE
 
 MAX_ERRORS = 20
+STORE_DOWN: Final = "store-down"
+
+_log = logging.getLogger(__name__)
 
 Detail = Mapping[str, str | int]
 
@@ -32,9 +37,11 @@ class ProblemError(Exception):
 
     def response(self, instance: str) -> Response:
         """The problem as an answer to a request for the path ``instance``."""
-        return Response(self.content(instance), self.status, self.headers, MEDIA_TYPE)
+        request = current_request()
+        content = self.content(instance, "" if request is None else request.id)
+        return Response(content, self.status, self.headers, MEDIA_TYPE)
 
-    def content(self, instance: str) -> bytes:
+    def content(self, instance: str, request_id: str = "") -> bytes:
         """The problem as JSON; ``instance`` is what was asked for."""
         document: dict[str, Any] = {
             "type": f"{TYPE_PREFIX}{self.name}" if self.name else "about:blank",
@@ -43,6 +50,8 @@ class ProblemError(Exception):
             "detail": self.detail,
             "instance": instance,
         }
+        if request_id:
+            document["request_id"] = request_id
         if self.errors:
             document["errors"] = list(self.errors)
         # Escaped to ASCII: whatever the request held can be written out.
@@ -65,7 +74,7 @@ def store_down(detail: str) -> ProblemError:
     return ProblemError(
         HTTPStatus.SERVICE_UNAVAILABLE,
         detail,
-        "store-down",
+        STORE_DOWN,
         "The database cannot be reached now",
         headers={"Retry-After": "5"},
     )
@@ -129,6 +138,8 @@ def install(app: FastAPI) -> None:
 
 async def _answer(request: Request, error: Exception) -> Response:
     problem = _problem(request, error)
+    if problem.name == STORE_DOWN:
+        _log.warning("The database fails: %s", error.__cause__)
     if request.method == "OPTIONS" and problem.status is HTTPStatus.METHOD_NOT_ALLOWED:
         return Response(status_code=HTTPStatus.NO_CONTENT, headers=problem.headers)
     return problem.response(request.url.path)

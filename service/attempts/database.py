@@ -50,7 +50,9 @@ def _engine(url: str) -> Engine:
         raise UnusableDatabaseError("is no URL of a database and no path of a file") from error
     match parsed.get_backend_name():
         case "sqlite":
-            engine = create_engine(parsed, connect_args={"timeout": _LOCK_WAIT})
+            engine = create_engine(
+                parsed, connect_args={"timeout": _LOCK_WAIT}, hide_parameters=True
+            )
             event.listen(engine, "connect", _set_up_sqlite)
             event.listen(engine, "begin", _begin_sqlite)
             return engine
@@ -63,6 +65,8 @@ def _engine(url: str) -> Engine:
             return create_engine(
                 parsed.set(drivername="postgresql+psycopg"),
                 pool_pre_ping=True,
+                # No failure that is logged tells what somebody has answered.
+                hide_parameters=True,
                 connect_args={"connect_timeout": 3, "options": options},
             )
         case other:
@@ -131,6 +135,6 @@ def safe_url(engine: Engine) -> str:
 
 
 def reason(error: SQLAlchemyError) -> str:
-    """What the database's driver says, in one line."""
-    said = str(getattr(error, "orig", None) or error)
+    """What the database's driver says, in one line, without the values of a row."""
+    said = str(getattr(error, "orig", None) or error).partition("\nDETAIL:")[0]
     return " ".join(said.split())[:300]

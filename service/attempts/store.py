@@ -3,9 +3,10 @@
 import asyncio
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractContextManager, nullcontext
 from typing import Final, TypeVar
 
-from sqlalchemy import Connection, Engine, text
+from sqlalchemy import Connection, Engine, literal, select
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.attempts.attempt import (
@@ -21,12 +22,14 @@ from service.attempts.outcome import Outcome
 from service.attempts.reading import AttemptHistory, history, page
 from service.attempts.recording import record, standing
 from service.attempts.statistics import exercise_statistics
+from service.attempts.tables import attempts
 from service.attempts.writer import AttemptWriter
 from service.contract.statistics import ExerciseStatistics
 
 R = TypeVar("R")
 
-_ALIVE: Final = text("SELECT 1")
+# The tables must be there, too.
+_ALIVE: Final = select(literal(1)).select_from(attempts).limit(1)
 # So many tutors read at once; others wait.
 _READERS: Final = 2
 
@@ -42,6 +45,8 @@ class AttemptStore:
         self.engine = engine
         self._writer: AttemptWriter | None = None
         self._readers: ThreadPoolExecutor | None = None
+        # What surrounds each operation, by its name.
+        self.measure: Callable[[str], AbstractContextManager[None]] = lambda _: nullcontext()
 
     @classmethod
     def open(cls, url: str) -> "AttemptStore":
@@ -70,17 +75,20 @@ class AttemptStore:
         self, exercise: str, learner: str, owner: str, idempotency_key: str | None
     ) -> Standing:
         """How a learner stands at an exercise, and what a request with this key has recorded."""
-        return await self._running.run(
-            lambda connection: standing(connection, exercise, learner, owner, idempotency_key)
-        )
+        with self.measure("standing"):
+            return await self._running.run(
+                lambda connection: standing(connection, exercise, learner, owner, idempotency_key)
+            )
 
     async def record(self, new: NewAttempt, outcome: Outcome) -> RecordedAttempt | None:
         """Write the attempt, durably; None where another took its ordinal or its key."""
-        return await self._running.run(lambda connection: record(connection, new, outcome))
+        with self.measure("record"):
+            return await self._running.run(lambda connection: record(connection, new, outcome))
 
     async def check(self) -> None:
         """Make sure that the database answers."""
-        await self._running.run(lambda connection: connection.execute(_ALIVE))
+        with self.measure("check"):
+            await self._running.run(lambda connection: connection.execute(_ALIVE))
 
     async def page(
         self, wanted: AttemptFilter, cursor: str | None, most: int
@@ -102,7 +110,9 @@ class AttemptStore:
     async def _read(self, work: Callable[[Connection], R]) -> R:
         """The result of ``work``, which writes nothing; beside the attempts that are recorded."""
         assert self._readers is not None, "the store has not been started"
-        return await asyncio.get_running_loop().run_in_executor(self._readers, self._read_by, work)
+        loop = asyncio.get_running_loop()
+        with self.measure("read"):
+            return await loop.run_in_executor(self._readers, self._read_by, work)
 
     def _read_by(self, work: Callable[[Connection], R]) -> R:
         try:

@@ -28,4 +28,7 @@ class ProblemDocument(BaseModel):
     status: int
     detail: str
     instance: str = Field(description="The path that was asked for.")
+    request_id: str | None = Field(
+        None, description="The id of the request, also in the header X-Request-ID and in the log."
+    )
     errors: list[Reason] | None = None

@@ -205,6 +205,11 @@ class FairAdmission:
             self._charge(place, ticket, metered.spent.since(charged))
             place.note_whole(metered.spent.work)
 
+    @property
+    def waiting(self) -> int:
+        """How many requests wait for their turn."""
+        return sum(len(each.queue) for each in self._classes)
+
     def _class(self, ticket: Ticket) -> _Class:
         """The class of a request that has come."""
         number = self._costs.class_of(self._costs.expected(ticket))

@@ -4,6 +4,8 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Final
 
+from service.api.boundary import EXPOSED_HEADERS
+
 _ORIGIN: Final = re.compile(rb"\r\nOrigin:[ \t]*([^\r\n]*?)[ \t]*\r\n", re.IGNORECASE)
 
 
@@ -28,6 +30,6 @@ def leave_to_read(origins: Sequence[str], origin: str) -> Mapping[str, str]:
         return {}
     return {
         "Access-Control-Allow-Origin": allowed,
-        "Access-Control-Expose-Headers": "Retry-After",
+        "Access-Control-Expose-Headers": ", ".join(EXPOSED_HEADERS),
         "Vary": "Origin",
     }

@@ -34,6 +34,14 @@ def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
             store = AttemptStore.open(settings.database.get_secret_value())
         except UnusableDatabaseError as error:
             raise SettingsError(f"DH_GRADER_DATABASE: {error}") from error
+    metrics = None
+    if settings.metrics != "off":
+        # Only here: who does not count loads nothing that counts.
+        from service.server.metrics import Metrics
+
+        metrics = Metrics(tells_all=settings.metrics == "all")
+        if store is not None:
+            store.measure = metrics.store
     access = Access(
         settings.open_access,
         solutions=settings.solutions,
@@ -46,10 +54,13 @@ def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
         access=access,
         rates=_rates(settings),
         feedback=settings.feedback,
-        turns=FairAdmission,
+        turns=FairAdmission if metrics is None else metrics.fair_admission,
         store=store,
         pages=web_routes(catalogue, Tutoring(access, settings.exercises_dir, settings.editor_dir)),
+        monitor=metrics,
     )
+    if metrics is not None:
+        app.include_router(metrics.routes())
     set_up_access_log(addresses=settings.log_addresses)
     return app
 

@@ -7,6 +7,7 @@ import os
 import signal
 import socket
 from collections.abc import Iterator, Sequence
+from contextvars import Context
 from types import FrameType
 from typing import Final
 
@@ -62,7 +63,8 @@ class Server(uvicorn.Server):
             signal.raise_signal(sig)
         else:
             self.should_exit = True
-            _log.info(ENDING)
+            # The signal belongs to no request, whichever it has interrupted.
+            Context().run(_log.info, ENDING)
 
     async def on_tick(self, counter: int) -> bool:
         """Whether to end: by a signal, or because nobody is left to send one."""

@@ -14,6 +14,7 @@ from email.utils import formatdate
 from typing import Any, Final
 
 import httptools
+from starlette.datastructures import Headers
 from starlette.types import Receive, Scope, Send
 from uvicorn.config import Config
 from uvicorn.protocols.http.flow_control import FlowControl
@@ -21,11 +22,12 @@ from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol, RequestResp
 from uvicorn.server import ServerState
 
 from service.api.problems import ProblemError
+from service.api.request_context import end_request
 from service.server.crowd import Crowd, client_key, room_here
 from service.server.early_cors import leave_to_read, origin_in
 from service.server.framing import Framing
 from service.server.limits import HEALTH, LINGER, MAX_DISCARDED, MAX_UNREAD, PATIENCE
-from service.server.refusals import late, malformed, too_busy
+from service.server.refusals import late, malformed, named, too_busy
 from service.submissions.strict_json import MAX_BODY_SIZE
 
 # A server may ignore the wish for another protocol (RFC 9110, 7.8). The parser would stop at it.
@@ -305,7 +307,7 @@ class GuardedProtocol(HttpToolsProtocol):
             self.reset()
             return
         path = "" if self._framing.in_head else self._path()
-        answer = problem.response(path)
+        answer = named(problem, path)
         date = formatdate(usegmt=True).encode()
         origin = origin_in(framing.came) if (framing := self._framing).in_head else self._origin
         answer.headers.update(leave_to_read(self.server_state.origins, origin))
@@ -315,10 +317,9 @@ class GuardedProtocol(HttpToolsProtocol):
         self._raw.write(b"\r\n".join([*lines, b"", bytes(answer.body)]))
         if self.access_log:
             peer = "{}:{}".format(*self.client) if self.client else ""
-            status = problem.status.value
-            self.access_logger.info(
-                '%s - "%s %s HTTP/%s" %d', peer, "-", path or "-", "1.1", status
-            )
+            said = (peer, "-", path or "-", "1.1", problem.status.value)
+            self.access_logger.info('%s - "%s %s HTTP/%s" %d', *said)
+        end_request()
         self.finish()
 
     def finish(self) -> None:
@@ -393,6 +394,6 @@ class GuardedProtocol(HttpToolsProtocol):
 
     async def _no_room(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer while as many connections as there is room for are being answered."""
-        answer = too_busy(1).response(scope["path"])
+        answer = named(too_busy(1), scope["path"], Headers(scope=scope))
         answer.headers.update(leave_to_read(self.server_state.origins, self._origin))
         await answer(scope, receive, send)

@@ -3,10 +3,25 @@
 from http import HTTPStatus
 from typing import Final
 
+from fastapi import Response
+from starlette.datastructures import Headers
+
 from service.api.problems import ProblemError
+from service.api.request_context import HEADER, begin_request
 from service.server.limits import MAX_HEADERS, MAX_URL, PATIENCE
 
 _CLOSE: Final = {"Connection": "close"}
+
+
+def named(problem: ProblemError, path: str, headers: Headers | None = None) -> Response:
+    """The answer to a request that the application does not see, under an id of its own.
+
+    ``headers`` are those of the request, where they have come.
+    """
+    request = begin_request(headers.get(HEADER) if headers else None)
+    answer = problem.response(path)
+    answer.headers[HEADER] = request.id
+    return answer
 
 
 def malformed(detail: str) -> ProblemError:

@@ -8,6 +8,8 @@ import uvicorn
 
 from service.catalogue import CatalogueError
 from service.server.installed import installed_app
+from service.server.logs import log_config
+from service.server.metrics_folder import counting_together
 from service.server.process import Server
 from service.server.protocol import GuardedProtocol
 from service.server.shared_port import SharedPort
@@ -20,18 +22,20 @@ def serve(settings: Settings) -> bool:
 
     Raises CatalogueError, SettingsError.
     """
-    app = installed_app(settings, settings.host)
-    if settings.workers == 1:
-        server = Server(_config(settings, app), origins=settings.cors_origins)
-        server.run()
-        return server.started
-    config = _config(settings, app)
-    # The workers read the exercises themselves: here they were read to see that they can be used.
-    try:
-        listener = config.bind_socket()
-    except SystemExit:
-        return False
-    return Supervisor(partial(_work, settings), listener, settings.workers).run()
+    with counting_together(settings) as forget:
+        app = installed_app(settings, settings.host)
+        if settings.workers == 1:
+            server = Server(_config(settings, app), origins=settings.cors_origins)
+            server.run()
+            return server.started
+        config = _config(settings, app)
+        # The workers read the exercises themselves: here they were read to see that they can be
+        # used.
+        try:
+            listener = config.bind_socket()
+        except SystemExit:
+            return False
+        return Supervisor(partial(_work, settings), listener, settings.workers, forget).run()
 
 
 def _config(settings: Settings, app: object) -> uvicorn.Config:
@@ -41,6 +45,7 @@ def _config(settings: Settings, app: object) -> uvicorn.Config:
         port=settings.port,
         http=GuardedProtocol,
         ws="none",
+        log_config=log_config(settings.log_format),
         log_level=settings.log_level,
         server_header=False,
         workers=settings.workers,

