@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx
+import pytest
 from prometheus_client.parser import text_string_to_metric_families
 
 from service.server.installed import installed_app
@@ -62,6 +63,7 @@ def check_counts(samples: Samples, attempts: int) -> None:
     assert value(samples, "requests_waiting") == 0
 
 
+@pytest.mark.campaign
 def test_what_happened_is_told_by_whichever_process_is_asked(tmp_path: Path) -> None:
     settings = {"DH_GRADER_METRICS": "local", "DH_GRADER_DATABASE": new_file(tmp_path)}
     with service(tmp_path, "--workers", "2", **settings) as running:
