@@ -174,17 +174,17 @@ class Metrics:
     def graded(self, report: Report, seconds: float) -> None:
         """Count a report that took so long."""
         self._grading_seconds.observe(seconds)
-        codes = set()
+        told = set()
         for part in report.parts:
             self._parts.labels(part.kind, str(part.verdict)).inc()
-            codes |= {found.code for found, *_ in messages_of(part) if found.severity != "info"}
-        for code in codes:
-            self._codes.labels(self._bounded(code)).inc()
+            told |= {found.code for found, *_ in messages_of(part) if found.severity != "info"}
+        for name in told:
+            self._codes.labels(self._bounded(name)).inc()
 
-    def _bounded(self, code: str) -> str:
-        if code not in self._known_codes and len(self._known_codes) < _MOST_CODES:
-            self._known_codes.add(code)
-        return code if code in self._known_codes else _OTHER
+    def _bounded(self, name: str) -> str:
+        if name not in self._known_codes and len(self._known_codes) < _MOST_CODES:
+            self._known_codes.add(name)
+        return name if name in self._known_codes else _OTHER
 
     @contextmanager
     def store(self, operation: str) -> Iterator[None]:

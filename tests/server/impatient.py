@@ -19,8 +19,8 @@ async def _hanging() -> None:
     await asyncio.sleep(600)
 
 
-def _with_hanging(settings: Settings) -> FastAPI:
-    app = installed_app(settings)
+def _with_hanging(settings: Settings, host: str) -> FastAPI:
+    app = installed_app(settings, host)
     app.add_api_route("/hanging", _hanging)
     return app
 
