@@ -24,13 +24,11 @@ SYMBOLS_PER_REPAIR = 100
 MAX_PASTED = 36_000
 
 # In units of the least work that a grading can be: six links multiplied out at all samples.
-MAX_EXPLANATIONS = 180.0
-# Enough to judge a table of seven rows as it is written and in another order.
-MAX_SEARCHES = 240.0
-# What the search for values of unread cells leaves for judging the table.
-JUDGING_WORK = 90.0
+MAX_EXPLANATIONS = 145.0
+# Enough to judge a table with unread cells in either convention, and to look for their values.
+MAX_SEARCHES = 280.0
 # All of it together. What was read and searched leaves so much less for explanations.
-MAX_WORK = 300.0
+MAX_WORK = 285.0
 # The work of reading a symbol, of cutting a character out of a pasted text, of a repair.
 SYMBOL_WORK, PASTED_WORK, REPAIR_WORK = 1 / 100, 1 / 800, 1.5
 
@@ -83,18 +81,18 @@ class WorkBudget:
         self.has_left_out |= left < 0
         return left >= 0
 
-    def affords_search(self, work: float, spare: float = 0.0) -> bool:
-        """Whether there is so much left for searches, and ``spare`` for others; if so, it is taken.
+    def affords_search(self, work: float) -> bool:
+        """Whether there is so much left for searches; if so, it is taken.
 
         It does not depend on what was explained.
         """
-        is_afforded = work <= min(self.searches - spare, self.left)
+        is_afforded = work <= min(self.searches, self.left)
         if is_afforded:
             self.charge_search(work)
         return is_afforded
 
     def charge_search(self, work: float) -> None:
-        """Count a search that was made, whatever it cost."""
+        """Count a search that has to be made, whatever it costs."""
         self.searches -= work
 
     def charge_reading(self, symbols: int) -> bool:

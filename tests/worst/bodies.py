@@ -29,6 +29,9 @@ def _previewed(text: str, part: str) -> Attack:
 _HALVES: Final = [[halves(4 * i + j) for j in range(4)] for i in range(4)]
 _REPAIRS: Final = [[f"(tehta1 + {i}.{j}" for j in range(4)] for i in range(6)]
 _DECIMALS: Final = [[f"{0.317 * (i + 2) * (j - 1.7):.3g}" for j in range(4)] for i in range(7)]
+_TWELVE_ROWS: Final = [
+    [f"{0.271 * (i + 1) * (j - 1.3) + i:.3g}" for j in range(4)] for i in range(12)
+]
 _UNKNOWN: Final = {"answers": {f"part{i}": 0 for i in range(15_500)}}
 
 KNOWN: Final[Mapping[str, Attack]] = {
@@ -53,6 +56,14 @@ KNOWN: Final[Mapping[str, Attack]] = {
         GRADE, f"{ARM}-either", {"answers": {"table": {"rows": LONG_TABLE}}}
     ),
     "decimals of three figures": _graded(table=_DECIMALS[:6]),
+    "rows too many and one unread, all free": Attack(
+        GRADE,
+        "robot-6-all-free",
+        {"answers": {"table": [*_TWELVE_ROWS[:2], _TWELVE_ROWS[2][:3], *_TWELVE_ROWS[3:]]}},
+    ),
+    "rows too many, in either convention": Attack(
+        FILE, "stanford-arm-drawn-either", {"answers": {"table": _TWELVE_ROWS}}
+    ),
     "a row too many, a cell unread, and padded links": _graded(
         table=[*_DECIMALS[:6], ["", *_DECIMALS[6][1:]]], links=padded(24)
     ),

@@ -21,7 +21,7 @@ GUARD = 10 * PROMISED
 @pytest.fixture(scope="module")
 def target() -> Iterator[Target]:
     found = exercises()
-    target = Target({name: found[name] for name in (ARM, f"{ARM}-either")})
+    target = Target({each.exercise: found[each.exercise] for each in KNOWN.values()})
     yield target
     target.close()
 

@@ -55,7 +55,7 @@ _EXTRA_ROW = "extra_row"
 FREEDOM_WORK = 8.0
 # The work of judging a wrong table once: with given frames, with free ones (and more for each row),
 # and with a free base or tool or free directions too.
-GIVEN_WORK, FREE_WORK, FREE_ROW_WORK, ALL_FREE_WORK = 12.0, 20.0, 4.0, 60.0
+GIVEN_WORK, FREE_WORK, FREE_ROW_WORK, ALL_FREE_WORK = 18.0, 20.0, 4.0, 60.0
 # With so many wrong cells two misconceptions at once are looked for.
 WRONG_THROUGHOUT = 3
 
@@ -73,19 +73,35 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     Where the joints are counted otherwise throughout, or the columns stand in another order, it is
     judged as it was intended.
     """
+    budget, work = grading.reader.budget, _search_work(part, answer, grading)
+    unread = _count_unread(answer)
+    # Values for unread cells are looked for with what the judging itself leaves.
+    if unread:
+        budget.charge_search(work)
     judged = _judged_as_read(part, answer, grading)
     if judged.is_right:
         return judged
-    budget, work = grading.reader.budget, _search_work(part, answer, grading)
-    budget.charge_search(work)
+    if not unread:
+        budget.charge_search(work)
+    return _as_intended(part, answer, judged, work, grading)
+
+
+def _as_intended(
+    part: DhTableSpec, answer: StudentTable, judged: Judged, work: float, grading: Grading
+) -> Judged:
+    """A wrong table, ``judged`` as it is read; judged anew where a slip runs through it.
+
+    To judge it in one other way takes so much ``work``.
+    """
+    budget = grading.reader.budget
     if (intended := by_other_numbering(answer, grading)) is not None:
         without = _judged_as_read(part, intended.table, grading)
         return _with_slip(intended, without, judged, grading)
     if judged.whole_cost is not None:
         return judged
     wrong = _count_wrong(judged)
+    unread = _count_unread(answer)
     # What was not read is not read in any order.
-    unread = int(np.isnan(answer.values).any(axis=-1).sum())
     for intended in in_other_orders(answer, grading) if 3 * unread <= wrong else ():
         if not budget.affords_search(work):
             return judged
@@ -115,6 +131,10 @@ def _search_work(part: DhTableSpec, answer: StudentTable, grading: Grading) -> f
     has_rows_too_many = rows > usual_rows(convention or grading.exercise.robot.convention, grading)
     has_unread_cells = np.isnan(answer.values).any()
     return once * (ways + int(has_rows_too_many) + int(has_unread_cells))
+
+
+def _count_unread(answer: StudentTable) -> int:
+    return int(np.isnan(answer.values).any(axis=-1).sum())
 
 
 def _count_wrong(judged: Judged) -> int:

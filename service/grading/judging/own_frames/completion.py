@@ -25,7 +25,7 @@ from service.grading.judging.own_frames.row_roles import (
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE
 from service.grading.samples import HALF, SAMPLES, Samples
-from service.grading.work_budget import JUDGING_WORK, WorkBudget
+from service.grading.work_budget import WorkBudget
 from service.kinematics.chain import A, D, Table, frames
 from service.kinematics.dh import Convention
 from service.kinematics.frame_choice import WRONG_CELL
@@ -38,8 +38,8 @@ SIFTED_AT, KEPT = 8, 12
 # From this step on the search ends where no start can lessen its error by such a share in one step:
 # all are in valleys that lead nowhere. Of 185 searches that found values none came below a half.
 PATIENCE, LEAST_PROMISE = 5, 0.3
-# The work of a step, and of each unknown of each start in it, as the budget counts it.
-STEP_WORK, CELL_WORK = 1.5, 0.01
+# The work of the beginning, of a step, and of each unknown of each start in it.
+START_WORK, STEP_WORK, CELL_WORK = 10.0, 2.1, 0.014
 # Poses are equal where they differ by less, in the exercise's typical length.
 SAME = 1e-9
 NO_SINE = 1e-12
@@ -137,6 +137,8 @@ def _values_at(role: Role, samples: Samples) -> Table:
 
 def _can_be_completed(case: _Case, budget: WorkBudget) -> bool:
     """Whether one of the starts leads to a valid table before the budget is used up."""
+    if not budget.affords_search(START_WORK):
+        return False
     rng = np.random.default_rng(HALF)
     count = len(case.unread)
     angle = IS_ANGLE[case.unread[:, 1]]
@@ -165,7 +167,7 @@ def _can_be_completed(case: _Case, budget: WorkBudget) -> bool:
                 each[kept] for each in (constants, signs, base, tool, damping, error, columns, size)
             )
         work = STEP_WORK + columns.shape[0] * columns.shape[1] * CELL_WORK
-        if not budget.affords_search(work, JUDGING_WORK):
+        if not budget.affords_search(work):
             return False
         change = _step(error, columns, damping)
         if step > PATIENCE and _promise(change, error, columns).max() < LEAST_PROMISE:
