@@ -120,6 +120,13 @@ class Assignment:
         """The most that students are told of this exercise."""
         return self.feedback or assigned.exercise.feedback
 
+    @property
+    def part_names(self) -> frozenset[str]:
+        """The ids of the parts, as far as they say which exercise is answered: of one alone."""
+        if len(self.exercises) > 1:
+            return frozenset()
+        return frozenset(part.id for each in self.exercises for part in each.exercise.parts)
+
 
 class UnknownPartNameError(LookupError):
     """An exercise has no part of this name; the text brings the nearest."""
