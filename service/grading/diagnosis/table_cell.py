@@ -283,7 +283,7 @@ def diagnose(case: WrongCell) -> Finding:
     finding = diagnosed(case, misconceptions, CHECKS) or differs(
         case,
         f"{case.symbol} is not right: check the {'angle' if case.angle else 'distance'} "
-        f"{case.measured}.{_too_large(case)}",
+        f"{case.measured}.{_too_large(case)}{_in_symbols(case)}",
     )
     if case.column == D and case.shared and case.same_motion:
         return replace(finding, hint=f"{finding.hint} {SUM_COUNTS}")
@@ -294,6 +294,16 @@ def _too_large(case: WrongCell) -> str:
     if not case.angle or not case.same_motion or np.abs(case.constants[0]).max() < 3 * np.pi:
         return ""
     return " It was read in radians: write the unit behind it (deg or °) if degrees were meant."
+
+
+def _in_symbols(case: WrongCell) -> str:
+    """The advice for a number where a length of the exercise is expected; it names none of them."""
+    expected = case.constants[1]
+    if case.angle or case.expression.symbols:
+        return ""
+    if case.equal(expected, np.full_like(expected, expected[0])):
+        return ""
+    return " Give it in the exercise's symbols."
 
 
 def _by_joint(counts: tuple[int, ...] | None, joints: tuple[Joint, ...]) -> dict[Joint, int] | None:

@@ -134,3 +134,20 @@ def test_what_no_misconception_explains_shows_a_counterexample() -> None:
     assert finding.code == "value"
     assert finding.values is not None
     assert finding.values["yours"] == pytest.approx(float(VALUES["a1"][0]) + 0.3, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("column", "written", "right", "is_told"),
+    [
+        ("a", "0.4", "a1", True),
+        ("d", "d3 + 0.4", "d3 + a1", False),
+        ("a", "a2", "a1", False),
+        ("a", "0.4", "0.5", False),
+        ("alpha", "0.4", "pi/2", False),
+    ],
+)
+def test_a_number_for_a_length_is_asked_for_in_symbols(
+    column: str, written: str, right: str, is_told: bool
+) -> None:
+    hint = diagnose(wrong(column, 3, written, right)).hint
+    assert hint.endswith("Give it in the exercise's symbols.") is is_told, hint
