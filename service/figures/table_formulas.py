@@ -46,7 +46,7 @@ def table_formulas(
         for row in written.rows
     )
     rows = [(a, alpha, d, theta) for a, alpha, d, theta in cells if a and alpha and d and theta]
-    if len(rows) < len(cells):
+    if not rows or len(rows) < len(cells):
         return TableFormulas(cells)
     zero = read(_ZERO_TEXT, scope.vocabulary)
     return TableFormulas(

@@ -79,3 +79,16 @@ def test_what_is_unread_or_too_long_is_left_out() -> None:
     long = formulas_of(rows, "R" * 10, Convention.STANDARD)
     assert len(long.converted) == 11
     assert not long.pose
+
+
+@pytest.mark.parametrize("convention", Convention)
+def test_a_table_without_rows_says_nothing(convention: Convention) -> None:
+    assert formulas_of(" ", "R", convention) == TableFormulas(())
+
+
+def test_no_more_is_printed_than_a_request_may_cost() -> None:
+    rows = [[f"{'sin(30)' * 60}+{4 * i + j}" for j in range(4)] for i in range(12)]
+    cells = [cell for row in formulas_of(rows, "R", Convention.STANDARD).cells for cell in row]
+    printed = [cell is not None for cell in cells]
+    assert printed == sorted(printed, reverse=True)
+    assert 3 <= sum(printed) < 24
