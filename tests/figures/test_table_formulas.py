@@ -87,8 +87,8 @@ def test_a_table_without_rows_says_nothing(convention: Convention) -> None:
 
 
 def test_no_more_is_printed_than_a_request_may_cost() -> None:
-    rows = [[f"{'sin(30)' * 60}+{4 * i + j}" for j in range(4)] for i in range(12)]
+    rows = [[f"{'sin(30)' * 25}+{4 * i + j}" for j in range(4)] for i in range(12)]
     cells = [cell for row in formulas_of(rows, "R", Convention.STANDARD).cells for cell in row]
     printed = [cell is not None for cell in cells]
     assert printed == sorted(printed, reverse=True)
-    assert 3 <= sum(printed) < 24
+    assert 0 < sum(printed) < len(printed)
