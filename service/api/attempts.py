@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from collections.abc import Collection
 from datetime import UTC, datetime
 from http import HTTPStatus
 from time import perf_counter
@@ -9,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated
 
 from fastapi import APIRouter, Header, Request, Response
 
-from service.access.caller import Scope
 from service.api.access import Access
 from service.api.access_problems import other_learner
 from service.api.bodies import body_as
@@ -47,8 +47,12 @@ def routes(
     store: "AttemptStore | None",
     access: Access,
     monitor: Monitor | None = None,
+    origins: Collection[str] = (),
 ) -> APIRouter:
-    """The routes that record; no report tells more than ``feedback``."""
+    """The routes that record; no report tells more than ``feedback``.
+
+    Pages of ``origins`` may record besides those of the service itself.
+    """
     router = APIRouter(prefix="/v1", tags=["attempts"])
 
     @router.post(
@@ -75,7 +79,7 @@ def routes(
         Attempts are counted and limited as the exercise says; one in which nothing could be read
         does not count. What is answered with 201 is not lost, whatever happens to the service.
         """
-        caller = access.require(request, Scope.RECORD, exercise_id)
+        caller = access.require_recording(request, exercise_id, origins)
         if store is None:
             raise not_recorded()
         exercise = exercise_or_404(catalogue, exercise_id)

@@ -1,6 +1,7 @@
 import asyncio
 import json
 import re
+import unicodedata
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
@@ -10,12 +11,14 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI
+from pydantic import TypeAdapter, ValidationError
 from sqlalchemy import text
 
 from service.api.application import application
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise, FeedbackLevel
 from service.catalogue.attempts import AttemptsSpec
+from service.contract.attempts import Learner
 from service.grading import GradedAnswers, Submission, graded_answers
 
 RIGHT = {"table": "a1 0 0 θ1\na2 180deg 0 θ2\n0 0 d3 0\n0 0 d4 θ4"}
@@ -208,14 +211,60 @@ def test_while_the_database_is_down_grading_goes_on(course_of: Any, store: Attem
     assert graded.status_code == 200
 
 
-@pytest.mark.parametrize("learner", ["", "a\nb", "\x00", 7, None, "x" * 201])
+@pytest.mark.parametrize(
+    "learner",
+    [
+        "",
+        "a\nb",
+        "\x00",
+        7,
+        None,
+        "x" * 201,
+        "a\x85",
+        "a\u2029",
+        " a",
+        "a ",
+        "a  b",
+        "\u3164",
+        "a\ufe0f",
+    ],
+)
 def test_a_learner_is_a_short_line_of_text(course_of: Any, learner: Any) -> None:
     assert problem(course_of().post(RIGHT, learner)) == (422, "invalid-request")
 
 
 def test_a_learner_may_have_any_letters(course_of: Any) -> None:
-    for learner in ("Ада Лавлейс", "ada@example.edu", "'; DROP TABLE attempts; --", "名前"):
+    for learner in ("Ада Лавлейс", "ada@example.edu", "'; DROP TABLE attempts; --", "名前", "🤖 7"):
         assert course_of().post(RIGHT, learner).json()["attempt"]["learner"] == learner
+
+
+def test_no_learner_has_a_character_that_is_not_seen() -> None:
+    taken = TypeAdapter(Learner)
+    for character in map(chr, range(0x110000)):
+        # By the tables of Unicode; what is not assigned yet is unknown to them.
+        if unicodedata.category(character) in ("Cc", "Cf", "Co", "Zl", "Zp", "Zs"):
+            with pytest.raises(ValidationError):
+                taken.validate_python(f"a{character}")
+
+
+def test_a_page_of_another_origin_records_nothing(
+    catalogue: Mapping[str, Exercise], store: AttemptStore, client_of: Any
+) -> None:
+    """A browser sends it without asking first where its type is that of a plain text."""
+    course = "https://course.example.edu"
+
+    def status(origin: str | None, *allowed: str) -> tuple[int, int]:
+        client = client_of(application(catalogue, allowed, store=store))
+        headers = {"Content-Type": "text/plain"} | ({"Origin": origin} if origin else {})
+        content = json.dumps({"answers": RIGHT, "learner": "ada"})
+        before = count(store)
+        answer = client.post("/v1/exercises/scara/attempts", content=content, headers=headers)
+        return answer.status_code, count(store) - before
+
+    assert status(None) == status("http://service") == (201, 1)
+    assert status("https://evil.example") == status("null") == (403, 0)
+    assert status("https://evil.example", course) == (403, 0)
+    assert status(course, course) == status("https://any.example", "*") == (201, 1)
 
 
 def test_the_page_on_attempts_shows_what_is_answered(course_of: Any) -> None:

@@ -131,7 +131,18 @@ def test_a_write_that_fails_is_told_and_the_next_one_works(store: AttemptStore) 
 
 @pytest.mark.parametrize(
     "url",
-    ["mysql://a:secret@host/b", "/no/such/folder/a.db", "postgresql://u:secret@127.0.0.1:1/x"],
+    [
+        "mysql://a:secret@host/b",
+        "/no/such/folder/a.db",
+        "postgresql://u:secret@127.0.0.1:1/x",
+        "postgresql://u:secret@:bad/x",
+        "sqlite+foo:///x",
+        "sqlite+aiosqlite:///x",
+        "sqlite:///x?timeout=secret",
+        ":memory:",
+        "sqlite://",
+        "sqlite:///file::memory:?uri=true",
+    ],
 )
 def test_an_unusable_database_is_named_without_its_password(url: str) -> None:
     with pytest.raises(UnusableDatabaseError) as refused:
