@@ -16,6 +16,7 @@ from service.submissions.answers import ExerciseAnswers, answers_in
 from service.submissions.assignment import AssignedExercise, Assignment
 from service.submissions.body import GradeRequest
 from service.submissions.handed_in import HandedIn
+from service.submissions.lookup import nearest
 
 _LONGEST_NAME = 60
 
@@ -60,8 +61,12 @@ def unknown_part(body: GradeRequest, assigned: AssignedExercise) -> str:
     unknown = next((part for part in body.answers if part not in known), None)
     if unknown is None:
         return ""
+    meant = nearest(unknown, known)
+    hint = f". Did you mean {meant}?" if meant else ""
     listed = ", ".join(known)
-    return f"answers {unknown[:_LONGEST_NAME]!r}, but {assigned.exercise.id} has only {listed}"
+    return (
+        f"answers {unknown[:_LONGEST_NAME]!r}, but {assigned.exercise.id} has only {listed}{hint}"
+    )
 
 
 def report_here(

@@ -10,7 +10,7 @@ from fastapi import Path
 
 from service.api.problems import MAX_ERRORS, ProblemError, invalid
 from service.catalogue import Exercise
-from service.submissions.lookup import UnknownExerciseError, find_exercise
+from service.submissions.lookup import UnknownExerciseError, find_exercise, nearest
 
 Catalogue = Mapping[str, Exercise]
 ExerciseId = Annotated[str, Path(description="The id of an exercise.", examples=["stanford-arm"])]
@@ -54,10 +54,14 @@ def require_parts(exercise: Exercise, located: Iterable[tuple[str, Location]]) -
 
     Raises ProblemError naming those that there are, and the places of the first that there are not.
     """
-    absent = (place for part, place in located if exercise.part(part) is None)
-    unknown = list(islice(absent, MAX_ERRORS))
-    if unknown:
-        known = ", ".join(part.id for part in exercise.parts)
-        message = f"{exercise.id} has no such part; its parts are {known}"
-        problem = invalid([{"type": "unknown", "loc": place, "msg": message} for place in unknown])
+    absent = (each for each in located if exercise.part(each[0]) is None)
+    known = [part.id for part in exercise.parts]
+    details = []
+    for part, place in islice(absent, MAX_ERRORS):
+        meant = nearest(part, known)
+        hint = f"did you mean {meant}? Its" if meant else "its"
+        message = f"{exercise.id} has no such part; {hint} parts are {', '.join(known)}"
+        details.append({"type": "unknown", "loc": place, "msg": message})
+    if details:
+        problem = invalid(details)
         raise replace(problem, name="unknown-part", title="The exercise has no such part")

@@ -31,11 +31,15 @@ _CHOICES: Final = {"literal_error": "expected", "enum": "expected",
 _QUOTED: Final = re.compile(r"'([^']*)'")
 
 
-def refusals(error: ValidationError | FieldError, table_at: TableAt) -> list[tuple[str, str]]:
+def refusals(
+    error: ValidationError | FieldError | ExceptionGroup[FieldError], table_at: TableAt
+) -> list[tuple[str, str]]:
     """The field and the reason of each fault; a value that fits none of several forms is one.
 
     ``table_at`` is the table of the file that a location of pydantic lies in.
     """
+    if isinstance(error, ExceptionGroup):
+        return [fault for each in error.exceptions for fault in refusals(each, table_at)]
     if isinstance(error, FieldError):
         return [(error.field, error.reason)]
     found: list[tuple[str, list[_Detail]]] = []
@@ -117,10 +121,30 @@ def _advised(detail: _Detail, table_at: TableAt) -> str:
             return f"{reason}: write true or false"
         case "string_type" if isinstance(detail["input"], bool | int | float):
             return f"{reason}: write it in quotation marks"
+        case "greater_than" | "greater_than_equal" | "less_than" | "less_than_equal":
+            return _out_of_range(detail["input"], reason, _is_share(str(last), table_at(location)))
         case "union_tag_not_found":
             return f'{reason}: write kind = "…", one of {", ".join(SPECS)}'
         case _:
             return reason
+
+
+def _out_of_range(value: float, reason: str, is_share: bool) -> str:
+    """The reason for a number out of its range; a share may have been written in per cent."""
+    shown = reprlib.repr(value)
+    if not is_share:
+        return f"is {shown}; {reason.replace('Input should be', 'write a number', 1)}"
+    meant = f", so {value / 100:g} for {value:g} %" if 1 < value <= 100 else ""
+    return f"is {shown}; write a share from 0 to 1{meant}"
+
+
+def _is_share(key: str, model: type[BaseModel]) -> bool:
+    """Whether a field holds a number from 0 to 1."""
+    field = model.model_fields.get(key)
+    limits = field.metadata if field else []
+    return any(getattr(each, "ge", None) == 0 for each in limits) and any(
+        getattr(each, "le", None) == 1 for each in limits
+    )
 
 
 def _no_such_key(key: str, model: type[BaseModel]) -> str:

@@ -45,8 +45,8 @@ class CatalogueError(Exception):
 def load_toml(file: Path, build: Callable[[dict[str, Any]], Built], table_at: TableAt) -> Built:
     """The result of ``build`` on the content of the file. Raises CatalogueError.
 
-    ``build`` may raise a ValidationError of pydantic, or a FieldError. ``table_at`` is the table
-    that a location of pydantic lies in.
+    ``build`` may raise a ValidationError of pydantic, or a FieldError or a group of them.
+    ``table_at`` is the table that a location of pydantic lies in.
     """
     try:
         text = read_regular(file, _LARGEST).decode()
@@ -63,7 +63,7 @@ def read_toml(
     text = text.replace("\r\n", "\n")
     try:
         return build(tomllib.loads(text))
-    except (ValidationError, FieldError) as error:
+    except (ValidationError, FieldError, ExceptionGroup) as error:
         lines = value_lines(text)
         found = refusals(error, table_at)
         faults = [Fault(file, *fault, line_of(fault[0], lines)) for fault in found]

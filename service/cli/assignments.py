@@ -43,7 +43,7 @@ def check(
     console = stdout()
     for line in _lines(assignment):
         console.print(line, soft_wrap=True)
-    for handed in all_handed_in([folder]) if folder else ():
+    for handed in all_handed_in([folder], parts=assignment.part_names) if folder else ():
         for line in _found(handed, assignment):
             console.print(line, soft_wrap=True)
 

@@ -116,7 +116,10 @@ def show_statistics(exercise: ExerciseArgument) -> None:
     screen = stdout()
     screen.print(f"{exercise}: {told.attempts} attempts of {told.learners} learners")
     for part in told.parts:
-        screen.print(f"{part.part}: {_share(part.share)} right of {part.answered}")
+        right = "nobody answered"
+        if part.share is not None:
+            right = f"{percent(part.share)} right of {part.answered}"
+        screen.print(f"{part.part}: {right}")
         for row in part.rows:
             cells = "  ".join(f"{cell.label} {_share(cell.share)}" for cell in row.cells)
             screen.print(f"  {row.label}: {cells}")

@@ -188,7 +188,12 @@ def command(
         echo=echo or taken.shows_entries,
     )
     found = list(
-        all_handed_in(paths, folder_is_one=one_student or taken.is_single, left_out=output)
+        all_handed_in(
+            paths,
+            folder_is_one=one_student or taken.is_single,
+            left_out=output,
+            parts=chosen.part_names,
+        )
     )
     if not found:
         give_up(f"{', '.join(map(str, paths))}: holds no submission")

@@ -12,7 +12,7 @@ from service.formats.shared.html_page import CLOSING, opening, style_sheet, writ
 from service.formats.shared.markup import Child, element
 from service.formats.shared.messages import SIGNS, Message
 from service.formats.shared.part_results import PartResult, part_results
-from service.formats.shared.plain_text import code_pieces, percent, points, whole_percent
+from service.formats.shared.plain_text import code_pieces, percent, points, whole_score
 from service.formats.shared.report_format import ReportFormat, Setting
 from service.grading import CellReport, RowReport, Severity, Verdict
 
@@ -79,7 +79,7 @@ def _ring(score: float, *, passed: bool) -> Element:
     if score > 0:
         earned = {"class_": "earned", "stroke_dasharray": arc, "transform": turned}
         drawn.append(element("circle", **whole, **earned))
-    drawn.append(element("text", whole_percent(score), **middle))
+    drawn.append(element("text", whole_score(score), **middle))
     name = {"role": "img", "aria_label": percent(score), "viewBox": "0 0 36 36"}
     return element("svg", *drawn, class_="ring" if passed else "ring below", **name)
 

@@ -10,6 +10,7 @@ from service.expressions import AngleUnit
 from service.grading.feedback import Finding, UnreadableAnswerError, told_at
 from service.grading.follow_through import STANDS_STILL, can_carry, follows_from
 from service.grading.judging.marks import has_earned, part_report, unjudged_report
+from service.grading.judging.own_frames.remarks import OWN_FRAME_CHOICE
 from service.grading.kinds import KINDS
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.entry import Reader
@@ -161,7 +162,9 @@ def _graded(
     judged = kind.judge(part, read, grading)
     if judged.stands_still:
         messages = grading.messages((STANDS_STILL,))
-        judged = replace(judged, feedback=(*messages, *judged.feedback))
+        # Who let no joint move has chosen no frames.
+        others = (each for each in judged.feedback if each.code != OWN_FRAME_CHOICE)
+        judged = replace(judged, feedback=(*messages, *others))
     report = part_report(part, judged)
     if report.verdict is Verdict.CORRECT or judged.stands_still or followed is None:
         return _Graded(part, report, judged)

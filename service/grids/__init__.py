@@ -3,6 +3,7 @@
 Knows nothing of robots, and of expressions only spans, errors and the names of functions.
 """
 
+from service.grids.given_values import ASSIGNMENT
 from service.grids.grid import Grid, GridCell, GridError
 from service.grids.limits import GRID_LIMITS, GridLimits
 from service.grids.registry import FORMATS, read_grid
@@ -10,6 +11,7 @@ from service.grids.several import NamedGrid, read_grids
 from service.grids.source_text import SourceText
 
 __all__ = [
+    "ASSIGNMENT",
     "FORMATS",
     "GRID_LIMITS",
     "Grid",

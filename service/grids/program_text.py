@@ -35,6 +35,11 @@ _TITLE: Final = re.compile(
 _CALL: Final = re.compile(
     r"\s*([A-Za-z_][\w.]{0,60})[ \t]*\(\s*(?=[\[({\d]|[A-Za-z_][\w.]{0,60}\()"
 )
+# Of the Robotics Toolbox for MATLAB, and of that for Python.
+_OF_ROBOTS: Final = frozenset(
+    {"Link", "Revolute", "Prismatic", "RevoluteDH", "PrismaticDH", "RevoluteMDH", "PrismaticMDH"}
+    | {"SerialLink", "DHRobot"}
+)
 _MOST_FORMS: Final = 3
 _NESTED: Final = re.compile(r"[({]\s*[\[({]|\[|\{\s*['\"]")
 _KEYWORD: Final = re.compile(r"\s*(?:dtype|order|copy|ndmin|storage|shape|datatype)\s*=")
@@ -218,11 +223,13 @@ def _groups(source: SourceText) -> list[SourceText]:
 def _unwrap_call(source: SourceText, call: re.Match[str], calls: int) -> WrittenMatrix:
     name, inside = call[1].rpartition(".")[2], call.end() - call.start(1)
     if name not in MAKERS or not calls:
-        raise GridError(
-            "unknown_call",
-            f"`{call[1]}(…)` of a matrix is not worked out here. Paste the result.",
-            source.span(0, len(call[1])),
-        )
+        message = f"`{call[1]}(…)` of a matrix is not worked out here. Paste the result."
+        if name in _OF_ROBOTS:
+            message = (
+                f"`{call[1]}(…)` describes a robot. Paste its DH table instead, one row for each "
+                "link."
+            )
+        raise GridError("unknown_call", message, source.span(0, len(call[1])))
     opened = source.text.index("(")
     ends = strict_pairs(source)
     if ends[opened] != len(source.text):

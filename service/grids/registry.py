@@ -1,10 +1,12 @@
 """All formats, in the order in which they are tried."""
 
+from dataclasses import replace
 from typing import Final
 
 from service.grids import (  # isort: skip
     bracketed, columns, csv, drawn_matrix, html, latex, markdown, matlab_rows, semicolons, tsv,
 )  # fmt: skip
+from service.grids.given_values import without_given_values
 from service.grids.grid import Grid, GridError, GridFormat
 from service.grids.limits import GRID_LIMITS
 from service.grids.program_text import without_title
@@ -28,7 +30,9 @@ def read_grid(text: str) -> Grid:
 
     Time is linear in the text, which is bounded by ``GRID_LIMITS``.
     """
-    return grid_of(without_title(pasted_source(text)))
+    source, notes = without_given_values(without_title(pasted_source(text)))
+    found = grid_of(source)
+    return replace(found, notes=(*notes, *found.notes)) if notes else found
 
 
 def pasted_source(text: str, *, named: bool = False) -> SourceText:

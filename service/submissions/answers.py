@@ -27,6 +27,7 @@ from service.submissions.file_content import (
 )
 from service.submissions.handed_in import HandedFile, HandedIn
 from service.submissions.lookup import nearest
+from service.submissions.platform_names import student_and_part, without_copy_number
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
@@ -34,8 +35,6 @@ if TYPE_CHECKING:
 # Names of files that a message tells.
 _TOLD: Final = 5
 _LONGEST_NAME: Final = 60
-# A second download of one file, or a second hand-in: ``table-1.csv``, ``table (1).csv``.
-_COPY: Final = re.compile(r"(?:-\d+| ?\(\d+\))$")
 # No answers, unless their names are among those that the assignment asks for.
 _ABOUT: Final = frozenset({"readme", "license", "licence", "changelog"})
 
@@ -92,6 +91,10 @@ def _claims(files: Sequence[HandedFile], assignment: Assignment) -> list[list[_C
             with suppress(UnusableFileError):
                 claims[_stated(file, assignment)].append(_Claim(file))
     if not any(claims):
+        for file in unnamed:
+            if found := student_and_part(file.name, assignment.part_names):
+                claims[0].append(_Claim(file, found[1]))
+    if not any(claims):
         sole = _sole(files, assignment)
         i = 0 if len(assignment.exercises) == 1 else _stated(sole, assignment)
         claims[i].append(_Claim(sole))
@@ -143,7 +146,7 @@ def _part_in(stem: str, assigned: AssignedExercise) -> str | None:
 
 def _stems(stem: str) -> tuple[str, ...]:
     """The name, and the one that it had before it was a copy."""
-    return tuple(dict.fromkeys((stem, _COPY.sub("", stem))))
+    return tuple(dict.fromkeys((stem, without_copy_number(stem))))
 
 
 def _stated(file: HandedFile, assignment: Assignment) -> int:
@@ -259,10 +262,10 @@ def read_body(
     part = part or assigned.only_part
     value = content.value
     if content.is_pasted and part is None:
-        parts = ", ".join(each.id for each in assigned.exercise.parts)
+        names = " or ".join(f"STUDENT.{each.id}.csv" for each in assigned.exercise.parts)
         raise UnusableFileError(
-            f"is the pasted answer to one part: name the file after it, one of {parts}, or name "
-            "the part with --part"
+            f"is the pasted answer to one part: name the file after it, as in {names}, or name the "
+            "part with --part"
         )
     if content.is_pasted or not isinstance(value, dict) or "answers" not in value:
         if part is None:

@@ -1,6 +1,6 @@
 """An assignment: exercises that are set together, their points, and the files that answer them."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Final
@@ -120,6 +120,13 @@ class Assignment:
         """The most that students are told of this exercise."""
         return self.feedback or assigned.exercise.feedback
 
+    @property
+    def part_names(self) -> frozenset[str]:
+        """The ids of the parts, as far as they say which exercise is answered: of one alone."""
+        if len(self.exercises) > 1:
+            return frozenset()
+        return frozenset(part.id for each in self.exercises for part in each.exercise.parts)
+
 
 class UnknownPartNameError(LookupError):
     """An exercise has no part of this name; the text brings the nearest."""
@@ -180,12 +187,16 @@ def load_assignment(file: Path, find: Callable[[str], SetExercise]) -> Assignmen
 
     def build(content: dict[str, Any]) -> Assignment:
         spec = AssignmentSpec.model_validate(content)
-        exercises = tuple(
-            _assigned(each, f"exercises[{i}]", file.parent, find)
-            for i, each in enumerate(spec.exercises)
-        )
+        exercises, faults = [], []
+        for i, each in enumerate(spec.exercises):
+            try:
+                exercises.append(_assigned(each, f"exercises[{i}]", file.parent, find))
+            except FieldError as error:
+                faults.append(error)
+        if faults:
+            raise ExceptionGroup("exercises that cannot be set", faults)
         _check_distinct(exercises)
-        return Assignment(exercises, spec.title, spec.pass_mark, spec.feedback)
+        return Assignment(tuple(exercises), spec.title, spec.pass_mark, spec.feedback)
 
     return load_toml(file, build, _table_at)
 
@@ -217,7 +228,7 @@ def _assigned(
     )
 
 
-def _check_distinct(exercises: tuple[AssignedExercise, ...]) -> None:
+def _check_distinct(exercises: Sequence[AssignedExercise]) -> None:
     first: dict[str, int] = {}
     for i, each in enumerate(exercises):
         at = first.setdefault(each.exercise.id, i)

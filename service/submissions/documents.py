@@ -9,6 +9,8 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from typing import Final
 
+from service.grids import ASSIGNMENT
+
 _ENVIRONMENT: Final = re.compile(
     r"\\begin\{(tabular[x*]?|longtable|array|smallmatrix|[pbBvV]?matrix)\}"
 )
@@ -63,20 +65,37 @@ def _markdown(text: str) -> Iterator[str]:
 
 
 def _matlab(text: str) -> Iterator[str]:
-    """The matrices that are written out and assigned, as far as nothing else changes a letter."""
+    """The matrices that are written out and assigned, as far as nothing else changes a letter.
+
+    In front of a matrix stand the statements that give its letters values, for the reader to tell.
+    """
+    matrices: list[str] = []
     at = 0
-    while opening := _ASSIGNED.search(text, at):
+    while len(matrices) < 2 and (opening := _ASSIGNED.search(text, at)):
         before, at = opening.start(), _closing(text, opening.end())
         matrix = text[before:at]
-        given = set(_GIVEN.findall(text[:before])) & set(_NAME.findall(matrix))
+        values = _values_given(text[:before], set(_NAME.findall(matrix)))
         if (
             at == 0
-            or given
+            or values is None
             or _SEVERAL_GIVEN.search(text)
             or opening[1] in _CHANGED.findall(text, at)
         ):
             return
-        yield matrix
+        matrices.append("\n".join([*values, matrix]))
+    yield from matrices
+
+
+def _values_given(text: str, letters: set[str]) -> list[str] | None:
+    """The statements that give these letters values; None where one is given a matrix or a list."""
+    found = []
+    for given in _GIVEN.finditer(text):
+        if given[1] in letters:
+            assignment = ASSIGNMENT.match(text, given.start(1))
+            if assignment is None:
+                return None
+            found.append(assignment["line"].rstrip())
+    return found
 
 
 def _closing(text: str, start: int) -> int:

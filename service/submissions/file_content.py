@@ -110,10 +110,18 @@ def _text(data: bytes) -> str:
 
 
 def _json(data: bytes) -> object:
+    _text(data)
     try:
         return read_json(data)
     except MalformedError as error:
-        raise UnusableFileError(f"is not usable JSON: {error}") from error
+        raise UnusableFileError(_no_json(error)) from error
+
+
+def _no_json(error: MalformedError) -> str:
+    """The reason of malformed JSON as the end of one sentence."""
+    place = str(error).removeprefix(error.reason)
+    reason = error.reason.removesuffix(".")
+    return f"is not usable JSON: {reason[0].lower()}{reason[1:]}{place}"
 
 
 def _json_of_no_name(data: bytes, found: str) -> object:
@@ -136,7 +144,7 @@ def _recognised(data: bytes) -> FileContent:
             return FileContent(read_json(data))
         except MalformedError as error:
             if '"answers"' in text:
-                raise UnusableFileError(f"is not usable JSON: {error}") from error
+                raise UnusableFileError(_no_json(error)) from error
     if "answers" in text:
         try:
             value = _toml(data)

@@ -6,13 +6,13 @@ that it holds. What a learning platform names alike belongs to one student.
 
 import os
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
 from service.submissions.file_content import STANDARD_INPUT, UnusableFileError, read_file
-from service.submissions.platform_names import platform_name
+from service.submissions.platform_names import platform_name, student_and_part
 from service.submissions.strict_json import MAX_BODY_SIZE
 
 MAX_SUBMISSIONS_IN_FOLDER: Final = 100_000
@@ -74,12 +74,17 @@ class HandedIn:
 
 
 def all_handed_in(
-    paths: Iterable[Path], *, folder_is_one: bool = False, left_out: Path | None = None
+    paths: Iterable[Path],
+    *,
+    folder_is_one: bool = False,
+    left_out: Path | None = None,
+    parts: Collection[str] = (),
 ) -> Iterator[HandedIn]:
     """The submissions in files and folders, in the order given and then of their names.
 
     ``-`` is standard input, which is read at once. With ``folder_is_one`` a folder is the
-    submission of one student. ``left_out`` is no submission, wherever it stands: the output.
+    submission of one student. ``left_out`` is no submission, wherever it stands: the output. Of
+    files named ``STUDENT.PART.csv`` after one of ``parts``, those of one student belong together.
     """
     for path in paths:
         if str(path) == STANDARD_INPUT:
@@ -88,15 +93,15 @@ def all_handed_in(
             yield HandedIn(STANDARD_INPUT, STANDARD_INPUT, (entry,))
         elif not path.is_dir():
             entry = HandedFile(path, path.as_posix())
-            yield HandedIn(str(path), _learner(entry), (entry,))
+            yield HandedIn(str(path), _learner(entry, parts), (entry,))
         elif folder_is_one:
             entry = HandedFile(path, "")
             yield HandedIn(str(path), _learner(entry), (entry,))
         else:
-            yield from _of_class(path, left_out)
+            yield from _of_class(path, left_out, parts)
 
 
-def _of_class(folder: Path, left_out: Path | None) -> Iterator[HandedIn]:
+def _of_class(folder: Path, left_out: Path | None, parts: Collection[str]) -> Iterator[HandedIn]:
     """The submissions in the folder of a class."""
     try:
         names = _names(folder, MAX_SUBMISSIONS_IN_FOLDER)
@@ -106,13 +111,22 @@ def _of_class(folder: Path, left_out: Path | None) -> Iterator[HandedIn]:
     by_student: dict[str, list[str]] = {}
     for name in names:
         if left_out is None or not _is_same(folder / name, left_out):
-            found = platform_name(name)
-            # A name with / is nobody's file.
-            by_student.setdefault(f"/{found.student}" if found else name, []).append(name)
+            by_student.setdefault(_student(folder, name, parts), []).append(name)
     for student, own in by_student.items():
         entries = tuple(_entry(folder, name) for name in own)
         shown = folder / (own[0] if len(own) == 1 else student[1:])
-        yield HandedIn(str(shown), _learner(entries[0]), entries, folder)
+        yield HandedIn(str(shown), _learner(entries[0], parts), entries, folder)
+
+
+def _student(folder: Path, name: str, parts: Collection[str]) -> str:
+    """What is alike in all names of one student.
+
+    A piece of a name has a / in front, which no name of a file has.
+    """
+    if found := platform_name(name):
+        return f"/{found.student}"
+    named = student_and_part(name, parts)
+    return f"/{named[0]}" if named and not _is_folder(folder / name) else name
 
 
 def _entry(folder: Path, name: str) -> HandedFile:
@@ -172,9 +186,12 @@ def _is_same(path: Path, other: Path) -> bool:
     return path.name == other.name and path.resolve() == other.resolve()
 
 
-def _learner(entry: HandedFile) -> str:
+def _learner(entry: HandedFile, parts: Collection[str] = ()) -> str:
     """The student: as the platform has it, or else the name of the file or folder."""
     name = entry.path.name or entry.path.resolve().name
     if found := platform_name(name):
         return found.learner
-    return name if _is_folder(entry.path) else entry.path.stem
+    if _is_folder(entry.path):
+        return name
+    named = student_and_part(name, parts)
+    return named[0] if named else entry.path.stem

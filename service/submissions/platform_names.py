@@ -9,7 +9,9 @@ anonymous ``anon_x7Gh2`` stands for the name and the number.
 """
 
 import re
+from collections.abc import Collection
 from dataclasses import dataclass
+from pathlib import PurePosixPath
 from typing import Final
 
 _MOODLE: Final = re.compile(
@@ -20,6 +22,8 @@ _CANVAS: Final = re.compile(
     r"(?:(?P<student>[^\s.,()-]+?)_)??(?:LATE_)?(?P<id>\d{2,}|anon_[A-Za-z0-9]+)"
     r"_(?:\d{3,}_(?P<file>.+)|(?P<entry>(?:text|link)(?:-\d+)?\.html))"
 )
+# A second download of one file, or a second hand-in: ``table-1.csv``, ``table (1).csv``.
+_COPY: Final = re.compile(r"(?:-\d+| ?\(\d+\))$")
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,3 +50,18 @@ def platform_name(name: str) -> PlatformName | None:
         return None
     student = "_".join(filter(None, (found["student"], found["id"])))
     return PlatformName(student, found["id"], found["file"] or found["entry"])
+
+
+def without_copy_number(stem: str) -> str:
+    """The name that a file had before it was a copy: ``table`` of ``table (1)``."""
+    return _COPY.sub("", stem)
+
+
+def student_and_part(name: str, parts: Collection[str]) -> tuple[str, str] | None:
+    """The student and the part in ``STUDENT.PART.csv``, where PART is one of ``parts``.
+
+    The name of a student may have dots, that of a part has none.
+    """
+    student, _, part = PurePosixPath(name).stem.rpartition(".")
+    part = without_copy_number(part).lower()
+    return (student, part) if student and part in parts else None

@@ -89,7 +89,7 @@ def class_archive(upload: ClassUpload, catalogue: Catalogue) -> bytes:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         _write(upload, folder)
-        found = list(all_handed_in([folder]))
+        found = list(all_handed_in([folder], parts=assignment.part_names))
         if not found:
             raise _unusable("There is no submission among these files.")
         if len(found) > MAX_SUBMISSIONS:

@@ -22,9 +22,9 @@ SECONDS = 15.0
 
 # The names of submissions that cannot be used, and a word of the reason.
 BROKEN = {
-    "a-empty.json": "nothing here",
+    "a-empty.json": "is empty",
     "b-unreadable.json": "line 1",
-    "c-binary.json": "not UTF-8",
+    "c-binary.json": "zero bytes",
     "d-large.json": "larger than 256 KiB",
     "e-word.docx": "is not read",
     "f-pipe.json": "pipe",

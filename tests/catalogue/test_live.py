@@ -102,7 +102,7 @@ def test_a_broken_file_keeps_its_last_good_version(
     for clock.now in (2, 4, 6):
         assert catalogue["arm"] is good
     assert caplog.text.count("its last good version stays") == 1
-    assert "parts[1].points (line 28): Input should be greater than 0" in caplog.text
+    assert "parts[1].points (line 28): is 0; write a number greater than 0" in caplog.text
     write(folder, "arm", titled("Mended"))
     clock.now = 8
     assert catalogue["arm"].title == "Mended"

@@ -93,6 +93,7 @@ def test_the_newest_attempts_are_listed(run: Run, course: list[str]) -> None:
     told = run("attempts", "statistics", "scara").output
     assert "3 attempts of 2 learners" in told
     assert "     2 half_turn (table)" in told
+    assert "links: nobody answered" in told
 
 
 def test_every_attempt_is_exported_and_the_one_that_counts_for_gradebooks(

@@ -6,7 +6,7 @@ What its code blocks do is said behind the three backticks:
     console exit=1    the same, where the last command ends with that exit code
     toml FILE         is added to the end of the file
     toml FILE instead replaces what the block before has added
-    json FILE         becomes the file
+    json FILE         becomes the file, and so does csv FILE
     toml, json, sh    is only read
 
 In what is printed `…` stands for anything within a line, and alone on a line for any lines.
@@ -65,8 +65,9 @@ class Reader:
                     self._run(block)
                 case "toml":
                     self._write_toml(block)
-                case "json":
-                    json.loads(block.text)
+                case "json" | "csv":
+                    if block.language == "json":
+                        json.loads(block.text)
                     for name in block.words:
                         file = self._folder / name
                         file.parent.mkdir(parents=True, exist_ok=True)

@@ -159,10 +159,19 @@ def test_what_is_written(text: str, expected: list[list[str]]) -> None:
         ("[c1 -s1; s1 c1]", "blank_before_sign", "-s1"),
         ("[l1 c1 + l2 c12, 0; s1, 1]", "commas_separate", "l1 c1 + l2 c12, 0; s1, 1"),
         ("a b\nc d", "blank_columns", "a"),
+        # a script: its numbers are told and not used, on lines of their own or on one
+        (
+            "a1 = 0.4; % m\na2 = .3;\nT = [a1, a2; 0, 1];\ndisp(T)",
+            "given_numbers",
+            "a1 = 0.4; % m\na2 = .3",
+        ),
+        ("clc; a1 = 4e-1; q1 = sym('q1'); T = [a1, q1; 0, 1];", "given_numbers", "a1 = 4e-1"),
     ],
 )
 def test_two_readings_are_told(text: str, code: str, marked: str) -> None:
-    [note] = read_grid(text).notes
+    grid = read_grid(text)
+    [note] = grid.notes
+    assert grid.size == "2 × 2"
     assert (note.code, text[slice(*note.span)]) == (code, marked)
 
 
@@ -200,6 +209,10 @@ def refusal(text: str) -> GridError:
          r"\begin{bmatrix}1&2\end{bmatrix}"),
         ("inv([1 2; 3 4])", "unknown_call", "inv"),
         ("np.linalg.inv([[1, 2], [3, 4]])", "unknown_call", "np.linalg.inv"),
+        ("L(1) = Link([0 0 a1 0]);\nR = SerialLink(L)", "unknown_call", "Link"),
+        # a value that a letter of the matrix is given, and that is no plain number
+        ("a1 = 0.4; q1 = pi/2;\nT = [a1, q1; 0, 1]", "given_value", "q1 = pi/2"),
+        ("q1 = sym('q2');\nT = [a1, q1; 0, 1]", "given_value", "q1 = sym('q2')"),
         ("| a | b |\nsee below\n| c | d |", "text_around", "see below"),
         # cells that hold more than a value
         (r"\begin{array}{cc} \multicolumn{2}{c}{x} \end{array}", "spanning_cell", r"\multicolumn"),

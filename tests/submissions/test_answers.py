@@ -43,6 +43,8 @@ def answers_of(found: ExerciseAnswers) -> dict[str, Any]:
         ({"hand-in.json": {"answers": {"table": 1}}}, {"table": 1}),
         ({"x.json": {"exercise": "planar-rrr", "answers": {"pose": 1}}}, {"pose": 1}),
         ({"planar-rrr.toml": "answers.pose = 2"}, {"pose": 2}),
+        ({"a.b.Table.csv": CSV, "a.b.pose (1).txt": "I"}, {"table": CSV, "pose": "I"}),
+        ({"table.csv": CSV, "old.table.csv": "0"}, {"table": CSV}),
         ({"table.csv": CSV, "pose.tex": "x", "README.md": "# Hi"}, {"table": CSV, "pose": "x"}),
         ({"Table.CSV": CSV}, {"table": CSV}),
         ({"table-1.csv": CSV, "pose (2).m": "y"}, {"table": CSV, "pose": "y"}),
@@ -78,7 +80,7 @@ def test_parts_that_are_not_set_are_left_out(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("files", "reason"),
     [
-        ({"x.csv": CSV}, "name the file after it, one of table, pose"),
+        ({"x.csv": CSV}, "after it, as in STUDENT.table.csv or STUDENT.pose.csv, or name the part"),
         ({"x.csv": CSV, "y.csv": CSV}, "there are x.csv, y.csv; name it as planar-rrr/table.csv"),
         ({"x.pdf": b"%PDF"}, "a kind that is not read (.pdf); known are .json"),
         ({"x.docx": b"PK\x03\x04\0"}, "a kind that is not read (.docx)"),

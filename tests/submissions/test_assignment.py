@@ -82,12 +82,20 @@ def test_its_names_of_files_count(load: Callable[[str], Assignment], tmp_path: P
     ("before", "after", "reason"),
     [
         ('title = "Homework 3"', "", "title: Field required: write title = …"),
-        ("pass_mark = 0.6", "pass_mark = 60", "pass_mark (line 2): Input should be less than"),
+        (
+            "pass_mark = 0.6",
+            "pass_mark = 60",
+            "pass_mark (line 2): is 60; write a share from 0 to 1, so 0.6 for 60 %",
+        ),
         ('"verdicts"', '"verdict"', "feedback (line 3): is 'verdict'; did you mean 'verdicts'?"),
         ('"planar-rrr"', '"planar_rr"', "exercises[0].id (line 6): "),
         ('"planar-rrr"', '"planar-rrx"', "There is no exercise 'planar-rrx'. Did you mean"),
         ('["table"]', '["tabel"]', "exercises[0].parts (line 7): planar-rrr has no part 'tabel'."),
-        ("points = 10", "points = 0", "exercises[0].points (line 8): Input should be greater"),
+        (
+            "points = 10",
+            "points = 0",
+            "exercises[0].points (line 8): is 0; write a number greater than 0",
+        ),
         ('"dh.csv"', '["a.csv", "."]', "exercises[0].files[1] (line 9): '.' names no file"),
         ("files =", "file =", "no key 'file' here; did you mean 'files'?"),
         ('path = "own/crane.toml"', "", "exercises[1] (line 11): names no exercise"),
@@ -104,6 +112,17 @@ def test_a_fault_says_where_and_what_to_write(
     with pytest.raises(CatalogueError) as caught:
         load(HOMEWORK.replace(before, after, 1))
     assert reason in str(caught.value)
+
+
+def test_all_exercises_that_cannot_be_set_are_told_at_once(
+    load: Callable[[str], Assignment],
+) -> None:
+    text = HOMEWORK.replace('"planar-rrr"', '"planar-rrx"').replace("pose =", "pos =")
+    with pytest.raises(CatalogueError) as caught:
+        load(text)
+    assert [fault.field for fault in caught.value.faults] == [
+        "exercises[0].id", "exercises[1].part_files.pos",
+    ]  # fmt: skip
 
 
 def test_no_assignment_is_endless(load: Callable[[str], Assignment]) -> None:

@@ -37,6 +37,21 @@ def test_a_file_is_a_student_and_so_is_a_folder(tmp_path: Path) -> None:
     ]
 
 
+def test_files_named_after_a_student_and_a_part_belong_together(tmp_path: Path) -> None:
+    save(tmp_path, "ben.table.csv", "ada.m.pose.csv", "ada.m.table-1.m", "ada.csv", "c.table/x.csv")
+    found = list(all_handed_in([tmp_path], parts={"table", "pose"}))
+    assert [told(each) for each in found] == [
+        ("ada", ["ada.csv"]),
+        ("ada.m", ["ada.m.pose.csv", "ada.m.table-1.m"]),
+        ("ben", ["ben.table.csv"]),
+        ("c.table", ["x.csv"]),
+    ]
+    names = [Path(each.name).name for each in found]
+    assert names == ["ada.csv", "ada.m", "ben.table.csv", "c.table"]
+    [alone] = all_handed_in([tmp_path / "ben.table.csv"], parts={"table"})
+    assert alone.learner == "ben"
+
+
 def test_what_nobody_handed_in_is_skipped(tmp_path: Path) -> None:
     save(
         tmp_path, "anna.json", ".DS_Store", "._anna.json", "__MACOSX/anna.json", "Thumbs.db",

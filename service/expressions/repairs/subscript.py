@@ -1,4 +1,4 @@
-r"""An index that is no index: c_{\theta_1+\theta_2}, θ₁₊₂."""
+r"""An index that is no index: c_{\theta_1+\theta_2}, c_{12-4}, θ₁₊₂."""
 
 import re
 
@@ -7,21 +7,38 @@ from service.expressions.repairs.failure import Failure, Repair, answers, error
 _FUNCTIONS = {"c": "cos", "s": "sin", "C": "cos", "S": "sin"}
 # In s_{1+2} the digits are joints, in a sum of angles they would be numbers.
 _BARE = re.compile(r"(?:^|[^A-Za-z0-9_{])\s*[0-9]")
+# Books write c_{12-4} for cos(θ1 + θ2 - θ4). Of c_{1-23} nobody can say where the minus ends.
+_MINUS = str.maketrans("−–", "--")
+_JOINTS = re.compile(r"[1-9]{1,9}(?:\+[1-9]{1,9}|-[1-9](?![1-9])){1,9}")
 
 
 @answers("subscript")
 def repair(failure: Failure) -> Repair:
-    """Ask for the index alone; offer the cosine where c stands before a sum of angles."""
+    """Ask for the index alone; offer the cosine where c stands before a sum of angles or joints."""
     start, end = failure.span
     inside = failure.details["index"]
     letter = failure.source[start - 1 : start]
     suggestion = None
     alone = not failure.source[start - 2 : start - 1].isalpha() or start < 2
-    plain = failure.written.startswith("_") and not _BARE.search(inside)
+    of_joints = _sum_of_joints(inside, failure)
+    plain = failure.written.startswith("_") and (of_joints or not _BARE.search(inside))
     if letter in _FUNCTIONS and alone and plain:
-        suggestion = failure.replaced(f" {_FUNCTIONS[letter]}({inside})", (start - 1, end)).strip()
+        argument = of_joints or inside
+        cosine = f" {_FUNCTIONS[letter]}({argument})"
+        suggestion = failure.replaced(cosine, (start - 1, end)).strip()
     message = (
         "An index holds letters and digits only, as in c_{12}. "
         "Write the cosine of a sum as cos(theta1 + theta2)."
     )
     return error(failure, "subscript", message, suggestion)
+
+
+def _sum_of_joints(inside: str, failure: Failure) -> str:
+    """The sum of angles that an index such as 12-4 stands for; empty for any other index."""
+    index = "".join(inside.split()).translate(_MINUS)
+    if _JOINTS.fullmatch(index) is None:
+        return ""
+    if any(letter.isdigit() and int(letter) not in failure.vocabulary.turning for letter in index):
+        return ""
+    terms = re.findall(r"([+-]?)([1-9])", index)
+    return "".join(f"{sign or '+'}theta{joint}" for sign, joint in terms).removeprefix("+")

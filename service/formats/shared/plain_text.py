@@ -58,8 +58,13 @@ def percent(score: float) -> str:
 
 
 def whole_percent(share: float) -> str:
-    """A share, 0..1, in whole per cent: ``87 %``, never rounded up."""
-    return f"{int(share * 100 + 1e-6)} %"
+    """A share, 0..1, in whole per cent: ``67 %`` of two thirds, ``100 %`` of all alone."""
+    return f"{min(int(share * 100 + 0.5), 99) if share < 1 else 100} %"
+
+
+def whole_score(score: float) -> str:
+    """A score, 0..1, in whole per cent: ``87 %``, not rounded up to a mark not reached."""
+    return f"{int(score * 100 + 1e-6)} %"
 
 
 def number(value: float) -> str:

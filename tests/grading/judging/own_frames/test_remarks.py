@@ -68,3 +68,10 @@ def test_the_frame_that_departs_is_named_and_no_other(
     assert full_marks(report)
     assert [message.message for message in report.feedback] == [remark]
     assert report.feedback[0].severity is Severity.INFO
+
+
+def test_who_typed_zeros_has_chosen_no_frames(catalogue: Mapping[str, Exercise]) -> None:
+    report = graded_table(catalogue["scara"], [("0", "0", "0", "0")] * 4)
+    codes = {message.code for message in report.feedback}
+    assert "no_joint_variable" in codes
+    assert "own_frame_choice" not in codes
