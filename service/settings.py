@@ -129,6 +129,12 @@ class Settings(BaseSettings):
             raise ValueError("is no address; write 127.0.0.1 for this machine, 0.0.0.0 for all")
         return host
 
+    @field_validator("database", mode="before")
+    @classmethod
+    def _is_set(cls, value: object) -> object:
+        # A file of settings, such as that of Docker Compose, can leave a variable empty only.
+        return None if isinstance(value, str) and not value.strip() else value
+
     @field_validator("secret")
     @classmethod
     def _is_long(cls, secret: SecretStr | None) -> SecretStr | None:

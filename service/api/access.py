@@ -7,6 +7,7 @@ in the students.
 
 import base64
 import binascii
+from collections.abc import Collection
 from dataclasses import dataclass
 from datetime import datetime
 from functools import lru_cache
@@ -29,6 +30,7 @@ from service.api.access_problems import (
     key_needed,
     keys_unreachable,
     learner_makes_token,
+    origin_refused,
     other_exercise,
     scope_missing,
     solutions_off,
@@ -107,6 +109,22 @@ class Access:
         if identity.refusal is not None:
             raise identity.refusal
         require_reach(caller, exercise)
+        return caller
+
+    def require_recording(
+        self, request: Request, exercise: str, origins: Collection[str]
+    ) -> Caller:
+        """Who records an attempt at this exercise. Raises ProblemError.
+
+        A page records only from the service's own origin, or from one of ``origins``: a browser
+        sends what any other page posts as well, without asking first, and only withholds the
+        answer. Who shows a key in a header of its own has no need of that.
+        """
+        caller = self.require(request, Scope.RECORD, exercise)
+        shows_key = bool(caller.key_id) and not self._identity(request).in_browser
+        is_allowed = "*" in origins or request.headers.get("origin") in origins
+        if not (shows_key or is_allowed or _is_same_origin(request)):
+            raise origin_refused()
         return caller
 
     def require_solutions(self, request: Request, exercise: str | None = None) -> None:

@@ -106,6 +106,17 @@ def attempts_not_shown() -> ProblemError:
     )
 
 
+def origin_refused() -> ProblemError:
+    """The page that asks is of an origin that may not."""
+    return ProblemError(
+        HTTPStatus.FORBIDDEN,
+        "A page of this origin may not record attempts. DH_GRADER_CORS_ORIGINS names those that "
+        "may.",
+        "origin-refused",
+        "The page is of another origin",
+    )
+
+
 def too_often(seconds: int) -> ProblemError:
     """More requests than the limit of a key or of an address."""
     return ProblemError(

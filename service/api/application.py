@@ -157,7 +157,7 @@ def application(
     for router in (
         exercises.routes(catalogue, feedback),
         grading.routes(catalogue, feedback, access, monitor),
-        attempts.routes(catalogue, feedback, store, access, monitor),
+        attempts.routes(catalogue, feedback, store, access, monitor, cors_origins),
         recorded.routes(catalogue, store, access),
         preview.routes(catalogue, access),
         figures.routes(catalogue),

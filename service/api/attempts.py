@@ -2,14 +2,14 @@
 
 import hashlib
 import json
+from collections.abc import Collection
 from datetime import UTC, datetime
 from http import HTTPStatus
 from time import perf_counter
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import TYPE_CHECKING, Annotated
 
 from fastapi import APIRouter, Header, Request, Response
 
-from service.access.caller import Scope
 from service.api.access import Access
 from service.api.access_problems import other_learner
 from service.api.bodies import body_as
@@ -17,20 +17,17 @@ from service.api.lookup import Catalogue, ExerciseId, exercise_or_404, require_p
 from service.api.monitor import Monitor
 from service.api.openapi import posting
 from service.api.problems import ProblemError, store_down
-from service.attempts.attempt import NewAttempt, RecordedAttempt
+from service.api.turns import give_way
+from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
 from service.attempts.errors import StoreDownError
-from service.attempts.graded import graded_attempt
+from service.attempts.graded import AttemptGrading, AttemptReport
+from service.attempts.outcome import Outcome
 from service.attempts.policy import AttemptRefusedError, Ruling, ruling
 from service.catalogue import Exercise, FeedbackLevel, least
 from service.contract.attempts import Attempt, AttemptRequest, AttemptResponse
-from service.formats.json import rendered
-from service.grading import Report
 
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
-
-# So often an attempt is graded anew because another of the same learner came first.
-_TRIES: Final = 5
 
 IdempotencyKey = Annotated[
     str | None,
@@ -50,8 +47,12 @@ def routes(
     store: "AttemptStore | None",
     access: Access,
     monitor: Monitor | None = None,
+    origins: Collection[str] = (),
 ) -> APIRouter:
-    """The routes that record; no report tells more than ``feedback``."""
+    """The routes that record; no report tells more than ``feedback``.
+
+    Pages of ``origins`` may record besides those of the service itself.
+    """
     router = APIRouter(prefix="/v1", tags=["attempts"])
 
     @router.post(
@@ -78,7 +79,7 @@ def routes(
         Attempts are counted and limited as the exercise says; one in which nothing could be read
         does not count. What is answered with 201 is not lost, whatever happens to the service.
         """
-        caller = access.require(request, Scope.RECORD, exercise_id)
+        caller = access.require_recording(request, exercise_id, origins)
         if store is None:
             raise not_recorded()
         exercise = exercise_or_404(catalogue, exercise_id)
@@ -90,7 +91,7 @@ def routes(
             exercise, body, feedback, store, caller.owner, idempotency_key, monitor
         )
         try:
-            recorded = await attempting.recorded()
+            recorded = await attempting.recorded(request)
         except StoreDownError as error:
             detail = "The attempt was not recorded. Send it again, with the same Idempotency-Key."
             raise store_down(detail) from error
@@ -133,29 +134,44 @@ class _Attempting:
         self._owner = owner
         self._key = idempotency_key
         self._monitor = monitor
-        content = {"exercise": exercise.id, **body.model_dump(mode="json", exclude_unset=True)}
+        self._grading = AttemptGrading(exercise, body)
+        self._now = datetime.now(UTC)
+        answers = body.model_dump(mode="json", exclude={"learner"}, exclude_unset=True)
+        self._submission = json.dumps(answers)
+        self._answers_digest = _digest(body.answers)
+        content = {"exercise": exercise.id, "learner": body.learner, **answers}
         self._request_digest = _digest(content)
 
-    async def recorded(self) -> RecordedAttempt:
+    async def recorded(self, request: Request) -> RecordedAttempt:
         """The attempt of this request. Raises StoreDownError, AttemptRefusedError, ProblemError."""
-        for _ in range(_TRIES):
-            standing = await self._store.standing(
-                self._exercise.id, self._body.learner, self._owner, self._key
-            )
+        standing = await self._store.standing(
+            self._exercise.id, self._body.learner, self._owner, self._key
+        )
+        while True:
             if standing.earlier is not None:
                 return self._same(standing.earlier)
-            now = datetime.now(UTC)
-            taken = ruling(self._exercise.attempts, standing.counted, now)
-            most = least(self._exercise.feedback_at(taken.ordinal), self._ceiling)
-            began = perf_counter()
-            report, outcome = graded_attempt(self._exercise, self._body, most)
-            if self._monitor is not None:
-                self._monitor.graded(report, perf_counter() - began)
-            new = self._new(taken, now, report)
-            written = await self._store.record(new, outcome)
-            if written is not None:
+            most = self._most(self._ruling(standing))
+            if not self._grading.has(most):
+                if self._grading.has_begun:
+                    await give_way(request)
+                self._grade(most)
+            written = await self._store.record(standing, self._after)
+            if isinstance(written, RecordedAttempt):
                 return written
-        raise StoreDownError("other attempts of the same learner came first each time")
+            standing = written
+
+    def _ruling(self, standing: Standing) -> Ruling:
+        return ruling(self._exercise.attempts, standing.counted, self._now)
+
+    def _most(self, taken: Ruling) -> FeedbackLevel:
+        """The most that the learner is told at this attempt."""
+        return least(self._exercise.feedback_at(taken.ordinal), self._ceiling)
+
+    def _grade(self, most: FeedbackLevel) -> None:
+        began = perf_counter()
+        report = self._grading.at(most).report
+        if self._monitor is not None:
+            self._monitor.graded(report, perf_counter() - began)
 
     def _same(self, earlier: RecordedAttempt) -> RecordedAttempt:
         if earlier.request_digest != self._request_digest:
@@ -168,18 +184,32 @@ class _Attempting:
             )
         return earlier
 
-    def _new(self, taken: Ruling, now: datetime, report: Report) -> NewAttempt:
-        body = self._body.model_dump(mode="json", exclude={"learner"}, exclude_unset=True)
+    def _after(self, standing: Standing) -> tuple[NewAttempt, Outcome] | None:
+        """The attempt after this standing, where it is allowed and needs no further grading."""
+        if standing.earlier is not None:
+            return None
+        try:
+            taken = self._ruling(standing)
+        except AttemptRefusedError:
+            return None
+        most = self._most(taken)
+        if not self._grading.has(most):
+            return None
+        graded = self._grading.at(most)
+        return self._new(taken, graded), graded.outcome
+
+    def _new(self, taken: Ruling, graded: AttemptReport) -> NewAttempt:
+        report = graded.report
         return NewAttempt(
             exercise=self._exercise.id,
             learner=self._body.learner,
             ordinal=taken.ordinal if report.gradable else None,
-            at=now,
+            at=self._now,
             is_late=taken.is_late,
             worth=taken.worth,
-            submission=json.dumps(body),
-            answers_digest=_digest(self._body.answers),
-            report=rendered(report).decode(),
+            submission=self._submission,
+            answers_digest=self._answers_digest,
+            report=graded.text,
             version=report.version,
             grader=report.grader,
             points=round(report.points * taken.worth, 6),

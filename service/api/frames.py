@@ -2,6 +2,7 @@
 
 from collections import OrderedDict
 from collections.abc import Hashable, Iterator, Mapping, Sequence, Set
+from functools import cache
 from typing import Any, Final
 
 import numpy as np
@@ -34,10 +35,11 @@ from service.figures.figure import plainest_view, subject_of
 from service.figures.mechanism import Configuration, MovableMechanism, mechanism_of
 from service.figures.scope import DrawingScope, free_scope
 from service.figures.table_figure import SeenMechanism, WrittenChain, table_figure
-from service.figures.table_formulas import table_formulas
-from service.figures.table_frames import TableFrames, table_frames
+from service.figures.table_formulas import TableFormulas, table_formulas
+from service.figures.table_frames import TableFrames, table_frames, table_to_draw
 from service.figures.view import View
 from service.grading.feedback import Finding, UnreadableAnswerError
+from service.grading.work_budget import WorkBudget
 from service.kinematics.transforms import Numbers
 
 _KEPT: Final = 64
@@ -179,14 +181,19 @@ def _table(
     amounts: Numbers,
 ) -> tuple[FramesOfTable, TableFrames | None]:
     """The frames of the table, as they are told and as they are drawn."""
+    budget = WorkBudget.of_drawing(with_figure=body.figure is not None)
     try:
-        found = table_frames(table.rows, table.convention, scope, numbers, amounts, body.angle_unit)
+        written = table_to_draw(table.rows, scope, budget, body.angle_unit)
     except UnreadableAnswerError as error:
         reason = _error(error.finding)
         nothing = FramesOfTable(
             complete=False, frames=[], row_joints=[], unread=[], error=reason, lost_freedoms=[]
         )
         return nothing, None
+    found = table_frames(written, table.convention, scope, numbers, amounts)
+    formulas = None
+    if table.formulas:
+        formulas = _printed(table_formulas(written, table.convention, scope, budget))
     drawn = FramesOfTable(
         complete=found.complete,
         frames=_plain(found.frames),
@@ -197,21 +204,22 @@ def _table(
         ],
         degrees_of_freedom=found.freedoms,
         lost_freedoms=[LostFreedom.model_validate(each) for each in found.lost],
-        formulas=_formulas(table, body, scope) if table.formulas else None,
+        formulas=formulas,
     )
     return drawn, found
 
 
-def _formulas(table: TableToDraw, body: FramesRequest, scope: DrawingScope) -> TableInFormulas:
-    found = table_formulas(table.rows, table.convention, scope, body.angle_unit)
+def _printed(found: TableFormulas) -> TableInFormulas:
+    # The cells of the converted table are those of the table itself, in other places.
+    formula = cache(_formula)
     converted = [
-        ConvertedRow(label=row.label, cells=[_formula(cell) for cell in row.cells])
+        ConvertedRow(label=row.label, cells=[formula(cell) for cell in row.cells])
         for row in found.converted
     ]
     return TableInFormulas(
-        cells=[[_formula(cell) for cell in row] for row in found.cells],
+        cells=[[formula(cell) for cell in row] for row in found.cells],
         converted=converted or None,
-        pose=[[_formula(entry) for entry in row] for row in found.pose] or None,
+        pose=[[formula(entry) for entry in row] for row in found.pose] or None,
     )
 
 

@@ -10,6 +10,7 @@ from alembic.util import CommandError
 from sqlalchemy import Connection, Engine, create_engine, event, make_url, text
 from sqlalchemy.exc import ArgumentError, SQLAlchemyError
 
+from service.attempts.database_file import DatabaseFile
 from service.attempts.errors import UnusableDatabaseError
 
 R = TypeVar("R")
@@ -24,16 +25,29 @@ _TRIES: Final = 5
 _DEADLOCK: Final = "40P01"
 
 
-def open_database(url: str) -> Engine:
+def open_database(url: str, *, create: bool = True) -> Engine:
     """The database at the URL, with the newest tables.
 
-    ``url`` is that of SQLAlchemy (postgresql://…, sqlite:///…) or the path of an SQLite file.
-    Raises UnusableDatabaseError.
+    ``url`` is that of SQLAlchemy (postgresql://…, sqlite:///…) or the path of an SQLite file, which
+    is made where there is none, if ``create``. Raises UnusableDatabaseError.
     """
-    engine = _engine(url)
     try:
+        engine = _engine(url)
+    except (ArgumentError, ValueError) as error:
+        # The URL may hold a password: it is not repeated.
+        raise UnusableDatabaseError("is no URL of a database and no path of a file") from error
+    is_sqlite = engine.dialect.name == "sqlite"
+    if is_sqlite and not create and not _is_there(engine.url.database or ""):
+        raise UnusableDatabaseError(f"{safe_url(engine)}: there is no such file")
+    try:
+        file = DatabaseFile(engine) if is_sqlite else None
         with engine.connect() as connection:
+            if file is not None and not file.note(connection):
+                raise UnusableDatabaseError("would be kept in memory and lost; name a file")
+            connection.rollback()
             _migrate(connection)
+    except ValueError as error:
+        raise UnusableDatabaseError("has parts that the database does not know") from error
     except SQLAlchemyError as error:
         raise UnusableDatabaseError(f"{safe_url(engine)}: {reason(error)}") from error
     except CommandError as error:
@@ -42,14 +56,15 @@ def open_database(url: str) -> Engine:
     return engine
 
 
+def _is_there(path: str) -> bool:
+    # Another spelling is SQLite's own affair: file:attempts.db?mode=ro, :memory:.
+    return path.startswith((":", "file:")) or not path or Path(path).exists()
+
+
 def _engine(url: str) -> Engine:
-    try:
-        parsed = make_url(url if "://" in url else f"sqlite:///{url}")
-    except ArgumentError as error:
-        # The URL may hold a password: it is not repeated.
-        raise UnusableDatabaseError("is no URL of a database and no path of a file") from error
+    parsed = make_url(url if "://" in url else f"sqlite:///{url}")
     match parsed.get_backend_name():
-        case "sqlite":
+        case "sqlite" if parsed.drivername in ("sqlite", "sqlite+pysqlite"):
             engine = create_engine(
                 parsed, connect_args={"timeout": _LOCK_WAIT}, hide_parameters=True
             )
@@ -69,8 +84,10 @@ def _engine(url: str) -> Engine:
                 hide_parameters=True,
                 connect_args={"connect_timeout": 3, "options": options},
             )
-        case other:
-            raise UnusableDatabaseError(f"{other} is not supported; use SQLite or PostgreSQL")
+        case _:
+            raise UnusableDatabaseError(
+                f"{parsed.drivername} is not supported; use SQLite or PostgreSQL"
+            )
 
 
 def _set_up_sqlite(connection: Any, _: object) -> None:

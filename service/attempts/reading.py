@@ -1,5 +1,6 @@
 """Recorded attempts as tutors read them: page by page, or one with all that is known of it."""
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
@@ -15,6 +16,7 @@ _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
 _TICK: Final = timedelta(microseconds=1)
 # Larger numbers are none that a database holds.
 _LARGEST: Final = 2**62
+_CURSOR: Final = re.compile(r"[0-9a-f]+\.[0-9a-f]+")
 
 
 def condition(wanted: AttemptFilter) -> ColumnElement[bool]:
@@ -96,10 +98,12 @@ def _cursor(last: ListedAttempt) -> str:
 
 
 def _place(cursor: str) -> tuple[datetime, int]:
+    if not _CURSOR.fullmatch(cursor):
+        raise BadCursorError(cursor)
     try:
         ticks, number = (int(part, 16) for part in cursor.split("."))
         if not (0 <= number < _LARGEST and 0 <= ticks < _LARGEST):
             raise BadCursorError(cursor)
         return _EPOCH + ticks * _TICK, number
-    except (ValueError, OverflowError) as error:
+    except OverflowError as error:
         raise BadCursorError(cursor) from error

@@ -1,7 +1,7 @@
 """Recording an attempt: exactly once, and under the next number of its learner."""
 
 import secrets
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any, Final
 
 from sqlalchemy import Connection, Table, bindparam, func, select
@@ -64,6 +64,28 @@ def record(connection: Connection, new: NewAttempt, outcome: Outcome) -> Recorde
         values | {"outcome": _outcome_id(connection, outcome)},
     )
     return None if number is None else RecordedAttempt(**values, number=number)
+
+
+# The attempt that a standing allows; None where it allows none, or another than was prepared.
+AttemptAfter = Callable[[Standing], tuple[NewAttempt, Outcome] | None]
+
+
+def record_next(
+    connection: Connection, before: Standing, attempt_after: AttemptAfter
+) -> RecordedAttempt | Standing:
+    """Write the attempt that the standing allows, also where others came first in the meantime.
+
+    Gives the standing instead where ``attempt_after`` has none for it.
+    """
+    now = before
+    while (attempt := attempt_after(now)) is not None:
+        new, outcome = attempt
+        written = record(connection, new, outcome)
+        if written is not None:
+            return written
+        # Each round another attempt has been recorded, by a job before or by another process.
+        now = standing(connection, new.exercise, new.learner, new.owner, new.idempotency_key)
+    return now
 
 
 def outcome_ids(connection: Connection, wanted: Iterable[Outcome]) -> dict[Outcome, int]:

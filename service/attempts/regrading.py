@@ -27,12 +27,10 @@ from sqlalchemy import (
 )
 
 from service.attempts.database import without_time_limit
-from service.attempts.graded import graded_attempt
-from service.attempts.outcome import Outcome
+from service.attempts.graded import AttemptGrading, AttemptReport
 from service.attempts.recording import insert_or_ignore, outcome_ids
 from service.attempts.tables import attempts, earlier_reports, regrade_queue
 from service.catalogue import Exercise, FeedbackLevel, least
-from service.formats.json import rendered
 from service.grading import Report
 from service.submissions.body import GradeRequest
 from service.version import VERSION
@@ -59,15 +57,6 @@ class RegradedAttempt:
     def is_changed(self) -> bool:
         """Whether the learner gets another result."""
         return self.before != self.after or bool(self.reasons)
-
-
-@dataclass(frozen=True, slots=True)
-class _Graded:
-    """A new report, as it is written, and what is counted of it."""
-
-    report: Report
-    text: str
-    outcome: Outcome
 
 
 class Regrading:
@@ -134,25 +123,32 @@ class Regrading:
         chosen = select(attempts).where(attempts.c.number.in_(numbers))
         return connection.execute(chosen.order_by(attempts.c.number)).all()
 
-    def _regraded(self, row: Row[Any]) -> "tuple[RegradedAttempt, _Graded]":
-        graded = self._graded(row.submission, self._exercise.feedback_at(row.ordinal or 1))
+    def _regraded(self, row: Row[Any]) -> tuple[RegradedAttempt, AttemptReport]:
+        before = json.loads(row.report)
+        # What a learner was not told once is not told later: the service may have had a ceiling
+        # that nobody has named to this process.
+        level = least(
+            self._exercise.feedback_at(row.ordinal or 1),
+            self._ceiling,
+            FeedbackLevel(before["feedback"]),
+        )
+        graded = self._graded(row.submission, level)
         report = graded.report
         after = round(report.points * row.worth, 6)
-        reasons = tuple(_reasons(json.loads(row.report), report))
+        reasons = tuple(_reasons(before, report))
         change = RegradedAttempt(
             row.id, row.learner, row.ordinal, row.points, after, report.max_points, reasons
         )
         return change, graded
 
-    def _grade(self, submission: str, level: FeedbackLevel) -> "_Graded":
+    def _grade(self, submission: str, level: FeedbackLevel) -> AttemptReport:
         body = GradeRequest.model_validate_json(submission)
-        report, outcome = graded_attempt(self._exercise, body, least(level, self._ceiling))
-        return _Graded(report, rendered(report).decode(), outcome)
+        return AttemptGrading(self._exercise, body).at(level)
 
     def _write(
         self,
         connection: Connection,
-        done: Sequence[tuple[Row[Any], RegradedAttempt, "_Graded"]],
+        done: Sequence[tuple[Row[Any], RegradedAttempt, AttemptReport]],
     ) -> None:
         now = datetime.now(UTC)
         ids = outcome_ids(connection, [graded.outcome for _, _, graded in done])

@@ -12,15 +12,13 @@ from sqlalchemy.exc import SQLAlchemyError
 from service.attempts.attempt import (
     AttemptFilter,
     ListedAttempt,
-    NewAttempt,
     RecordedAttempt,
     Standing,
 )
 from service.attempts.database import open_database, reason
 from service.attempts.errors import StoreDownError
-from service.attempts.outcome import Outcome
 from service.attempts.reading import AttemptHistory, history, page
-from service.attempts.recording import record, standing
+from service.attempts.recording import AttemptAfter, record_next, standing
 from service.attempts.statistics import exercise_statistics
 from service.attempts.tables import attempts
 from service.attempts.writer import AttemptWriter
@@ -80,10 +78,17 @@ class AttemptStore:
                 lambda connection: standing(connection, exercise, learner, owner, idempotency_key)
             )
 
-    async def record(self, new: NewAttempt, outcome: Outcome) -> RecordedAttempt | None:
-        """Write the attempt, durably; None where another took its ordinal or its key."""
+    async def record(
+        self, before: Standing, attempt_after: AttemptAfter
+    ) -> RecordedAttempt | Standing:
+        """Write the attempt that a standing allows, durably; see ``record_next``.
+
+        ``attempt_after`` is called in the thread that writes, while others wait for it.
+        """
         with self.measure("record"):
-            return await self._running.run(lambda connection: record(connection, new, outcome))
+            return await self._running.run(
+                lambda connection: record_next(connection, before, attempt_after)
+            )
 
     async def check(self) -> None:
         """Make sure that the database answers."""

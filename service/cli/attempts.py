@@ -37,18 +37,38 @@ commands = typer.Typer(
     add_completion=False,
 )
 
-ExerciseArgument = Annotated[str, typer.Argument(help="The id of an exercise.", show_default=False)]
 _MOST_SLIPS: Final = 15
+_MOST_LISTED: Final = 1_000_000
+
+
+def encodable(value: str | None) -> str | None:
+    """What was given to the program, if it is text that a database can hold; else it ends."""
+    if value is not None and not value.isascii():
+        try:
+            value.encode()
+        except UnicodeEncodeError:
+            give_up(f"{value.encode(errors='replace').decode()}: this is no text in UTF-8.")
+    return value
+
+
+ExerciseArgument = Annotated[
+    str,
+    typer.Argument(help="The id of an exercise.", show_default=False, callback=encodable),
+]
+ExerciseOption = Annotated[str | None, typer.Option(help="Only this exercise.", callback=encodable)]
 
 
 @contextmanager
-def database() -> Iterator[Engine]:
-    """The database of this installation; ends the program where it cannot be used."""
+def database(*, create: bool = False) -> Iterator[Engine]:
+    """The database of this installation; ends the program where it cannot be used.
+
+    A file is made where there is none only if ``create``.
+    """
     url = load_settings().database
     if url is None:
         give_up("No attempts are recorded here: DH_GRADER_DATABASE names no database.")
     try:
-        engine = open_database(url.get_secret_value())
+        engine = open_database(url.get_secret_value(), create=create)
     except UnusableDatabaseError as error:
         give_up(f"DH_GRADER_DATABASE: {error}")
     try:
@@ -61,9 +81,11 @@ def database() -> Iterator[Engine]:
 
 @commands.command("list")
 def list_attempts(
-    exercise: Annotated[str | None, typer.Option(help="Only this exercise.")] = None,
-    learner: Annotated[str | None, typer.Option(help="Only this learner.")] = None,
-    limit: Annotated[int, typer.Option(min=1, help="How many.")] = 20,
+    exercise: ExerciseOption = None,
+    learner: Annotated[
+        str | None, typer.Option(help="Only this learner.", callback=encodable)
+    ] = None,
+    limit: Annotated[int, typer.Option(min=1, max=_MOST_LISTED, help="How many.")] = 20,
 ) -> None:
     """List the newest attempts."""
     wanted = AttemptFilter(exercise, learner)
@@ -114,7 +136,7 @@ def _share(share: float | None) -> str:
 
 @commands.command("export")
 def export(
-    exercise: Annotated[str | None, typer.Option(help="Only this exercise.")] = None,
+    exercise: ExerciseOption = None,
     form: Annotated[
         GradesFormat,
         typer.Option(
@@ -164,12 +186,14 @@ def regrade(
 
 @commands.command("override")
 def override_points(
-    attempt: Annotated[str, typer.Argument(help="The id of an attempt.")],
+    attempt: Annotated[str, typer.Argument(help="The id of an attempt.", callback=encodable)],
     points: Annotated[
         float | None, typer.Argument(help="Its points; leave them out to withdraw earlier ones.")
     ] = None,
-    reason_given: Annotated[str, typer.Option("--reason", help="Why.")] = "",
-    author: Annotated[str | None, typer.Option("--by", help="Who. [your user name]")] = None,
+    reason_given: Annotated[str, typer.Option("--reason", help="Why.", callback=encodable)] = "",
+    author: Annotated[
+        str | None, typer.Option("--by", help="Who. [your user name]", callback=encodable)
+    ] = None,
 ) -> None:
     """Give an attempt other points than its report's, with a reason."""
     if not reason_given.strip():
@@ -191,7 +215,9 @@ def override_points(
 
 @commands.command("forget")
 def forget_learner(
-    learner: Annotated[str, typer.Argument(help="The learner, as the course names them.")],
+    learner: Annotated[
+        str, typer.Argument(help="The learner, as the course names them.", callback=encodable)
+    ],
     yes: Annotated[bool, typer.Option("--yes", help="Do not ask.")] = False,
 ) -> None:
     """Delete all that is recorded of a learner."""

@@ -10,7 +10,7 @@ from service.access.key_table import add_key, all_keys, revoke_key
 from service.access.key_text import new_key_text
 from service.access.keys import Key
 from service.attempts.database import in_transaction
-from service.cli.attempts import database
+from service.cli.attempts import database, encodable
 from service.cli.terminal import give_up, installed_exercise, stdout
 from service.formats.shared.plain_text import visible
 from service.settings import load_settings
@@ -26,7 +26,11 @@ commands = typer.Typer(
 def create(
     name: Annotated[
         str,
-        typer.Argument(help="What it is for, such as the name of a course.", show_default=False),
+        typer.Argument(
+            help="What it is for, such as the name of a course.",
+            show_default=False,
+            callback=encodable,
+        ),
     ],
     scope: Annotated[
         list[Scope] | None, typer.Option(help="What it may do besides grading. Repeatable.")
@@ -47,7 +51,7 @@ def create(
     text = new_key_text()
     digest = secret.key_digest(text)
     now = datetime.now(UTC)
-    with database() as engine:
+    with database(create=True) as engine:
         key = in_transaction(
             engine,
             lambda connection: add_key(
@@ -83,7 +87,11 @@ def list_keys() -> None:
 
 
 @commands.command("revoke")
-def revoke(key: Annotated[str, typer.Argument(help="The id of a key, as list shows it.")]) -> None:
+def revoke(
+    key: Annotated[
+        str, typer.Argument(help="The id of a key, as list shows it.", callback=encodable)
+    ],
+) -> None:
     """Revoke a key, and with it all tokens that it has made."""
     with database() as engine:
         now = datetime.now(UTC)

@@ -87,7 +87,7 @@ def work_off(exercise_id: str) -> None:
     settings = load_settings()
     assert settings.database is not None
     try:
-        engine = open_database(settings.database.get_secret_value())
+        engine = open_database(settings.database.get_secret_value(), create=False)
         regrading = Regrading(installed_exercise(exercise_id), settings.feedback)
         while in_transaction(engine, regrading.work):
             pass

@@ -1,16 +1,28 @@
 """The body of an attempt, and the attempt as recorded."""
 
 from datetime import datetime
-from typing import Annotated, Any
+from typing import Annotated, Any, Final
 
 from pydantic import BaseModel, Field, StringConstraints
 
 from service.grading import Report
 from service.submissions.body import GradeRequest
 
+# Characters that nobody sees, or that a list shows as one and the same sign (Unicode: controls,
+# format characters, blanks but the common one, default ignorables, private use, specials).
+_UNSEEN: Final = (
+    r"\u0000-\u001f\u007f-\u00a0\u00ad\u034f\u0600-\u0605\u061c\u06dd\u070f\u0890-\u0891\u08e2"
+    r"\u115f-\u1160\u1680\u17b4-\u17b5\u180b-\u180f\u2000-\u200f\u2028-\u202f\u205f-\u206f\u2800"
+    r"\u3000\u3164\ue000-\uf8ff\ufe00-\ufe0f\ufeff\uffa0\ufff0-\uffff"
+    # Regular expressions have no common escape for these.
+    "\U000110bd\U000110cd\U00013430-\U0001343f\U0001bca0-\U0001bca3\U0001d173-\U0001d17a"
+    "\U000e0000-\U0010ffff"
+)
+_WORD: Final = f"[^ {_UNSEEN}]+"
+# Two learners are never shown alike: single blanks stand between words alone.
 Learner = Annotated[
     str,
-    StringConstraints(min_length=1, max_length=200, pattern=r"^[^\x00-\x1f\x7f]+$"),
+    StringConstraints(min_length=1, max_length=200, pattern=f"^{_WORD}( {_WORD})*$"),
     Field(
         description="Who hands in, as the course names its learners; better an opaque id than a "
         "name. Nothing but equality is made of it."

@@ -121,7 +121,9 @@ class ConvertedRow(BaseModel):
 class TableInFormulas(BaseModel):
     """The table as formulas; what needs all cells is absent where one has no formula."""
 
-    cells: list[list[PrintedFormula]] = Field(description="Empty for a cell that is not read.")
+    cells: list[list[PrintedFormula]] = Field(
+        description="Empty for a cell that is not read, or too long to be printed."
+    )
     converted: list[ConvertedRow] | None = Field(
         None, description="Its equivalent in the other convention."
     )

@@ -24,7 +24,7 @@ _SHORT_NAME: Final = re.compile(r"(?<![A-Za-z\\])[A-Za-z]{1,2}(?![A-Za-z0-9_])")
 _NAME_OR_NUMBER: Final = re.compile(r"(?<![A-Za-z\\])[A-Za-z]+|[0-9][0-9.]*")
 # ½ is a quotient in brackets.
 _FRACTION: Final = re.compile("[¼-¾⅐-⅞↉]")
-_EXTRA_OF_FRACTION: Final = 3
+_EXTRA_OF_FRACTION: Final = 5
 # c12 is the cosine of a sum.
 _SHORTHAND: Final = re.compile(r"(?<![A-Za-z\\])[cs]\d{2}")
 _EXTRA_OF_DEGREES, _EXTRA_OF_SHORT_NAME, _EXTRA_OF_SHORTHAND = 10, 4, 3

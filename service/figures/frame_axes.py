@@ -21,21 +21,20 @@ def frame_axes(
 
     Axes that coincide are drawn once, with all their names.
     """
-    found: list[tuple[Numbers, Numbers, str, list[str]]] = []
-    for frame, index in zip(frames, labels, strict=True):
-        for i, axis in enumerate("xyz"):
-            origin, direction = frame[:3, 3], frame[:3, i]
-            for known_origin, known_direction, _, names in found:
-                apart = np.abs([known_origin - origin, (known_direction - direction) * length])
-                if apart.max() < _SAME * length:
-                    names.append(f"{axis}{index}")
-                    break
-            else:
-                found.append((origin, direction, axis, [f"{axis}{index}"]))
+    origins = np.repeat(frames[:, :3, 3], 3, axis=0)
+    steps = length * np.swapaxes(frames[:, :3, :3], 1, 2).reshape(-1, 3)
+    both = np.hstack([origins, steps])
+    same = np.abs(both[:, None] - both).max(axis=-1) < _SAME * length
+    found: dict[int, list[str]] = {}
+    for k in range(len(both)):
+        name = f"{'xyz'[k % 3]}{labels[k // 3]}"
+        known = next((each for each in found if same[k, each]), k)
+        found.setdefault(known, []).append(name)
     drawn: list[str] = []
     tips = []
-    for origin, direction, axis, names in found:
-        line = camera.seen(np.array([origin, origin + length * direction]))
+    for k, names in found.items():
+        axis = "xyz"[k % 3]
+        line = camera.seen(np.array([origins[k], origins[k] + steps[k]]))
         room.take_line(line, 2.0)
         drawn.append(polyline(line, f"frame frame-{axis}"))
         step = line[1] - line[0]

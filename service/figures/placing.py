@@ -16,6 +16,9 @@ from service.kinematics.transforms import Numbers
 _APART = 3.0
 # Half the height of a label: letters with their indices.
 HALF_HEIGHT = 0.56 * SIZE
+_TURNS = np.radians([-35, 35, 145, -145, 0, 180, 90, -90, 65, -65, 115, -115])
+# Places around a point; labels are wider than high.
+_AROUND = np.stack([1.25 * np.cos(_TURNS), np.sin(_TURNS)], axis=-1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,10 +112,7 @@ class TakenRoom:
 
 def around(point: Numbers, near: float) -> list[Numbers]:
     """Points around a point, the nearest first."""
-    turns = np.radians([-35, 35, 145, -145, 0, 180, 90, -90, 65, -65, 115, -115])
-    # Labels are wider than high.
-    flat = np.stack([1.25 * np.cos(turns), np.sin(turns)], axis=-1)
-    return [point + near * growth * each for growth in (1.0, 1.3, 1.7, 2.2) for each in flat]
+    return [*np.concatenate([point + near * growth * _AROUND for growth in (1.0, 1.3, 1.7, 2.2)])]
 
 
 def _farther(wanted: list[Numbers]) -> Iterator[Numbers]:

@@ -114,8 +114,9 @@ def _product(one: Terms, other: Terms) -> Terms:
     total = Terms()
     for left, m in one.items():
         for right, n in other.items():
-            total = _plus(total, {left + right: m * n})
-    return total
+            product = left + right
+            total[product] = total.get(product, 0) + m * n
+    return {product: count for product, count in total.items() if count}
 
 
 def _plus(one: Terms, other: Terms) -> Terms:

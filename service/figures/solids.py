@@ -53,12 +53,12 @@ class Solid:
 
 def numbers(*values: float) -> str:
     """Coordinates as SVG has them."""
-    return " ".join(f"{value:.2f}".rstrip("0").rstrip(".") for value in np.asarray(values) + 0.0)
+    return " ".join(f"{value + 0.0:.2f}".rstrip("0").rstrip(".") for value in values)
 
 
 def points_text(points: Numbers) -> str:
     """Points ``(points, 2)`` as SVG has them."""
-    return " ".join(f"{numbers(x)},{numbers(y)}" for x, y in points)
+    return " ".join(f"{numbers(x)},{numbers(y)}" for x, y in points.tolist())
 
 
 def polygon(points: Numbers, kind: str) -> str:
@@ -204,14 +204,15 @@ def ground(camera: Camera, base: Numbers, normal: Numbers, half: float) -> Solid
 def in_order(camera: Camera, solids: Sequence[Solid]) -> list[Solid]:
     """The solids from the farthest to the nearest: where two overlap, the nearer comes later."""
     behind: dict[int, set[int]] = {i: set() for i in range(len(solids))}
-    for i, one in enumerate(solids):
+    shapes = [_Shape.of(camera, solid) for solid in solids]
+    for i, one in enumerate(shapes):
         for j in range(i):
-            nearer = _nearer(camera, one, solids[j])
+            nearer = one.nearer_than(shapes[j])
             if nearer > 0:
                 behind[i].add(j)
             elif nearer < 0:
                 behind[j].add(i)
-    middle = [float(camera.nearness(solid.spine).mean()) for solid in solids]
+    middle = [float(shape.nearness.mean()) for shape in shapes]
     left, found = set(behind), list[int]()
     while left:
         # Where solids hide each other in a circle, the farthest comes first.
@@ -222,11 +223,35 @@ def in_order(camera: Camera, solids: Sequence[Solid]) -> list[Solid]:
     return [solids[i] for i in found]
 
 
-def _nearer(camera: Camera, one: Solid, other: Solid) -> float:
-    """By how much the first is nearer where they overlap in the picture; 0 where they do not."""
-    apart = camera.seen(one.spine)[:, None] - camera.seen(other.spine)[None]
-    overlap = np.linalg.norm(apart, axis=-1) < one.radius + other.radius
-    if not overlap.any():
-        return 0.0
-    ahead = camera.nearness(one.spine)[:, None] - camera.nearness(other.spine)[None]
-    return float(ahead[overlap].mean())
+@dataclass(frozen=True, slots=True)
+class _Shape:
+    """A solid in the picture: its spine ``(points, 2)``, its corners, and how near it is."""
+
+    spine: Numbers
+    left: float
+    top: float
+    right: float
+    bottom: float
+    nearness: Numbers
+    radius: float
+
+    @classmethod
+    def of(cls, camera: Camera, solid: Solid) -> "_Shape":
+        spine = camera.seen(solid.spine)
+        left, top = spine.min(axis=0).tolist()
+        right, bottom = spine.max(axis=0).tolist()
+        nearness = camera.nearness(solid.spine)
+        return cls(spine, left, top, right, bottom, nearness, solid.radius)
+
+    def nearer_than(self, other: "_Shape") -> float:
+        """By how much it is nearer where they overlap in the picture; 0 where they do not."""
+        reach = self.radius + other.radius
+        # Most solids are far from each other.
+        across = max(self.left - other.right, other.left - self.right)
+        if max(across, self.top - other.bottom, other.top - self.bottom) > reach:
+            return 0.0
+        overlap = np.linalg.norm(self.spine[:, None] - other.spine, axis=-1) < reach
+        if not overlap.any():
+            return 0.0
+        ahead = self.nearness[:, None] - other.nearness
+        return float(ahead[overlap].mean())

@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from service.expressions import AngleUnit, Expression, ExpressionError, read
+from service.expressions import Expression, ExpressionError, read, reading_cost
 from service.figures.pose_terms import LongPoseError, pose_texts
 from service.figures.scope import DrawingScope
-from service.figures.table_frames import cell_reader
-from service.grading.reading.table import read_table
+from service.grading.diagnosis.formula_rewriting import nodes
+from service.grading.reading.table import StudentTable
+from service.grading.work_budget import WorkBudget
 from service.kinematics.chain import ALPHA, A, Row, modified_rows, standard_rows
 from service.kinematics.dh import Convention
 
@@ -26,9 +27,9 @@ class RowInFormulas:
 class TableFormulas:
     """What a table says as formulas.
 
-    ``cells`` has None for one that is not read. Without such a cell there are the rows that say
-    the same in the other convention, and the entries ``(4, 4)`` of the pose of the last frame in
-    the base frame, unless they would be too long to be of use.
+    ``cells`` has None for one that is not read, or too long to be printed. Without such a cell
+    there are the rows that say the same in the other convention, and the entries ``(4, 4)`` of the
+    pose of the last frame in the base frame, unless they would be too long to be of use.
     """
 
     cells: tuple[tuple[Expression | None, ...], ...]
@@ -37,21 +38,27 @@ class TableFormulas:
 
 
 def table_formulas(
-    answer: object, convention: Convention, scope: DrawingScope, angle_unit: AngleUnit = "radians"
+    written: StudentTable, convention: Convention, scope: DrawingScope, budget: WorkBudget
 ) -> TableFormulas:
-    """The formulas of a table; its cells are read as those of ``table_frames``.
-
-    Raises UnreadableAnswerError where there are no rows.
-    """
-    written = read_table(answer, cell_reader(scope, angle_unit))
-    cells = tuple(tuple(row.expressions) for row in written.rows)
+    """The formulas of a table, as many as the budget lets be printed."""
+    cells = tuple(
+        tuple(cell if cell and _may_print(cell, budget) else None for cell in row.expressions)
+        for row in written.rows
+    )
     rows = [(a, alpha, d, theta) for a, alpha, d, theta in cells if a and alpha and d and theta]
-    if len(rows) < len(cells):
+    if not rows or len(rows) < len(cells):
         return TableFormulas(cells)
     zero = read(_ZERO_TEXT, scope.vocabulary)
     return TableFormulas(
-        cells, _converted(rows, convention, zero), _pose(rows, convention, zero, scope)
+        cells,
+        # Its cells are those of the table.
+        _converted(rows, convention, zero),
+        _pose(rows, convention, zero, scope, budget),
     )
+
+
+def _may_print(formula: Expression, budget: WorkBudget) -> bool:
+    return budget.charge_printing(sum(1 for _ in nodes(formula.tree)))
 
 
 def _converted(
@@ -79,12 +86,19 @@ def _has_x(row: Row[Expression]) -> bool:
 
 
 def _pose(
-    rows: Sequence[Row[Expression]], convention: Convention, zero: Expression, scope: DrawingScope
+    rows: Sequence[Row[Expression]],
+    convention: Convention,
+    zero: Expression,
+    scope: DrawingScope,
+    budget: WorkBudget,
 ) -> tuple[tuple[Expression, ...], ...]:
     modified = rows if convention is Convention.MODIFIED else modified_rows(rows, zero)
     try:
-        return tuple(
-            tuple(read(text, scope.vocabulary) for text in row) for row in pose_texts(modified)
-        )
+        texts = pose_texts(modified)
+        # Whatever is longer is read no further than that.
+        if not budget.charge_reading(sum(reading_cost(each) for row in texts for each in row)):
+            return ()
+        pose = tuple(tuple(read(each, scope.vocabulary) for each in row) for row in texts)
     except (LongPoseError, ExpressionError):
         return ()
+    return pose if all(_may_print(entry, budget) for row in pose for entry in row) else ()

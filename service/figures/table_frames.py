@@ -14,6 +14,7 @@ from service.grading.feedback import Finding, reading_error
 from service.grading.reading.entry import Reader
 from service.grading.reading.table import StudentRow, StudentTable, read_table
 from service.grading.samples import SAMPLES, Samples
+from service.grading.work_budget import WorkBudget
 from service.kinematics.chain import COLUMNS, Table, frames
 from service.kinematics.dh import Convention
 from service.kinematics.jacobian import coincident, rank, space_jacobian
@@ -61,20 +62,29 @@ class TableFrames:
     lost: tuple[FreedomLoss, ...] = ()
 
 
+def table_to_draw(
+    answer: object, scope: DrawingScope, budget: WorkBudget, angle_unit: AngleUnit = "radians"
+) -> StudentTable:
+    """A table as it would be handed in; its cells are read as grading reads them.
+
+    Raises UnreadableAnswerError where there are no rows.
+    """
+    # Nobody asks for its numbers at these samples.
+    samples = Samples({variable.name: np.full(SAMPLES, 0.5) for variable in scope.variables})
+    return read_table(answer, Reader(scope.vocabulary, samples, angle_unit, "m", budget))
+
+
 def table_frames(
-    answer: object,
+    written: StudentTable,
     convention: Convention,
     scope: DrawingScope,
     numbers: Mapping[str, float],
     amounts: Numbers,
-    angle_unit: AngleUnit = "radians",
 ) -> TableFrames:
     """The frames of a table at values of the joint variables, ``(configurations, joints)``.
 
-    ``answer`` is a table as it would be handed in; its cells are read as grading reads them.
-    ``numbers`` are those of all symbols. Raises UnreadableAnswerError where there are no rows.
+    ``numbers`` are those of all symbols.
     """
-    written = read_table(answer, cell_reader(scope, angle_unit))
     count = len(amounts)
     values = {name: np.full(count + _GENERIC, number) for name, number in numbers.items()}
     rng = np.random.default_rng(0)
@@ -105,12 +115,6 @@ def _symbols(row: StudentRow) -> Set[str]:
 def _joint(symbols: Set[str], scope: DrawingScope) -> Joint | None:
     """The first joint whose variable is among the symbols of a row."""
     return next((joint for joint in scope.joints if joint.variable in symbols), None)
-
-
-def cell_reader(scope: DrawingScope, angle_unit: AngleUnit) -> Reader:
-    """A reader of cells whose numbers at samples nobody asks for."""
-    samples = Samples({variable.name: np.full(SAMPLES, 0.5) for variable in scope.variables})
-    return Reader(scope.vocabulary, samples, angle_unit, "m")
 
 
 def _numbers(written: StudentTable, values: Mapping[str, Numbers], count: int) -> Table:

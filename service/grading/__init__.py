@@ -1,7 +1,7 @@
 """Answers and an exercise in, a report out. Pure: no clock, no disk, no network."""
 
 from service.catalogue import FeedbackLevel
-from service.grading.grade import Submission, UnknownPartError, grade
+from service.grading.grade import GradedAnswers, Submission, UnknownPartError, grade, graded_answers
 from service.grading.report import (
     CellReport,
     Correction,
@@ -20,6 +20,7 @@ __all__ = [
     "Correction",
     "Feedback",
     "FeedbackLevel",
+    "GradedAnswers",
     "PartReport",
     "Place",
     "ReadEntry",
@@ -30,4 +31,5 @@ __all__ = [
     "UnknownPartError",
     "Verdict",
     "grade",
+    "graded_answers",
 ]

@@ -1,10 +1,20 @@
-"""Findings: the messages of a grading, before the feedback level decides what is visible."""
+"""Findings, the messages on them, and what a feedback level tells of these."""
 
-from collections.abc import Iterable, Sequence, Set
+from collections.abc import Callable, Iterable, Sequence, Set
 from dataclasses import dataclass, replace
+from typing import Final
 
 from service.catalogue import FeedbackLevel
-from service.grading.report import CellReport, Correction, Feedback, PartReport, Place, Severity
+from service.grading.report import (
+    CellReport,
+    Correction,
+    Feedback,
+    PartReport,
+    Place,
+    RowReport,
+    Severity,
+    Verdict,
+)
 
 # In a counterexample, what the entry gives, and the right number, which only a tutor is told.
 YOURS = "yours"
@@ -30,12 +40,10 @@ class Finding:
     reading: bool = False
     suggestion: str | None = None
 
-    def visible(self, level: FeedbackLevel, places: tuple[Place, ...] = ()) -> Feedback | None:
-        """The message at this level, or None where the level keeps it back."""
-        if level in _VERDICTS_ONLY and not self.reading:
-            return None
+    def message(self, places: tuple[Place, ...] = (), *, corrects: bool) -> Feedback:
+        """The message, which tells the correction only where it ``corrects``."""
         correction, values = self.correction or None, self.values
-        if level is not FeedbackLevel.FULL:
+        if not corrects:
             correction = None
             values = values and {name: values[name] for name in values if name != EXPECTED}
         return Feedback(
@@ -47,10 +55,8 @@ class Finding:
             suggestion=self.suggestion,
             correction=Correction(correction) if isinstance(correction, str) else correction,
             values=values,
+            reading=self.reading or None,
         )
-
-
-_VERDICTS_ONLY = (FeedbackLevel.VERDICTS, FeedbackLevel.SCORE)
 
 
 def reading_error(code: str, message: str, span: tuple[int, int] | None = None) -> Finding:
@@ -78,14 +84,95 @@ ROUNDED = Finding(
 )
 
 
-def visible_messages(
-    findings: tuple[Finding, ...], level: FeedbackLevel, places: tuple[Place, ...] = ()
-) -> tuple[Feedback, ...]:
-    """The messages that the level lets through, all of them about the same ``places``."""
-    if not findings:
-        return ()
-    feedback = (finding.visible(level, places) for finding in findings)
-    return tuple(message for message in feedback if message is not None)
+Messages = tuple[Feedback, ...]
+
+_TELLS_HINTS: Final = (FeedbackLevel.FULL, FeedbackLevel.HINTS)
+# The note on the reading that a slip makes needless where it is told, by the slip's code.
+_NOTES_ON: Final = {"swapped_atan2": "atan2_order"}
+
+
+def told_at(
+    parts: Iterable[PartReport], level: FeedbackLevel, left_out: Feedback | None
+) -> tuple[PartReport, ...]:
+    """The parts with the messages that the level lets through, each told once.
+
+    ``left_out`` says that something was not explained for want of work, if so. Corrections and
+    right values are left out where messages are made, since they need not be worked out then.
+    """
+    tells_hints = level in _TELLS_HINTS
+    visible = _with_hints if tells_hints else _on_reading
+    told = [told_once(_filtered(part, visible)) for part in parts]
+    if left_out is not None and tells_hints:
+        told = _with_left_out(told, left_out)
+    if level is FeedbackLevel.SCORE:
+        told = [_without_rows(part) for part in told]
+    return tuple(told)
+
+
+def _filtered(part: PartReport, visible: Callable[[Messages], Messages]) -> PartReport:
+    """The part with the visible ones of its messages."""
+    rows = tuple(
+        _filtered_row(row, visible)
+        if row.feedback or any(cell.feedback for cell in row.cells)
+        else row
+        for row in part.rows
+    )
+    return replace(part, rows=rows, feedback=visible(part.feedback))
+
+
+def _filtered_row(row: RowReport, visible: Callable[[Messages], Messages]) -> RowReport:
+    cells = tuple(
+        replace(cell, feedback=visible(cell.feedback)) if cell.feedback else cell
+        for cell in row.cells
+    )
+    return replace(row, cells=cells, feedback=visible(row.feedback))
+
+
+def _with_hints(messages: Messages) -> Messages:
+    needless = {_NOTES_ON[message.code] for message in messages if message.code in _NOTES_ON}
+    return tuple(_unmarked(each) for each in messages if each.code not in needless)
+
+
+def _on_reading(messages: Messages) -> Messages:
+    """Those that say what could not be read, or how something was: no hints."""
+    return tuple(_unmarked(each) for each in messages if each.reading)
+
+
+def _unmarked(message: Feedback) -> Feedback:
+    return replace(message, reading=None) if message.reading else message
+
+
+def _with_left_out(parts: list[PartReport], left_out: Feedback) -> list[PartReport]:
+    """The parts; the first one that has a wrong cell without a message says that there are such."""
+    for i, part in enumerate(parts):
+        if _has_unexplained_cells(part):
+            told = replace(part, feedback=(*part.feedback, left_out))
+            return [*parts[:i], told, *parts[i + 1 :]]
+    return parts
+
+
+def _has_unexplained_cells(part: PartReport) -> bool:
+    messages = [each for each in part.feedback if each.severity is Severity.ERROR]
+    if any(message.places is None for message in messages):
+        return False
+    told = {(place.row, place.cell) for each in messages for place in each.places or ()}
+    return any(
+        cell.verdict is Verdict.INCORRECT and not cell.feedback and not row.feedback
+        for row in part.rows
+        for cell in row.cells
+        if (row.label, cell.label) not in told and (row.label, None) not in told
+    )
+
+
+def _without_rows(report: PartReport) -> PartReport:
+    """The bare mark, with what could not be read: that is no hint, and a student must know it."""
+    reading = tuple(
+        replace(message, places=(Place(row.label, cell.label),))
+        for row in report.rows
+        for cell in row.cells
+        for message in cell.feedback
+    )
+    return replace(report, rows=(), feedback=(*report.feedback, *reading))
 
 
 # Notes that say all they have to say in their words: shared by several cells, they are told once,

@@ -3,17 +3,18 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Final
 
 from service.catalogue import Exercise, FeedbackLevel, PartSpec
 from service.expressions import AngleUnit
-from service.grading.feedback import Finding, UnreadableAnswerError, told_once
+from service.grading.feedback import Finding, UnreadableAnswerError, told_at
 from service.grading.follow_through import STANDS_STILL, can_carry, follows_from
 from service.grading.judging.marks import has_earned, part_report, unjudged_report
 from service.grading.judging.own_frames.remarks import OWN_FRAME_CHOICE
 from service.grading.kinds import KINDS
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.entry import Reader
-from service.grading.report import PartReport, Place, Report, Severity, Verdict, rounded_points
+from service.grading.report import PartReport, Report, Severity, Verdict, rounded_points
 from service.grading.samples import draw
 from service.grading.work_budget import WorkBudget
 from service.version import VERSION
@@ -43,12 +44,60 @@ class UnknownPartError(ValueError):
         )
 
 
+_WORK_LIMIT: Final = Finding(
+    "work_limit",
+    "Not every mistake is explained: there are too many for one report. Correct those that are "
+    "explained, then check again.",
+    severity=Severity.INFO,
+).message(corrects=False)
+
+
+@dataclass(frozen=True, slots=True)
+class GradedAnswers:
+    """Answers graded once, whose report can be told at several levels.
+
+    ``corrects`` says that corrections were worked out, ``has_left_out`` that something was not
+    explained for want of work; ``parts`` have all their messages.
+    """
+
+    exercise: Exercise
+    parts: tuple[PartReport, ...]
+    corrects: bool
+    has_left_out: bool
+
+    def can_tell(self, level: FeedbackLevel) -> bool:
+        """Whether this grading has what a report of the level tells, no less and no more."""
+        return self.corrects == (level is FeedbackLevel.FULL)
+
+    def report(self, level: FeedbackLevel) -> Report:
+        """The report at a level that it can tell."""
+        assert self.can_tell(level)
+        points = rounded_points(sum(part.points for part in self.parts))
+        max_points = rounded_points(sum(part.max_points for part in self.parts))
+        return Report(
+            exercise=self.exercise.id,
+            version=self.exercise.version,
+            grader=VERSION,
+            feedback=level,
+            gradable=any(map(_was_read, self.parts)),
+            points=points,
+            max_points=max_points,
+            score=round(points / max_points, 6),
+            parts=told_at(self.parts, level, _WORK_LIMIT if self.has_left_out else None),
+        )
+
+
 def grade(exercise: Exercise, submission: Submission) -> Report:
     """The report on a submission. Pure: the same submission gives the same report.
 
     Raises UnknownPartError for a part that does not exist; nothing else that a student hands in
     raises anything.
     """
+    return graded_answers(exercise, submission).report(submission.feedback)
+
+
+def graded_answers(exercise: Exercise, submission: Submission) -> GradedAnswers:
+    """The answers of a submission graded, for a report at its level and others. See ``grade``."""
     for part_id in submission.answers:
         if exercise.part(part_id) is None:
             raise UnknownPartError(part_id, exercise)
@@ -56,28 +105,13 @@ def grade(exercise: Exercise, submission: Submission) -> Report:
     samples = draw(exercise, submission.answers, degrees=degrees)
     budget = WorkBudget(answers=submission.answers)
     reader = Reader.of(exercise, samples, submission.angle_unit, budget)
-    grading = Grading(exercise, samples, reader, submission.feedback, submission.echo)
+    corrects = submission.feedback is FeedbackLevel.FULL
+    grading = Grading(exercise, samples, reader, corrects=corrects, echo=submission.echo)
     graded: dict[str, _Graded] = {}
     for part in exercise.parts:
         graded[part.id] = _graded(part, submission.answers, graded, grading)
-    parts = [told_once(each.report) for each in graded.values()]
-    if budget.has_left_out:
-        parts = _with_work_limit(parts, grading)
-    if grading.level is FeedbackLevel.SCORE:
-        parts = [_without_rows(part) for part in parts]
-    points = rounded_points(sum(part.points for part in parts))
-    max_points = rounded_points(sum(part.max_points for part in parts))
-    return Report(
-        exercise=exercise.id,
-        version=exercise.version,
-        grader=VERSION,
-        feedback=submission.feedback,
-        gradable=any(_was_read(each.report) for each in graded.values()),
-        points=points,
-        max_points=max_points,
-        score=round(points / max_points, 6),
-        parts=tuple(parts),
-    )
+    parts = tuple(each.report for each in graded.values())
+    return GradedAnswers(exercise, parts, corrects, budget.has_left_out)
 
 
 @dataclass(frozen=True)
@@ -107,36 +141,6 @@ class _Graded:
         return can_carry(self.chain, grading)
 
 
-_WORK_LIMIT = Finding(
-    "work_limit",
-    "Not every mistake is explained: there are too many for one report. Correct those that are "
-    "explained, then check again.",
-    severity=Severity.INFO,
-)
-
-
-def _with_work_limit(parts: list[PartReport], grading: Grading) -> list[PartReport]:
-    """The parts; the first one that has a wrong cell without a message says that there are such."""
-    for i, part in enumerate(parts):
-        if _has_unexplained_cells(part):
-            told = replace(part, feedback=(*part.feedback, *grading.visible((_WORK_LIMIT,))))
-            return [*parts[:i], told, *parts[i + 1 :]]
-    return parts
-
-
-def _has_unexplained_cells(part: PartReport) -> bool:
-    messages = [each for each in part.feedback if each.severity is Severity.ERROR]
-    if any(message.places is None for message in messages):
-        return False
-    told = {(place.row, place.cell) for each in messages for place in each.places or ()}
-    return any(
-        cell.verdict is Verdict.INCORRECT and not cell.feedback and not row.feedback
-        for row in part.rows
-        for cell in row.cells
-        if (row.label, cell.label) not in told and (row.label, None) not in told
-    )
-
-
 def _graded(
     part: PartSpec, answers: Mapping[str, object], earlier: Mapping[str, _Graded], grading: Grading
 ) -> _Graded:
@@ -151,13 +155,13 @@ def _graded(
     try:
         read = kind.read(part, answer, grading)
     except UnreadableAnswerError as error:
-        messages = grading.visible((error.finding,))
+        messages = grading.messages((error.finding,))
         return _Graded(part, unjudged_report(part, Verdict.UNREADABLE, messages), None)
     if read is None:
         return _Graded(part, unjudged_report(part, Verdict.MISSING), None)
     judged = kind.judge(part, read, grading)
     if judged.stands_still:
-        messages = grading.visible((STANDS_STILL,))
+        messages = grading.messages((STANDS_STILL,))
         # Who let no joint move has chosen no frames.
         others = (each for each in judged.feedback if each.code != OWN_FRAME_CHOICE)
         judged = replace(judged, feedback=(*messages, *others))
@@ -168,7 +172,7 @@ def _graded(
         by_student = kind.judge(part, read, replace(grading, following=True))
         following = part_report(part, by_student)
         if following.points > report.points:
-            messages = grading.visible((follows_from(followed.part),))
+            messages = grading.messages((follows_from(followed.part),))
             report = replace(
                 following, follow_through=True, feedback=(*messages, *following.feedback)
             )
@@ -185,17 +189,6 @@ def _followed(
         if answers.get(part.id) is not None:
             return earlier[part.id]
     return None
-
-
-def _without_rows(report: PartReport) -> PartReport:
-    """The bare mark, with what could not be read: that is no hint, and a student must know it."""
-    reading = tuple(
-        replace(message, places=(Place(row.label, cell.label),))
-        for row in report.rows
-        for cell in row.cells
-        for message in cell.feedback
-    )
-    return replace(report, rows=(), feedback=(*report.feedback, *reading))
 
 
 def _was_read(part: PartReport) -> bool:

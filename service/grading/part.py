@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any, Protocol
 
-from service.catalogue import Exercise, FeedbackLevel
+from service.catalogue import Exercise
 from service.expressions.printing.spelling import Spelling, spelling_of
-from service.grading.feedback import Finding, visible_messages
+from service.grading.feedback import Finding
 from service.grading.reading.entry import Entry, Reader
 from service.grading.report import Feedback, Place, RowReport, Verdict
 from service.grading.samples import Samples
@@ -41,7 +41,8 @@ class StudentChain:
 class Grading:
     """One submission being graded: everything that an answer kind may use.
 
-    ``explains`` says that what is wrong is explained, and not only judged.
+    ``corrects`` says that corrections are told, so that they need to be worked out, ``explains``
+    that what is wrong is explained, and not only judged.
     ``echo`` says that each cell is reported as it was understood. ``student_chain`` is the earlier
     answer that the part follows from, where there is one. With
     ``following`` the part is judged by that answer and not by the reference.
@@ -50,7 +51,7 @@ class Grading:
     exercise: Exercise
     samples: Samples
     reader: Reader
-    level: FeedbackLevel
+    corrects: bool = False
     echo: bool = False
     student_chain: StudentChain | None = None
     following: bool = False
@@ -60,14 +61,14 @@ class Grading:
         """Whether the budget has so much work left for an explanation; it is taken from it."""
         return self.explains and self.reader.budget.affords(work)
 
-    def visible(
+    def messages(
         self, findings: tuple[Finding, ...], places: tuple[Place, ...] = ()
     ) -> tuple[Feedback, ...]:
-        """The findings as messages, as far as the feedback level lets them through.
+        """The findings as messages; the feedback level decides later which of them are told.
 
         ``places`` are those that they are about, where they do not stand with them.
         """
-        return visible_messages(findings, self.level, places)
+        return tuple(finding.message(places, corrects=self.corrects) for finding in findings)
 
     def spelling(self, entries: Iterable[Entry]) -> Spelling:
         """The spelling of the entries of a part, in which the student is answered."""
@@ -99,11 +100,6 @@ class Grading:
         joints = (joint.variable for joint in self.exercise.joints)
         names = {variable.name for variable in self.exercise.variables}
         return frozenset(names.difference(joints, *read))
-
-    @property
-    def corrects(self) -> bool:
-        """Whether corrections are told, so that they need to be worked out."""
-        return self.level is FeedbackLevel.FULL
 
 
 def _length(entry: Entry) -> int:

@@ -4,8 +4,11 @@ Plain frozen dataclasses. A field that is None is left out where a report is sen
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Annotated
+
+from pydantic import Field
 
 from service.catalogue import FeedbackLevel
 
@@ -61,7 +64,7 @@ class Feedback:
     pasted. ``suggestion`` is the student's own text, repaired where it cannot be read.
     ``correction`` is told at the level full only. ``values`` is a counterexample, for the first of
     the places: the values of the symbols, and "yours", the value of the entry there; at the level
-    full "expected", too.
+    full "expected", too. ``reading`` marks one on the reading of a text, until the report is told.
     """
 
     code: str
@@ -72,6 +75,7 @@ class Feedback:
     suggestion: str | None = None
     correction: Correction | None = None
     values: dict[str, float | str] | None = None
+    reading: Annotated[bool | None, Field(exclude=True)] = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,8 +3,10 @@
 Counted work is the same on every machine, so that the same submission gives the same report.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Self
 
 from service.expressions.reading_work import reading_cost
 from service.grids.limits import GRID_LIMITS
@@ -35,6 +37,12 @@ SYMBOL_WORK, PASTED_WORK, REPAIR_WORK = 1 / 100, 1 / 800, 1.5
 # The pose of a seven-joint arm has 57,000 as MathML. Nobody looks at longer formulas.
 MAX_PRINTED = 60_000
 
+# What a request for a drawing may cost, all of it in symbols that are read: the table itself, its
+# figure, and the formulas printed for it. Those of a seven-joint arm cost 13,700.
+MAX_SYMBOLS_DRAWN = 16_000
+SYMBOLS_PER_FIGURE = 2_200
+SYMBOLS_PER_PRINTED_NODE = 2.5
+
 
 @dataclass(slots=True)
 class WorkBudget:
@@ -61,6 +69,11 @@ class WorkBudget:
     unreadable: set[object] = field(default_factory=set)
     answers: object = None
     _expected: int = -1
+
+    @classmethod
+    def of_drawing(cls, *, with_figure: bool) -> Self:
+        """The budget of a request for the frames, the formulas and the figure of a table."""
+        return cls(MAX_SYMBOLS_DRAWN - (SYMBOLS_PER_FIGURE if with_figure else 0))
 
     @property
     def left(self) -> float:
@@ -99,6 +112,10 @@ class WorkBudget:
         """Count a text that is to be read; whether it may be."""
         self.symbols -= symbols
         return self.symbols >= 0
+
+    def charge_printing(self, nodes: int) -> bool:
+        """Count a formula of so many nodes that is to be printed; whether it may be."""
+        return self.charge_reading(math.ceil(SYMBOLS_PER_PRINTED_NODE * nodes))
 
     def charge_repair(self, text: object, tried: int) -> None:
         """Count an unreadable text, once, for which texts of so many symbols were tried."""

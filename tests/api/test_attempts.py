@@ -1,5 +1,7 @@
+import asyncio
 import json
 import re
+import unicodedata
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
@@ -8,12 +10,16 @@ from typing import Any
 
 import httpx
 import pytest
+from fastapi import FastAPI
+from pydantic import TypeAdapter, ValidationError
 from sqlalchemy import text
 
 from service.api.application import application
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise, FeedbackLevel
 from service.catalogue.attempts import AttemptsSpec
+from service.contract.attempts import Learner
+from service.grading import GradedAnswers, Submission, graded_answers
 
 RIGHT = {"table": "a1 0 0 θ1\na2 180deg 0 θ2\n0 0 d3 0\n0 0 d4 θ4"}
 WRONG = {"table": "a1 0 0 θ1\na2 0 0 θ2\n0 0 d3 0\n0 0 d4 θ4"}
@@ -116,6 +122,68 @@ def test_outcomes_have_their_codes_at_every_level(course_of: Any, store: Attempt
     assert table["codes"]
 
 
+@pytest.fixture
+def gradings(monkeypatch: pytest.MonkeyPatch) -> list[FeedbackLevel]:
+    """The levels of all gradings of attempts from now on."""
+    done: list[FeedbackLevel] = []
+
+    def counted(exercise: Exercise, submission: Submission) -> GradedAnswers:
+        done.append(submission.feedback)
+        return graded_answers(exercise, submission)
+
+    monkeypatch.setattr("service.attempts.graded.graded_answers", counted)
+    return done
+
+
+@pytest.mark.parametrize("level", ["hints", "verdicts", "score"])
+def test_an_attempt_is_graded_once_and_told_as_by_a_grading(
+    course_of: Any, client: httpx.Client, gradings: list[FeedbackLevel], level: str
+) -> None:
+    answers = {"table": "a1 0 0 θ1\na2 ?! 0 θ2\n0 0 d3 0\n0 0 d4 1"}
+    body = {"answers": answers, "feedback": level}
+    recorded = course_of().post(**body).json()["report"]
+    assert recorded == client.post("/v1/exercises/scara/grade", json=body).json()
+    assert len(gradings) == 1
+
+
+@pytest.mark.parametrize("first", [FeedbackLevel.SCORE, FeedbackLevel.FULL])
+def test_attempts_at_the_same_moment_get_a_number_each_and_none_is_graded_in_vain(
+    first: FeedbackLevel,
+    catalogue: Mapping[str, Exercise],
+    store: AttemptStore,
+    gradings: list[FeedbackLevel],
+) -> None:
+    """At two replicas, and whatever the number is that the attempt then has."""
+    levels = (first, FeedbackLevel.VERDICTS, FeedbackLevel.HINTS)
+    exercise = replace(
+        catalogue["scara"], feedback_by_attempt=levels, attempts=AttemptsSpec(limit=10)
+    )
+    another = AttemptStore.open(str(store.engine.url.database))
+    another.start()
+    apps = [application({"scara": exercise}, store=each) for each in (store, another)]
+    body = {"answers": WRONG, "learner": "ada"}
+
+    async def post(app: FastAPI) -> httpx.Response:
+        transport = httpx.ASGITransport(app)
+        async with httpx.AsyncClient(transport=transport, base_url="http://service") as client:
+            return await client.post("/v1/exercises/scara/attempts", json=body)
+
+    async def all_at_once() -> list[httpx.Response]:
+        return await asyncio.gather(*(post(apps[i % 2]) for i in range(12)))
+
+    answers = asyncio.run(all_at_once())
+    another.close()
+    taken = [answer.json() for answer in answers if answer.status_code == 201]
+    told = sorted((each["attempt"]["ordinal"], each["report"]["feedback"]) for each in taken)
+    assert told == [(i + 1, str(levels[min(i, 2)])) for i in range(10)]
+    assert {problem(each) for each in answers if each.status_code != 201} == {
+        (403, "no-attempts-left")
+    }
+    # All of them begin as a first attempt; what is worked out for that serves any lower level.
+    anew = 11 if first is FeedbackLevel.FULL else 0
+    assert len(gradings) <= 12 + anew
+
+
 def test_a_late_attempt_is_recorded_with_its_share(course_of: Any) -> None:
     now = datetime.now(UTC)
     rules = {"due": now - timedelta(hours=1), "closes": now + timedelta(hours=1)}
@@ -143,14 +211,60 @@ def test_while_the_database_is_down_grading_goes_on(course_of: Any, store: Attem
     assert graded.status_code == 200
 
 
-@pytest.mark.parametrize("learner", ["", "a\nb", "\x00", 7, None, "x" * 201])
+@pytest.mark.parametrize(
+    "learner",
+    [
+        "",
+        "a\nb",
+        "\x00",
+        7,
+        None,
+        "x" * 201,
+        "a\x85",
+        "a\u2029",
+        " a",
+        "a ",
+        "a  b",
+        "\u3164",
+        "a\ufe0f",
+    ],
+)
 def test_a_learner_is_a_short_line_of_text(course_of: Any, learner: Any) -> None:
     assert problem(course_of().post(RIGHT, learner)) == (422, "invalid-request")
 
 
 def test_a_learner_may_have_any_letters(course_of: Any) -> None:
-    for learner in ("Ада Лавлейс", "ada@example.edu", "'; DROP TABLE attempts; --", "名前"):
+    for learner in ("Ада Лавлейс", "ada@example.edu", "'; DROP TABLE attempts; --", "名前", "🤖 7"):
         assert course_of().post(RIGHT, learner).json()["attempt"]["learner"] == learner
+
+
+def test_no_learner_has_a_character_that_is_not_seen() -> None:
+    taken = TypeAdapter(Learner)
+    for character in map(chr, range(0x110000)):
+        # By the tables of Unicode; what is not assigned yet is unknown to them.
+        if unicodedata.category(character) in ("Cc", "Cf", "Co", "Zl", "Zp", "Zs"):
+            with pytest.raises(ValidationError):
+                taken.validate_python(f"a{character}")
+
+
+def test_a_page_of_another_origin_records_nothing(
+    catalogue: Mapping[str, Exercise], store: AttemptStore, client_of: Any
+) -> None:
+    """A browser sends it without asking first where its type is that of a plain text."""
+    course = "https://course.example.edu"
+
+    def status(origin: str | None, *allowed: str) -> tuple[int, int]:
+        client = client_of(application(catalogue, allowed, store=store))
+        headers = {"Content-Type": "text/plain"} | ({"Origin": origin} if origin else {})
+        content = json.dumps({"answers": RIGHT, "learner": "ada"})
+        before = count(store)
+        answer = client.post("/v1/exercises/scara/attempts", content=content, headers=headers)
+        return answer.status_code, count(store) - before
+
+    assert status(None) == status("http://service") == (201, 1)
+    assert status("https://evil.example") == status("null") == (403, 0)
+    assert status("https://evil.example", course) == (403, 0)
+    assert status(course, course) == status("https://any.example", "*") == (201, 1)
 
 
 def test_the_page_on_attempts_shows_what_is_answered(course_of: Any) -> None:

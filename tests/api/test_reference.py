@@ -76,7 +76,7 @@ def test_in_a_browser_without_the_internet(port: int) -> None:
     with chromium.blank_page() as page:
         page.open(f"http://127.0.0.1:{port}{PAGE}")
         shown = page.wait_for("document.querySelectorAll('.opblock').length")
-        assert shown == 15
+        assert shown == 16
         many = "document.querySelector('#operations-grading-gradeMany {}')"
         page.wait_for(f"({many.format('.opblock-summary-control')}.click(), true)")
         page.wait_for(f"{many.format('.execute')} && ({many.format('.execute')}.click(), true)")

@@ -77,5 +77,6 @@ def test_an_exercise_without_a_robot_has_no_structure(client: httpx.Client) -> N
 def test_no_formula_of_an_answer_is_shown(exercise: str, client: httpx.Client) -> None:
     shown = client.get(f"/v1/exercises/{exercise}").json()
     for part in shown["parts"]:
-        assert set(part) == {"id", "title", "prompt", "kind", "points", "marking", "shape"}
+        fields = {"id", "title", "prompt", "prompt_html", "kind", "points", "marking", "shape"}
+        assert set(part) == fields
     assert "expected" not in str(shown["parts"])

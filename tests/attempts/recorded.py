@@ -5,20 +5,29 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from service.attempts.attempt import NewAttempt, RecordedAttempt
-from service.attempts.graded import graded_attempt
+from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
+from service.attempts.graded import AttemptGrading, AttemptReport
 from service.attempts.outcome import Outcome
 from service.attempts.recording import record
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise, FeedbackLevel
 from service.contract.attempts import AttemptRequest
-from service.formats.json import rendered
-from service.grading import Report
 
 NOON = datetime(2026, 11, 22, 12, tzinfo=UTC)
 RIGHT = "a1 0 0 θ1\na2 180deg 0 θ2\n0 0 d3 0\n0 0 d4 θ4"
 NO_TWIST = "a1 0 0 θ1\na2 0 0 θ2\n0 0 d3 0\n0 0 d4 θ4"
 LAZY = "0 0 0 θ1\n0 0 0 θ2\n0 0 d3 0\n0 0 0 θ4"
+
+
+async def record_once(
+    store: AttemptStore, new: NewAttempt, outcome: Outcome
+) -> RecordedAttempt | None:
+    """Write the attempt as it is; None where another has taken its ordinal or its key."""
+    before = Standing(0, None)
+    written = await store.record(
+        before, lambda standing: (new, outcome) if standing is before else None
+    )
+    return written if isinstance(written, RecordedAttempt) else None
 
 
 def recorded(
@@ -41,16 +50,14 @@ def recorded_all(
     return [each for each in written if each]
 
 
-_KEPT: dict[tuple[str, ...], tuple[Report, Outcome]] = {}
+_KEPT: dict[tuple[str, ...], AttemptReport] = {}
 
 
-def _graded(
-    exercise: Exercise, body: AttemptRequest, level: FeedbackLevel
-) -> tuple[Report, Outcome]:
+def _graded(exercise: Exercise, body: AttemptRequest, level: FeedbackLevel) -> AttemptReport:
     """Graded once: these tests send the same few tables again and again."""
     key = (exercise.id, exercise.version, body.answers["table"], level)
     if key not in _KEPT:
-        _KEPT[key] = graded_attempt(exercise, body, level)
+        _KEPT[key] = AttemptGrading(exercise, body).at(level)
     return _KEPT[key]
 
 
@@ -64,7 +71,8 @@ def new_attempt(
 ) -> tuple[NewAttempt, Outcome]:
     """An attempt at the exercise, ``hours`` after noon; ``more`` replaces fields."""
     body = AttemptRequest(learner=learner, answers={"table": table})
-    report, outcome = _graded(exercise, body, exercise.feedback_at(ordinal or 1))
+    graded = _graded(exercise, body, exercise.feedback_at(ordinal or 1))
+    report = graded.report
     new = NewAttempt(
         exercise=exercise.id,
         learner=learner,
@@ -74,7 +82,7 @@ def new_attempt(
         worth=1.0,
         submission=body.model_dump_json(exclude={"learner"}, exclude_unset=True),
         answers_digest=str(hash(table)),
-        report=rendered(report).decode(),
+        report=graded.text,
         version=report.version,
         grader=report.grader,
         points=report.points,
@@ -83,4 +91,4 @@ def new_attempt(
         idempotency_key=None,
         request_digest="",
     )
-    return replace(new, **more), outcome
+    return replace(new, **more), graded.outcome

@@ -1,23 +1,26 @@
 """The store in trouble: locked, full or gone, it says so in time and works again afterwards."""
 
 import asyncio
+import shutil
 import sqlite3
 import time
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import pytest
 from sqlalchemy import event
 
+from service.attempts.attempt import AttemptFilter
 from service.attempts.errors import StoreDownError
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
-from tests.attempts.recorded import RIGHT, new_attempt
+from tests.attempts.recorded import RIGHT, new_attempt, record_once
 
 
 def record(store: AttemptStore, exercise: Exercise, ordinal: int) -> bool:
     new, outcome = new_attempt(exercise, "ada", RIGHT, ordinal)
-    return asyncio.run(store.record(new, outcome)) is not None
+    return asyncio.run(record_once(store, new, outcome)) is not None
 
 
 def test_a_locked_file_is_told_after_a_wait_and_works_when_it_is_free(
@@ -36,6 +39,29 @@ def test_a_locked_file_is_told_after_a_wait_and_works_when_it_is_free(
     other.execute("ROLLBACK")
     other.close()
     assert record(store, scara, 1)
+    store.close()
+
+
+@pytest.mark.parametrize("replaced", [False, True])
+def test_a_file_that_is_gone_takes_nothing(
+    sqlite_url: str, catalogue: Mapping[str, Exercise], replaced: bool
+) -> None:
+    store = AttemptStore.open(sqlite_url)
+    store.start()
+    assert record(store, catalogue["scara"], 1)
+    file = Path(sqlite_url)
+    aside = file.rename(file.with_name("aside.db"))
+    if replaced:
+        shutil.copy(aside, file)
+    for attempt in range(2, 4):
+        with pytest.raises(StoreDownError, match="deleted or replaced"):
+            record(store, catalogue["scara"], attempt)
+    for asked in (store.check(), store.page(AttemptFilter(), None, 1)):
+        with pytest.raises(StoreDownError, match="deleted or replaced"):
+            asyncio.run(asked)
+    assert file.exists() == replaced
+    aside.rename(file)
+    assert record(store, catalogue["scara"], 2)
     store.close()
 
 

@@ -66,7 +66,17 @@ def test_filters_hold_together(store: AttemptStore, catalogue: Mapping[str, Exer
 
 def test_a_cursor_that_is_none_is_refused(store: AttemptStore) -> None:
     with store.engine.connect() as connection:
-        for cursor in ("", "x", "1", "1.2.3", "-1.2", "ffffffffffffffff.1", "1." * 9):
+        for cursor in (
+            "",
+            "x",
+            "1",
+            "1.2.3",
+            "-1.2",
+            "ffffffffffffffff.1",
+            "1." * 9,
+            "1_0.0x1",
+            "1.٣",
+        ):
             with pytest.raises(BadCursorError):
                 page(connection, EVERY, cursor, 3)
 

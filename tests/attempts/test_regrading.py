@@ -1,3 +1,4 @@
+import json
 import os
 import signal
 import time
@@ -69,6 +70,26 @@ def test_a_corrected_exercise_changes_points_and_keeps_the_reports_before(
         catalogue["scara"].version,
     )
     assert work_off(store, regrading) == []
+
+
+def test_no_more_is_told_after_a_regrade_than_before(
+    sqlite_url: str, catalogue: Mapping[str, Exercise], corrected: Exercise
+) -> None:
+    """The service may have had a ceiling that the process which regrades knows nothing of."""
+    store = AttemptStore.open(sqlite_url)
+    under_a_ceiling = replace(catalogue["scara"], feedback_by_attempt=(FeedbackLevel.SCORE,))
+    low = recorded(store, under_a_ceiling, "ada", NO_TWIST)
+    usual = recorded(store, catalogue["scara"], "grace", NO_TWIST)
+    work_off(store, Regrading(corrected, FeedbackLevel.FULL))
+    told = []
+    with store.engine.connect() as connection:
+        for each in (low, usual):
+            found = history(connection, each.id)
+            assert found is not None
+            report = json.loads(found.report)
+            told.append((report["feedback"], bool(report["parts"][0]["rows"])))
+    assert told == [("score", False), ("hints", True)]
+    store.close()
 
 
 def test_an_attempt_that_waits_again_is_not_regraded_twice(

@@ -8,12 +8,13 @@ from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from sqlalchemy import text
 
-from service.attempts.attempt import NewAttempt, RecordedAttempt
+from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
 from service.attempts.database import open_database
 from service.attempts.errors import StoreDownError, UnusableDatabaseError
 from service.attempts.outcome import Outcome
 from service.attempts.store import AttemptStore
 from service.attempts.tables import metadata
+from tests.attempts.recorded import record_once
 
 OUTCOME = Outcome("scara", "{}")
 NEW = NewAttempt(
@@ -37,7 +38,7 @@ NEW = NewAttempt(
 
 
 def record(store: AttemptStore, new: NewAttempt) -> RecordedAttempt | None:
-    return asyncio.run(store.record(new, OUTCOME))
+    return asyncio.run(record_once(store, new, OUTCOME))
 
 
 def test_the_tables_are_those_that_the_migrations_make(database_url: str) -> None:
@@ -82,12 +83,33 @@ def test_of_many_at_once_one_gets_the_ordinal(database_url: str) -> None:
     assert sum(each is not None for each in written) == 1
 
 
+def test_many_at_once_get_the_ordinals_one_after_another(database_url: str) -> None:
+    stores = [AttemptStore.open(database_url) for _ in range(2)]
+
+    def after(standing: Standing) -> tuple[NewAttempt, Outcome] | None:
+        ordinal = standing.counted + 1
+        return (replace(NEW, ordinal=ordinal), OUTCOME) if ordinal <= 20 else None
+
+    for store in stores:
+        store.start()
+    with ThreadPoolExecutor(8) as pool:
+        begun = Standing(0, None)
+        results = list(
+            pool.map(lambda i: asyncio.run(stores[i % 2].record(begun, after)), range(24))
+        )
+    for store in stores:
+        store.close()
+    written = [each.ordinal for each in results if isinstance(each, RecordedAttempt)]
+    assert sorted(written) == list(range(1, 21))  # type: ignore[type-var]
+    assert [each for each in results if isinstance(each, Standing)] == [Standing(20, None)] * 4
+
+
 def test_a_job_that_cannot_be_written_costs_no_other(store: AttemptStore) -> None:
     broken = replace(NEW, learner="x" * 10, exercise=None)  # type: ignore[arg-type]
 
     async def together() -> list[object]:
         jobs = [
-            store.record(replace(NEW, learner=str(i)) if i != 3 else broken, OUTCOME)
+            record_once(store, replace(NEW, learner=str(i)) if i != 3 else broken, OUTCOME)
             for i in range(8)
         ]
         return list(await asyncio.gather(*jobs, return_exceptions=True))
@@ -109,7 +131,18 @@ def test_a_write_that_fails_is_told_and_the_next_one_works(store: AttemptStore) 
 
 @pytest.mark.parametrize(
     "url",
-    ["mysql://a:secret@host/b", "/no/such/folder/a.db", "postgresql://u:secret@127.0.0.1:1/x"],
+    [
+        "mysql://a:secret@host/b",
+        "/no/such/folder/a.db",
+        "postgresql://u:secret@127.0.0.1:1/x",
+        "postgresql://u:secret@:bad/x",
+        "sqlite+foo:///x",
+        "sqlite+aiosqlite:///x",
+        "sqlite:///x?timeout=secret",
+        ":memory:",
+        "sqlite://",
+        "sqlite:///file::memory:?uri=true",
+    ],
 )
 def test_an_unusable_database_is_named_without_its_password(url: str) -> None:
     with pytest.raises(UnusableDatabaseError) as refused:

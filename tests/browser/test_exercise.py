@@ -212,6 +212,7 @@ def test_a_preview_follows_each_key_at_once(
     assert p95 < 1000
 
 
+@pytest.mark.campaign
 def test_without_the_service_the_answers_stay(visit: Opening, service: str) -> None:
     opened = visit()
     page = opened.page

@@ -5,6 +5,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visit
@@ -21,6 +22,7 @@ def wide(page: Page) -> int:
     return int(page.evaluate("document.documentElement.scrollWidth"))
 
 
+@pytest.mark.campaign
 def test_a_tutor_looks_at_a_solution_and_writes_an_exercise(
     visit: Opening, service: str, axe: str, tmp_path: Path
 ) -> None:

@@ -37,6 +37,54 @@ def test_without_a_database_the_commands_say_so(run: Run, monkeypatch: pytest.Mo
     assert (result.exit_code, "DH_GRADER_DATABASE" in result.output) == (2, True)
 
 
+@pytest.mark.parametrize("unset", ["", "  "])
+def test_an_empty_name_of_a_database_is_none(
+    run: Run, monkeypatch: pytest.MonkeyPatch, unset: str
+) -> None:
+    monkeypatch.setenv("DH_GRADER_DATABASE", unset)
+    result = run("attempts", "list")
+    assert (result.exit_code, "names no database" in result.output) == (2, True)
+
+
+def test_no_command_makes_a_database(
+    run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    file = tmp_path / "missing.db"
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(file))
+    for arguments in (
+        ("attempts", "list"),
+        ("attempts", "statistics", "scara"),
+        ("attempts", "export"),
+        ("attempts", "regrade", "scara"),
+        ("attempts", "override", "0" * 32, "1", "--reason", "r"),
+        ("attempts", "forget", "ada", "--yes"),
+        ("keys", "list"),
+        ("keys", "revoke", "0"),
+    ):
+        result = run(*arguments)
+        assert (result.exit_code, result.output.count("\n")) == (2, 1), arguments
+        assert "there is no such file" in result.output
+    assert not file.exists()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("list", "--learner", "\udcff"),
+        ("list", "--exercise", "\udcff"),
+        ("statistics", "\udcff"),
+        ("forget", "\udcff", "--yes"),
+        ("override", "0" * 32, "1", "--reason", "\udcff"),
+        ("list", "--limit", "99999999999999999999"),
+    ],
+)
+def test_what_no_database_takes_is_refused(
+    run: Run, course: list[str], arguments: tuple[str, ...]
+) -> None:
+    result = run("attempts", *arguments)
+    assert (result.exit_code, type(result.exception)) == (2, SystemExit)
+
+
 def test_the_newest_attempts_are_listed(run: Run, course: list[str]) -> None:
     lines = run("attempts", "list", "--limit", 2).output.splitlines()
     assert [line.split()[0] for line in lines[:2]] == [course[2], course[1]]

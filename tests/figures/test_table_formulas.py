@@ -8,6 +8,8 @@ import pytest
 from service.expressions import Expression, evaluate_all
 from service.figures.scope import free_scope
 from service.figures.table_formulas import TableFormulas, table_formulas
+from service.figures.table_frames import table_to_draw
+from service.grading.work_budget import WorkBudget
 from service.kinematics.chain import Table, pose
 from service.kinematics.dh import Convention
 
@@ -29,9 +31,14 @@ TABLES = {
 }
 
 
+def formulas_of(rows: object, structure: str, convention: Convention) -> TableFormulas:
+    scope, budget = free_scope(structure), WorkBudget.of_drawing(with_figure=True)
+    return table_formulas(table_to_draw(rows, scope, budget), convention, scope, budget)
+
+
 def found(name: str, convention: Convention) -> TableFormulas:
     structure, rows = TABLES[name]
-    return table_formulas(rows, convention, free_scope(structure))
+    return formulas_of(rows, structure, convention)
 
 
 @pytest.mark.parametrize("convention", Convention)
@@ -64,11 +71,24 @@ def test_parallel_axes_give_the_formulas_of_a_textbook() -> None:
 
 
 def test_what_is_unread_or_too_long_is_left_out() -> None:
-    half = table_formulas([["a1", "0", "", "q1"]], Convention.STANDARD, free_scope("R"))
+    half = formulas_of([["a1", "0", "", "q1"]], "R", Convention.STANDARD)
     assert [cell and cell.text() for cell in half.cells[0]] == ["a1", "0", None, "theta1"]
     assert not half.converted
     assert not half.pose
     rows = [[f"a{i}", f"alpha{i}", f"d{i}", f"q{i}"] for i in range(1, 11)]
-    long = table_formulas(rows, Convention.STANDARD, free_scope("R" * 10))
+    long = formulas_of(rows, "R" * 10, Convention.STANDARD)
     assert len(long.converted) == 11
     assert not long.pose
+
+
+@pytest.mark.parametrize("convention", Convention)
+def test_a_table_without_rows_says_nothing(convention: Convention) -> None:
+    assert formulas_of(" ", "R", convention) == TableFormulas(())
+
+
+def test_no_more_is_printed_than_a_request_may_cost() -> None:
+    rows = [[f"{'sin(30)' * 25}+{4 * i + j}" for j in range(4)] for i in range(12)]
+    cells = [cell for row in formulas_of(rows, "R", Convention.STANDARD).cells for cell in row]
+    printed = [cell is not None for cell in cells]
+    assert printed == sorted(printed, reverse=True)
+    assert 0 < sum(printed) < len(printed)

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from service.figures.scope import DrawingScope, free_scope
-from service.figures.table_frames import TableFrames, table_frames
+from service.figures.table_frames import TableFrames, table_frames, table_to_draw
 from service.grading.feedback import UnreadableAnswerError
+from service.grading.work_budget import WorkBudget
 from service.kinematics.dh import Convention
 
 STANDARD, MODIFIED = Convention
@@ -19,7 +20,8 @@ def framed(
     **numbers: float,
 ) -> TableFrames:
     scope: DrawingScope = free_scope(structure)
-    return table_frames(rows, convention, scope, scope.numbers(numbers), np.array(amounts))
+    written = table_to_draw(rows, scope, WorkBudget())
+    return table_frames(written, convention, scope, scope.numbers(numbers), np.array(amounts))
 
 
 ELBOW = [["0", "90deg", "d1", "theta1"], ["a2", "0", "0", "q2"]]
@@ -45,7 +47,8 @@ def test_the_modified_convention_and_degrees() -> None:
     scope = free_scope("R")
     amounts = np.zeros((1, 1))
     rows = [["1", "90", "0", "q1"]]
-    found = table_frames(rows, STANDARD, scope, scope.numbers({}), amounts, "degrees")
+    written = table_to_draw(rows, scope, WorkBudget(), "degrees")
+    found = table_frames(written, STANDARD, scope, scope.numbers({}), amounts)
     assert found.frames[0, 1, :3, 2] == pytest.approx([0, -1, 0], abs=1e-12)
 
 

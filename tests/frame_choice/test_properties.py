@@ -16,8 +16,8 @@ from tests.frame_choice.robots import GIVEN, POLICIES, ROBOTS, conventions
 from tests.frame_choice.trials import Tally, run
 
 # For each robot and convention: how many tables, and how many of them also with slips.
-GIVEN_TABLES, GIVEN_SLIPS = 10, 6
-FREE_TABLES, FREE_SLIPS = 7, 3
+GIVEN_TABLES, GIVEN_SLIPS = 6, 4
+FREE_TABLES, FREE_SLIPS = 4, 2
 
 
 def tallied(only_given: bool) -> Tally:
@@ -55,7 +55,7 @@ def first_misses(tally: Tally, chosen: Callable[[str], bool]) -> str:
 
 
 def test_every_valid_table_gets_full_marks_and_no_word_of_an_error(either: Tally) -> None:
-    assert either.counts["valid"] >= 200
+    assert either.counts["valid"] >= 120
     assert either.counts["valid accepted"] == either.counts["valid"], first_misses(
         either, lambda what: what.startswith("valid")
     )
@@ -64,7 +64,7 @@ def test_every_valid_table_gets_full_marks_and_no_word_of_an_error(either: Tally
 def test_no_table_with_a_slip_gets_full_marks(either: Tally) -> None:
     wrong = either.counts["slip"] + either.counts["two slips"]
     caught = either.counts["slip caught"] + either.counts["two caught"]
-    assert wrong >= 150
+    assert wrong >= 100
     assert caught == wrong, first_misses(either, lambda what: what.startswith("wrong"))
 
 
@@ -74,21 +74,21 @@ def test_nothing_raises(either: Tally) -> None:
 
 def test_a_slip_between_axes_that_are_not_parallel_is_blamed_on_its_cell(given: Tally) -> None:
     """Where no other single cell would repair the table, so that the blame is nobody else's."""
-    assert given.counts["skew unshared"] >= 40
+    assert given.counts["skew unshared"] >= 25
     assert given.share("skew unshared exact", "skew unshared") >= 0.99, first_misses(
         given, lambda what: what.startswith("one slip, skew")
     )
 
 
 def test_a_slip_between_parallel_axes_is_blamed_on_one_row(given: Tally) -> None:
-    assert given.counts["parallel"] >= 75
+    assert given.counts["parallel"] >= 45
     assert given.share("parallel one row", "parallel") >= 0.90, first_misses(
         given, lambda what: what.startswith("one slip, parallel")
     )
 
 
 def test_two_slips_that_have_nothing_to_do_with_each_other_are_both_found(given: Tally) -> None:
-    assert given.counts["two unshared"] >= 75
+    assert given.counts["two unshared"] >= 45
     assert given.share("two unshared found", "two unshared") >= 0.95, first_misses(
         given, lambda what: what.startswith("two slips")
     )
@@ -96,7 +96,7 @@ def test_two_slips_that_have_nothing_to_do_with_each_other_are_both_found(given:
 
 def test_of_slips_that_could_be_repaired_elsewhere_the_likeliest_is_blamed(given: Tally) -> None:
     """Ties and all. Of 31,000 tables 98.7 % and 90.5 %; the bounds are three deviations below."""
-    assert given.counts["skew"] >= 50
+    assert given.counts["skew"] >= 30
     assert given.share("skew exact", "skew") >= 0.95
-    assert given.counts["two slips"] >= 150
+    assert given.counts["two slips"] >= 90
     assert given.share("two found", "two slips") >= 0.85

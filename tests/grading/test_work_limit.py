@@ -113,7 +113,7 @@ def test_reading_and_searches_leave_less_for_explanations() -> None:
     assert searched.affords(70.0)
     assert not searched.affords(20.0)
     assert searched.has_left_out
-    assert WorkBudget().affords(150.0)
+    assert WorkBudget().affords(140.0)
     assert read.affords(140.0)
     assert read.affords_search(140.0)
     assert not read.affords(1.0)

@@ -12,7 +12,7 @@ from tests.pose_slips.robots import robots
 
 ROBOTS = {robot.name: robot for robot in robots()}
 # Some slips of some robots: enough to see each code.
-SAMPLE = {"scara": 5, "stanford-arm": 11, "planar-rrr": 7, "skew": 9, "sliding": 7}
+SAMPLE = {"scara": 9, "stanford-arm": 29, "planar-rrr": 13, "skew": 17, "sliding": 13}
 
 
 @pytest.mark.parametrize(("name", "every"), SAMPLE.items())

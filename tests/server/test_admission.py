@@ -255,11 +255,13 @@ def test_beyond_its_queue_a_client_is_told_to_come_again() -> None:
     run(story())
 
 
-@pytest.mark.parametrize(("gradings", "seconds"), [(1, 1), (10, 4), (90, 30)])
+@pytest.mark.parametrize(
+    ("gradings", "each", "seconds"), [(1, 0.003, 1), (10, 0.003, 4), (20, 0.015, 30)]
+)
 def test_whoever_waits_for_more_work_is_told_to_come_again_later(
-    monkeypatch: pytest.MonkeyPatch, gradings: int, seconds: int
+    monkeypatch: pytest.MonkeyPatch, gradings: int, each: float, seconds: int
 ) -> None:
-    """A grading takes 3 ms, and 128 requests wait."""
+    """A grading takes ``each`` seconds, and 128 requests wait."""
     now = 0.0
     monkeypatch.setattr(admission, "thread_time", lambda: now)
 
@@ -268,7 +270,7 @@ def test_whoever_waits_for_more_work_is_told_to_come_again_later(
         for i in range(gradings):
             if i:
                 await give_way(Request(scope))
-            now += 0.003
+            now += each
         await send({"type": "http.response.start", "status": 200, "headers": []})
 
     async def story() -> None:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -66,6 +66,7 @@ def value(matrix: sympy.Matrix, at: list[float]) -> Numbers:
 
 
 @pytest.mark.parametrize("convention", Convention)
+@settings(max_examples=15)
 @given(
     table=st.lists(rows, min_size=1, max_size=6),
     at=st.lists(st.floats(-3, 3), min_size=7, max_size=7),
@@ -76,6 +77,7 @@ def test_a_chain(convention: Convention, table: list[Any], at: list[float]) -> N
     np.testing.assert_allclose(value(symbolic, at), expected, atol=1e-12)
 
 
+@settings(max_examples=15)
 @given(
     table=st.lists(rows, min_size=1, max_size=4),
     at=st.lists(st.floats(-3, 3), min_size=7, max_size=7),

@@ -3,11 +3,12 @@
 from collections.abc import Mapping
 from typing import Final
 
-from tests.worst.entry_points import FILE, GRADE, PREVIEW, Attack
+from tests.worst.entry_points import FILE, FRAMES, GRADE, PREVIEW, Attack
 from tests.worst.seeds import (
     HALVES,
     LONG_TABLE,
     frames_of,
+    free_frames_of,
     grid,
     halves,
     links_of,
@@ -83,6 +84,10 @@ KNOWN: Final[Mapping[str, Attack]] = {
     "many previews of halves": previews_of(ARM, "links", HALVES),
     "frames of long cells": frames_of(ARM, 6, "sin(30)" * 60),
     "frames of halves": frames_of(ARM, 6, halves(0)),
+    "a free table of long cells": free_frames_of(ARM, "sin(30)" * 60),
+    "a free table of long cells without a figure": Attack(
+        FRAMES, ARM, {**free_frames_of(ARM, "sin(30)" * 60).body, "figure": None}
+    ),
     "unknown parts": Attack(GRADE, ARM, _UNKNOWN),
     "unknown fields": Attack(GRADE, ARM, {**_UNKNOWN["answers"], "answers": {}}),
     "unknown parts in a file": Attack(FILE, ARM, _UNKNOWN),

@@ -28,8 +28,8 @@ WRAPS = (
 LENGTHS = (60, 120, 240, 250, 480, 500, 900, 1000, 1500, 2000, 4000, 7900, 15_000, 25_000)
 HUGE = (60_000, 240_000)
 LONGEST = 260_000
-# What is changed in a body that holds no answers.
-_ONLY = {PREVIEWS: "entries", FRAMES: "table"}
+# What is changed in a body that holds no answers; that of frames stands in its table.
+_ONLY = {PREVIEWS: "entries", FRAMES: "rows"}
 
 
 class Mutator:
@@ -51,9 +51,10 @@ class Mutator:
                 body["text"] = self._text(body["text"])
             elif attack.entry in _ONLY:
                 # Nothing of others fits there.
-                only = {_ONLY[attack.entry]: body[_ONLY[attack.entry]]}
+                holder = body["table"] if attack.entry == FRAMES else body
+                only = {_ONLY[attack.entry]: holder[_ONLY[attack.entry]]}
                 self._answers(only, {})
-                body |= only
+                holder |= only
             else:
                 other = self._choose.choice(others).body.get("answers", {}) if others else {}
                 self._answers(body["answers"], other)

@@ -54,6 +54,21 @@ def frames_of(exercise: str, joints: int, text: str) -> Attack:
     return Attack(FRAMES, exercise, body)
 
 
+def free_frames_of(exercise: str, text: str, **other: object) -> Attack:
+    """A free table of long cells with its formulas and its figure, in as many pictures as may be.
+
+    It is of no exercise: ``exercise`` is where the search keeps it. ``other`` are more of its
+    fields.
+    """
+    rows = [
+        {key: f"{text}+{3 * i + j}" for j, key in enumerate(KEYS[:3])} | {"theta": f"q{i + 1}"}
+        for i in range(12)
+    ]
+    table = {"structure": "RPRPRPRPRP", "formulas": True, "rows": rows} | other
+    values = [[0.1 * k] * 10 for k in range(30)]
+    return Attack(FRAMES, exercise, {"table": table, "joints": values, "figure": "auto"})
+
+
 def garbage_table(rows: int, choose: random.Random) -> list[list[str]]:
     """Rows of cells that are read, mean nothing, and have three figures."""
     return [[f"{choose.uniform(-3, 3):.3g}" for _ in KEYS] for _ in range(rows)]
@@ -100,6 +115,17 @@ def _spread(exercise: Exercise, choose: random.Random) -> Iterator[dict[str, Any
     }
 
 
+def _free_frames(name: str) -> Iterator[Attack]:
+    for text in ("sin(30)" * 60, "a1 " * 60, "c12 " * 30, "√2 " * 30, "a1", halves(0)):
+        for convention in ("standard", "modified"):
+            yield free_frames_of(name, text, convention=convention)
+    # The longest poses that are printed at all.
+    for cell in ("alpha1", "cos(theta1)", "sin(30)" * 20):
+        for count in range(2, 6):
+            rows = [["a1", cell, "d1", f"q{i + 1}"] for i in range(count)]
+            yield free_frames_of(name, "", rows=rows)
+
+
 def attacks(exercises: Mapping[str, Exercise], seed: int) -> Iterator[Attack]:
     """The first bodies of the search."""
     choose = random.Random(seed)
@@ -123,6 +149,7 @@ def attacks(exercises: Mapping[str, Exercise], seed: int) -> Iterator[Attack]:
                 body = {"text": text, "exercise": name, "part": part.id}
                 yield Attack(PREVIEW, name, body)
     name = next(iter(exercises))
+    yield from _free_frames(name)
     for text in cells():
         yield Attack(PREVIEW, name, {"text": text})
     yield Attack(GRADE, name, {"answers": {f"part{i}": 0 for i in range(15_500)}})

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,7 +44,7 @@ def entry_rows(
             cell_report(entry, columns[j], match, slips.get((i, j)), grading)
             for j, (entry, match) in enumerate(zip(row, of_row, strict=True))
         ]
-        return row_report(names[i], tuple(cells), grading.visible((remark,)) if remark else ())
+        return row_report(names[i], tuple(cells), grading.messages((remark,)) if remark else ())
 
     return tuple(
         report(i, row, of_row)
@@ -59,10 +58,6 @@ def value_rows(
     """Rows of one value each; ``found`` is the Match of each, ``(n,)``."""
     column = [[entry] for entry in student.entries]
     return entry_rows(column, found[:, None], slips, grading)
-
-
-# The note on the reading of an entry that says the same as a slip.
-NOTES_ON: Final = {"swapped_atan2": "atan2_order"}
 
 
 def value_places(marked: NDArray[np.bool_]) -> tuple[Place, ...]:
@@ -104,9 +99,8 @@ def cell_report(
     elif entry.expression is not None and match < Match.ROUNDED:
         verdict = Verdict.INCORRECT
         if slip is not None:
-            told = NOTES_ON.get(slip.code) if grading.visible((slip,)) else None
-            findings = (*(note for note in findings if note.code != told), slip)
-    return CellReport(column, verdict, grading.visible(findings), _read(entry, grading))
+            findings = (*findings, slip)
+    return CellReport(column, verdict, grading.messages(findings), _read(entry, grading))
 
 
 def _read(entry: Entry, grading: Grading) -> ReadEntry | None:

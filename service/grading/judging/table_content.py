@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from service.catalogue import Exercise, FeedbackLevel, Joint
+from service.catalogue import Exercise, Joint
 from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.judging.content import KnownCells, known_cells, of_rows
 from service.grading.judging.own_frames.best_roles import roles_in
@@ -88,7 +88,7 @@ def _own_grading(exercise: Exercise) -> Grading:
     """A grading of no submission, for what depends on the exercise alone."""
     samples = draw(exercise, None)
     reader = Reader.of(exercise, samples, "radians")
-    return Grading(exercise, samples, reader, FeedbackLevel.SCORE)
+    return Grading(exercise, samples, reader)
 
 
 def _joints_of_rows(task: _Task) -> list[Joint | None]:

@@ -61,7 +61,7 @@ def judge(part: DhRowSpec, answer: RowOrNone, grading: Grading) -> Judged:
         expected = row(transform, part.convention)
         cells, findings = _against_the_row(answer, expected, transform, part, grading)
         known = known_cells(expected, 0.0, _scale(grading), IS_ANGLE[:, None])
-    messages = grading.visible(tuple(findings))
+    messages = grading.messages(tuple(findings))
     return Judged((row_report(LABEL, cells, messages),), of_one_row(known))
 
 

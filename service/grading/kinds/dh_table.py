@@ -169,7 +169,7 @@ def _with_slip(
     return replace(
         without,
         rows=rows,
-        feedback=(*grading.visible((intended.finding,), places), *without.feedback),
+        feedback=(*grading.messages((intended.finding,), places), *without.feedback),
         whole_cost=COST,
         beside=without,
         chain=judged.chain,
@@ -210,7 +210,7 @@ def _with_rows_too_many(
     is_told = any(message.code == _EXTRA_ROW for message in judged.feedback)
     # Where nothing that was read is wrong, the table may be right.
     tells = judged.is_wrong and not is_told
-    messages = grading.visible(tuple(map(_row_too_many, extra))) if tells else ()
+    messages = grading.messages(tuple(map(_row_too_many, extra))) if tells else ()
     of_mechanism = {row.label for row in without.rows}
     beside = [row for row in judged.rows if row.label not in of_mechanism]
     wrong = [row for row in beside if row.verdict is not Verdict.CORRECT]
@@ -269,18 +269,18 @@ def _judged(
         for (i, column), case in cases.items()
     )
     messages = (
-        *grading.visible((*answer.findings, *findings)),
-        *grading.visible(found, places),
-        *grading.visible((*lost, *judgement.findings)),
+        *grading.messages((*answer.findings, *findings)),
+        *grading.messages(found, places),
+        *grading.messages((*lost, *judgement.findings)),
     )
     missing = tuple(
         message
         for judged in judgement.rows
         if judged.row is None and not found
-        for message in grading.visible((_missing(judged),), (Place(judged.label),))
+        for message in grading.messages((_missing(judged),), (Place(judged.label),))
     )
-    extra = grading.visible(tuple(_extra_row(i) for i in judgement.extra))
-    row_messages = grading.visible(row_places(answer, judgement, convention, grading))
+    extra = grading.messages(tuple(_extra_row(i) for i in judgement.extra))
+    row_messages = grading.messages(row_places(answer, judgement, convention, grading))
     return Judged(
         _row_reports(judgement, grading, slips),
         table_content(part, judgement, convention, grading),

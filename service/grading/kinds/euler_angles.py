@@ -75,7 +75,7 @@ def judge(part: EulerAnglesSpec, answer: StudentValues, grading: Grading) -> Jud
     if not findings or findings[-1] is SINGULAR:
         slips = {**_slips(answer, expected, found, grading), **slips}
     rows = value_rows(answer, found, slips, grading)
-    return Judged(rows, _content(expected, rotation, part), grading.visible(findings))
+    return Judged(rows, _content(expected, rotation, part), grading.messages(findings))
 
 
 def _content(expected: Numbers, rotation: Matrices, part: EulerAnglesSpec) -> Content:

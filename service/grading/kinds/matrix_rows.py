@@ -142,7 +142,7 @@ def matrix_rows(
         tuple(
             message
             for finding, places in findings
-            for message in grading.visible((finding,), places)
+            for message in grading.messages((finding,), places)
         ),
     )
 

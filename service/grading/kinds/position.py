@@ -45,7 +45,7 @@ def judge(part: PositionSpec, answer: StudentValues, grading: Grading) -> Judged
     slips = slips_of(compared, wrong & ~(different & bool(explained)), grading, answers)
     rows = value_rows(answer, found, slips, grading)
     content = of_list(known_cells(expected, 0.0, compared.scales(grading)))
-    return Judged(rows, content, grading.visible(*explained) if explained else ())
+    return Judged(rows, content, grading.messages(*explained) if explained else ())
 
 
 def _expected(part: PositionSpec, grading: Grading) -> Numbers:

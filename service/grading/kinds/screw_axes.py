@@ -128,7 +128,7 @@ def _told(
         axes = [i for i, each in explained.items() if each == finding]
         places = tuple(Place(labels[i], str(j + 1)) for i in axes for j in np.flatnonzero(wrong[i]))
         if len(axes) > 1:
-            told += grading.visible((finding,), places)
+            told += grading.messages((finding,), places)
         else:
             alone[axes[0]] = finding
     return tuple(told), alone

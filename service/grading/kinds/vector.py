@@ -47,7 +47,7 @@ def judge(part: VectorSpec, answer: StudentValues, grading: Grading) -> Judged:
     corrected = ComparedValues(answer, expected, corrections)
     slips = slips_of(corrected, wrong, grading, answers)
     content = of_list(known_cells(expected, 0.0, compared.scales(grading)))
-    feedback = grading.visible((explained,), value_places(different)) if explained else ()
+    feedback = grading.messages((explained,), value_places(different)) if explained else ()
     return Judged(value_rows(answer, found, slips, grading), content, feedback)
 
 
