@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.conftest import Visit
@@ -32,6 +33,8 @@ DRAG = """async (slider) => {
   return [count, floor, script];
 }"""
 
+SMALL = {"width": 640, "height": 480}
+
 
 def entries(page: Page) -> list[float]:
     texts = page.locator(".numeric [role=cell]").all_inner_texts()
@@ -45,11 +48,7 @@ def cell(page: Page, row: int, column: int) -> Locator:
 def test_a_seven_joint_arm_is_played_with(
     visit: Opening, service: str, axe: str, figure: Callable[[str], None]
 ) -> None:
-    size = {"width": 640, "height": 480}
-    opened = visit(
-        bypass_csp=True, permissions=["clipboard-read", "clipboard-write"], viewport=size
-    )
-    page = opened.page
+    page = visit(bypass_csp=True, viewport=SMALL).page
     page.add_init_script(axe)
     page.goto(f"{service}/play")
     page.get_by_label("Start from a robot").select_option("Redundant arm, 7R")
@@ -82,7 +81,12 @@ def test_a_seven_joint_arm_is_played_with(
     page.set_viewport_size({"width": 320, "height": 700})
     assert page.evaluate("document.documentElement.scrollWidth") <= 320
 
-    # Two rows that turn about one line, written by hand, and shared.
+
+@pytest.mark.campaign
+def test_a_table_of_ones_own_is_written_and_shared(visit: Opening, service: str) -> None:
+    """Two rows that turn about one line."""
+    page = visit(permissions=["clipboard-read", "clipboard-write"], viewport=SMALL).page
+    page.goto(f"{service}/play")
     page.get_by_label("Start from a robot").select_option("Planar arm, RR")
     page.get_by_role("button", name="Remove row 1").click()
     page.get_by_role("button", name="Add a row").click()

@@ -73,16 +73,16 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     Where the joints are counted otherwise throughout, or the columns stand in another order, it is
     judged as it was intended.
     """
-    budget, work = grading.reader.budget, _search_work(part, answer, grading)
-    unread = _count_unread(answer)
+    has_unread_cells = bool(np.isnan(answer.values).any())
     # Values for unread cells are looked for with what the judging itself leaves.
-    if unread:
-        budget.charge_search(work)
+    if has_unread_cells:
+        grading.reader.budget.charge_search(_search_work(part, answer, grading))
     judged = _judged_as_read(part, answer, grading)
     if judged.is_right:
         return judged
-    if not unread:
-        budget.charge_search(work)
+    work = _search_work(part, answer, grading)
+    if not has_unread_cells:
+        grading.reader.budget.charge_search(work)
     return _as_intended(part, answer, judged, work, grading)
 
 
@@ -100,7 +100,7 @@ def _as_intended(
     if judged.whole_cost is not None:
         return judged
     wrong = _count_wrong(judged)
-    unread = _count_unread(answer)
+    unread = int(np.isnan(answer.values).any(axis=-1).sum())
     # What was not read is not read in any order.
     for intended in in_other_orders(answer, grading) if 3 * unread <= wrong else ():
         if not budget.affords_search(work):
@@ -131,10 +131,6 @@ def _search_work(part: DhTableSpec, answer: StudentTable, grading: Grading) -> f
     has_rows_too_many = rows > usual_rows(convention or grading.exercise.robot.convention, grading)
     has_unread_cells = np.isnan(answer.values).any()
     return once * (ways + int(has_rows_too_many) + int(has_unread_cells))
-
-
-def _count_unread(answer: StudentTable) -> int:
-    return int(np.isnan(answer.values).any(axis=-1).sum())
 
 
 def _count_wrong(judged: Judged) -> int:

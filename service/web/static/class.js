@@ -15,6 +15,7 @@ const byId = (id) => document.getElementById(id);
 const exercise = byId("exercise");
 const part = byId("part");
 const frame = byId("report");
+let shown = Promise.resolve();
 
 let archive = null;
 let found = new Map();
@@ -69,12 +70,20 @@ async function grade(input) {
   }
 }
 
-/** Show a page of the archive in the frame. */
-async function show(name) {
+/** Show a page of the archive in the frame, when the one before is there. */
+function show(name) {
+  const next = () => load(name);
+  return (shown = shown.then(next, next));
+}
+
+async function load(name) {
   const text = await textOf(archive, found.get(name));
   // The style is for the frame's policy to allow, and not for that of this page.
   const [before, style, after] = text.split(/<style>|<\/style>/);
   const page = documentOf(before + after);
+  // The frame's policy allows the styles of both kinds of page. That of the page itself would go on
+  // to hold for whatever the frame shows next, where it was still there.
+  page.querySelector("meta[http-equiv]")?.remove();
   frame.hidden = false;
   byId("back").hidden = name === INDEX;
   // The frame's own policy allows the styles of the reports, and no script.
@@ -82,11 +91,11 @@ async function show(name) {
     frame.addEventListener("load", done, { once: true });
     frame.src = "../tutor/class/report";
   });
-  const shown = frame.contentDocument;
-  shown.replaceChild(shown.adoptNode(page.documentElement), shown.documentElement);
-  shown.head.append(Object.assign(shown.createElement("style"), { textContent: style }));
-  frame.title = shown.title || "Report";
-  shown.addEventListener("click", follow);
+  const inside = frame.contentDocument;
+  inside.replaceChild(inside.adoptNode(page.documentElement), inside.documentElement);
+  inside.head.append(Object.assign(inside.createElement("style"), { textContent: style }));
+  frame.title = inside.title || "Report";
+  inside.addEventListener("click", follow);
 }
 
 function follow(event) {
