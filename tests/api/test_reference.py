@@ -71,6 +71,7 @@ def test_the_files_are_those_that_were_published() -> None:
     assert "Apache License" in (FOLDER / "LICENSE").read_text(encoding="utf-8")
 
 
+@pytest.mark.campaign
 @pytest.mark.skipif(chromium.FOUND is None or sys.platform == "win32", reason="needs a Chromium")
 def test_in_a_browser_without_the_internet(port: int) -> None:
     with chromium.blank_page() as page:

@@ -7,6 +7,7 @@ import pytest
 from service.authoring import Level, examine
 from service.catalogue import Exercise, shipped_folder
 from tests.authoring.files import HEAD, POSE, ROBOT, Make, only, robot, told
+from tests.samples import one_in
 
 RIGHT_ROWS = '[["c1", 0, "s1", "d2 s1"], ["s1", 0, "-c1", "-d2 c1"], [0, 1, 0, "a1"], [0, 0, 0, 1]]'
 WRONG_ROWS = RIGHT_ROWS.replace('"a1"', '"-a1"')
@@ -37,7 +38,9 @@ def test_of_a_file_in_order_nothing_is_said(make_exercise: Make) -> None:
     assert told(make_exercise, GOOD) == []
 
 
-@pytest.mark.parametrize("exercise_id", [file.stem for file in shipped_folder().glob("*.toml")])
+@pytest.mark.parametrize(
+    "exercise_id", one_in(3, sorted(file.stem for file in shipped_folder().glob("*.toml")))
+)
 def test_the_shipped_exercises_are_in_order(
     exercise_id: str, catalogue: Mapping[str, Exercise]
 ) -> None:

@@ -15,6 +15,7 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="loopback has on
 CLIENTS = 20
 
 
+@pytest.mark.campaign
 def test_many_clients_at_once_are_all_answered_and_recorded_once(tmp_path: Path) -> None:
     url = new_file(tmp_path)
     with service(tmp_path, DH_GRADER_DATABASE=url) as running:

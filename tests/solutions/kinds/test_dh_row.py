@@ -82,6 +82,7 @@ frame = "body"
     ]
 
 
+@pytest.mark.campaign
 def test_a_pose_too_long_to_hand_in_is_left_as_a_product(
     make_exercise: Callable[[str], Exercise],
 ) -> None:
