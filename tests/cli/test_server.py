@@ -126,7 +126,8 @@ def test_killed_in_the_midst_it_is_asked_for_exactly_the_rest(
     (tmp_path / "second").mkdir()
     with served(tmp_path / "second", DH_GRADER_PORT=str(first.port)) as second:
         again = run(*command)
-        assert graded_posts(second) == len(ungraded)
+    # The last lines of the log may come later than their answers, but before the end.
+    assert graded_posts(second) == len(ungraded)
     assert again.stderr == expected.stderr
     assert Path("points.json").read_text(encoding="utf-8") == whole
     assert not Path(".points.json.graded").exists()

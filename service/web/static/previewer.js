@@ -1,8 +1,5 @@
 // What the student types, shown as it is understood: asked for in batches, one request at a time.
 
-// What changes in so many milliseconds is sent together: a pasted table. Keys come more slowly, and
-// while an answer is on its way the next ones wait for it.
-const PAUSE = 5;
 const BATCH = 100;
 const REMEMBERED = 1000;
 // Where the service cannot be reached, the next try waits so many milliseconds.
@@ -30,7 +27,9 @@ export class Previewer {
     if (known) return cell.understood(known);
     this.#waiting.set(cell, text);
     clearTimeout(this.#timer);
-    this.#timer = setTimeout(() => this.#send(), PAUSE);
+    // What changes at once is sent together: a pasted table. Not by a timer, which fires only when the
+    // browser has drawn what was typed; while an answer is on its way, the next ones wait for it.
+    queueMicrotask(() => this.#send());
   }
 
   /** Whether an answer is still to come. */
