@@ -42,7 +42,7 @@ test: lint ## lint, type-check and test on every core
 	-@$(python) -m tests.browser.chromium
 	$(pytest)
 
-thorough: $(dev) ## the same tests, and all of which the suite has a sample (half an hour)
+thorough: $(dev) ## the same tests, and all of which the suite has a sample (takes long)
 	$(pytest) -m "campaign or not campaign" --ignore tests/installed
 
 browser: $(dev) ## say which Chromium the browser tests use; fetch one from npm where there is none

@@ -22,7 +22,7 @@ FIGURE = "figure"
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
-    """One more than there are cores: a fifth of the time, a test waits for a process or a page."""
+    """One more than there are cores: many a test waits for a process or a page."""
     return (os.cpu_count() or 1) + 1
 
 

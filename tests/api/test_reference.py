@@ -73,11 +73,12 @@ def test_the_files_are_those_that_were_published() -> None:
 
 @pytest.mark.campaign
 @pytest.mark.skipif(chromium.FOUND is None or sys.platform == "win32", reason="needs a Chromium")
-def test_in_a_browser_without_the_internet(port: int) -> None:
+def test_in_a_browser_without_the_internet(port: int, client: httpx.Client) -> None:
+    paths = client.get("/openapi.json").json()["paths"].values()
     with chromium.blank_page() as page:
         page.open(f"http://127.0.0.1:{port}{PAGE}")
         shown = page.wait_for("document.querySelectorAll('.opblock').length")
-        assert shown == 16
+        assert shown == sum(map(len, paths))
         many = "document.querySelector('#operations-grading-gradeMany {}')"
         page.wait_for(f"({many.format('.opblock-summary-control')}.click(), true)")
         page.wait_for(f"{many.format('.execute')} && ({many.format('.execute')}.click(), true)")

@@ -93,6 +93,8 @@ export class RobotView {
   forget() {
     this.#values = {};
     this.#symbols = {};
+    // Another robot may have the same joints: their numbers are not known all the same.
+    this.structure = null;
     this.frames.showAll();
   }
 
@@ -203,11 +205,15 @@ export class RobotView {
 
   /** Fetch the sweep of a joint, unless it is there. */
   prepare(i) {
-    if (!this.#answer) return;
+    const body = this.host.body();
+    // Where the table has other joints since, their values are still to come.
+    if (!this.#answer || !body || !this.#isSame(body)) return;
     const values = this.#current;
-    const others = JSON.stringify([this.host.body(), this.#symbols, values.with(i, 0)]);
+    const others = JSON.stringify([body, this.#symbols, values.with(i, 0)]);
     if (this.#sweep?.index === i && this.#sweep.others === others) return;
-    const sweep = new Sweep((sets) => this.#request(sets, withoutFormulas(this.host.body())), values, i, this.#answer.joints[i]);
+    // The table as it is now: by the sweep's later requests it may have other joints.
+    const asked = withoutFormulas(body);
+    const sweep = new Sweep((sets) => this.#request(sets, asked), values, i, this.#answer.joints[i]);
     sweep.others = others;
     this.#sweep = sweep;
     // A picture at the very place where the slider was left is better than one from the sweep.
