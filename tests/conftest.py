@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-from service.catalogue import Exercise, load_catalogue, load_exercise, shipped_folder
+from service.catalogue import Exercise, load_exercise
 from service.catalogue.parts.dh_table import DhTableSpec
+from tests.shipped import shipped_exercises
 
 # How long one example takes says more about the machine than about the code.
 settings.register_profile(
@@ -51,7 +52,7 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
 @pytest.fixture(scope="session")
 def catalogue() -> Mapping[str, Exercise]:
     """The shipped exercises by id."""
-    return load_catalogue(shipped_folder())
+    return shipped_exercises()
 
 
 @pytest.fixture(scope="session")
