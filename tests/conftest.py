@@ -1,7 +1,8 @@
 """What every test folder may use: the shipped exercises, and exercises written for one test."""
 
+import gc
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -25,6 +26,17 @@ FIGURE = "figure"
 def pytest_xdist_auto_num_workers() -> int:
     """One more than there are cores: many a test waits for a process or a page."""
     return (os.cpu_count() or 1) + 1
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """The collector of garbage never looks at the tests themselves, which live to the end."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.fixture
