@@ -140,7 +140,12 @@ class Access:
 
         Raises ProblemError.
         """
-        if self.require_reading(request, exercise).learner is not None:
+        self.require_tutor_of_one(request)
+        self.require_reading(request, exercise)
+
+    def require_tutor_of_one(self, request: Request) -> None:
+        """Check the same right of whatever exercise it is about. Raises ProblemError."""
+        if self.require_reading_one(request).learner is not None:
             raise scope_missing(Scope.TUTOR)
 
     def require_reading(self, request: Request, exercise: str | None) -> Caller:

@@ -16,7 +16,7 @@ from service.attempts.regrading import BATCH, RegradedAttempt, Regrading
 
 # A step ends with the batch in which it has lasted so long, or has so many attempts.
 _SECONDS: Final = 1.0
-_MOST: Final = 10 * BATCH
+_MOST: Final = 20 * BATCH
 # Where a step ended, and how many attempts are left after it.
 _CURSOR: Final = re.compile(r"(?P<place>[0-9a-f]{1,20}\.[0-9a-f]{1,20})?:(?P<left>[0-9a-f]{1,15})")
 

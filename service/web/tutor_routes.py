@@ -26,11 +26,15 @@ from service.web.tutor_pages import solution_page, tutor_page
 
 @dataclass(frozen=True, slots=True)
 class Tutoring:
-    """Who may see solutions, the folders of exercise files, and the one that may be written to."""
+    """Who may see solutions, the folders of exercise files, and the one that may be written to.
+
+    ``records`` says whether the service records attempts.
+    """
 
     access: Access
     folders: Sequence[Path] = field(default=())
     editor_dir: Path | None = None
+    records: bool = False
 
 
 def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:

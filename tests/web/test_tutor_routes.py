@@ -32,6 +32,9 @@ ROUTES = [
     ("GET", "/tutor/class"),
     ("GET", "/tutor/class/report"),
     ("POST", "/tutor/class"),
+    ("GET", "/tutor/attempts"),
+    ("GET", "/tutor/attempts/0123"),
+    ("GET", "/tutor/statistics/{exercise_id}"),
 ]
 RIGHT = "a\talpha\td\ttheta\na1\t0\t0\ttheta1\na2\t0\t0\ttheta2\n"
 
