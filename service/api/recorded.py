@@ -1,12 +1,13 @@
 """The routes by which tutors read what is recorded."""
 
 import json
+import re
 from datetime import UTC, datetime
 from http import HTTPStatus
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
 from fastapi import APIRouter, Path, Query, Request, Response
-from pydantic import AfterValidator, AwareDatetime, StringConstraints
+from pydantic import AfterValidator, AwareDatetime, BeforeValidator, StringConstraints
 
 from service.access.caller import Caller
 from service.api.access import Access
@@ -40,7 +41,15 @@ def _in_utc(moment: datetime) -> datetime:
         raise ValueError("is no moment of the calendar in UTC") from error
 
 
-Moment = Annotated[AwareDatetime, AfterValidator(_in_utc)]
+def _written_out(moment: object) -> object:
+    # A number would be read as seconds since 1970.
+    if isinstance(moment, str) and _DATE.match(moment) is None:
+        raise ValueError("is no date with a time, such as 2026-10-01T08:00:00Z")
+    return moment
+
+
+_DATE: Final = re.compile(r"\d{4}-\d\d-\d\d[Tt ]")
+Moment = Annotated[AwareDatetime, BeforeValidator(_written_out), AfterValidator(_in_utc)]
 Since = Annotated[
     Moment | None,
     Query(description="The first moment, with its time zone: 2026-10-01T08:00:00Z."),

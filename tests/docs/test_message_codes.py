@@ -57,6 +57,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
             "grading/kinds/dh_row.py",
             "grading/reading/entry.py",
             "grading/kinds/link_transforms.py",
+            "grading/reading/screw_list.py",
             "grading/reading/value_list.py",
             "grading/reading/written_names.py",
             "grading/reading/matrix.py",
