@@ -152,6 +152,9 @@ class Regrading:
 
     def _report(self, submission: str, level: FeedbackLevel) -> WrittenReport:
         body = GradeRequest.model_validate_json(submission)
+        # A correction may have taken a part away, or given it another id.
+        answers = {part: it for part, it in body.answers.items() if self._exercise.part(part)}
+        body = body.model_copy(update={"answers": answers})
         graded = AttemptGrading(self._exercise, body).at(level)
         report = graded.report
         parts = {part.part: (str(part.verdict), part.points) for part in report.parts}

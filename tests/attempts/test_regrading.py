@@ -106,6 +106,20 @@ def test_an_attempt_that_waits_again_is_not_regraded_twice(
         assert regrading.waiting(connection) == 0
 
 
+def test_answers_to_a_part_that_was_taken_away_are_left_aside(
+    sqlite_url: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    store = AttemptStore.open(sqlite_url)
+    scara = catalogue["scara"]
+    recorded(store, scara, "ada", RIGHT)
+    table, *others = scara.parts
+    renamed = replace(scara, version="2", parts=(table.model_copy(update={"id": "t"}), *others))
+    (done,) = work_off(store, Regrading(renamed, FeedbackLevel.HINTS))
+    assert done.before > done.after == 0
+    assert done.reasons == ("table is no part any more", "t is new, missing")
+    store.close()
+
+
 def _worker(url: str, exercise: Exercise) -> None:
     engine = open_database(url)
     regrading = Regrading(exercise, FeedbackLevel.HINTS)
