@@ -17,6 +17,8 @@ from service.attempts.regrading import BATCH, RegradedAttempt, Regrading
 # A step ends with the batch in which it has lasted so long, or has so many attempts.
 _SECONDS: Final = 1.0
 _MOST: Final = 20 * BATCH
+# A preview looks at the time after so many: fifty costly answers take seconds.
+_FEW: Final = 10
 # Where a step ended, and how many attempts are left after it.
 _CURSOR: Final = re.compile(r"(?P<place>[0-9a-f]{1,20}\.[0-9a-f]{1,20})?:(?P<left>[0-9a-f]{1,15})")
 
@@ -39,13 +41,13 @@ def preview_step(engine: Engine, regrading: Regrading, cursor: str | None) -> Re
         with engine.connect() as connection:
             if cursor is None:
                 left = regrading.outdated_count(connection)
-            found = regrading.outdated_after(connection, place)
+            found = regrading.outdated_after(connection, place, _FEW)
             while found:
                 done += regrading.preview(connection, [number for _, number in found])
                 place = found[-1]
                 if time.monotonic() >= end or len(done) >= _MOST:
                     break
-                found = regrading.outdated_after(connection, place)
+                found = regrading.outdated_after(connection, place, _FEW)
     except SQLAlchemyError as error:
         raise StoreDownError(reason(error)) from error
     # Others may be recorded, or regraded, in the meantime.
@@ -66,7 +68,7 @@ def apply_step(engine: Engine, regrading: Regrading, cursor: str | None) -> Regr
     try:
         if cursor is None:
             in_transaction(engine, regrading.enqueue)
-        while batch := in_transaction(engine, regrading.work):
+        while batch := regrading.next_batch(engine):
             done += batch
             if time.monotonic() >= end or len(done) >= _MOST:
                 break

@@ -2,19 +2,24 @@
 
 A worker locks what it takes, and what it has regraded leaves the queue in the same commit. Where it
 dies, the database gives up its locks, and another takes its attempts. In PostgreSQL workers skip
-what others have locked (SKIP LOCKED); in SQLite one writes at a time, and the others wait.
+what others have locked (SKIP LOCKED). In SQLite one writes at a time, and the others wait, those
+too that record attempts: there a worker grades first, and locks the file while it writes.
 """
 
 import json
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import partial
 from typing import Any, Final
 
 from sqlalchemy import (
     ColumnElement,
     Connection,
+    Engine,
     Row,
+    Select,
     bindparam,
     delete,
     func,
@@ -25,7 +30,7 @@ from sqlalchemy import (
     update,
 )
 
-from service.attempts.database import without_time_limit
+from service.attempts.database import in_transaction, without_time_limit
 from service.attempts.graded import AttemptGrading
 from service.attempts.kept_reports import KeptReports, PartResults, WrittenReport
 from service.attempts.reading import BY_TIME, TimePlace, later_than
@@ -35,8 +40,9 @@ from service.catalogue import Exercise, FeedbackLevel, least
 from service.submissions.body import GradeRequest
 from service.version import VERSION
 
-# So many are regraded in one commit.
+# So many are regraded in one commit, or as many as are graded in about this time (seconds).
 BATCH: Final = 50
+_LONGEST: Final = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,12 +81,14 @@ class Regrading:
         """How many attempts another version has graded."""
         return connection.scalar(select(func.count()).where(self._is_outdated())) or 0
 
-    def outdated_after(self, connection: Connection, place: TimePlace | None) -> list[TimePlace]:
-        """The next of these in the order of time, as many as a batch."""
+    def outdated_after(
+        self, connection: Connection, place: TimePlace | None, most: int
+    ) -> list[TimePlace]:
+        """The next of these in the order of time, at most so many."""
         following = select(*BY_TIME).where(self._is_outdated())
         if place is not None:
             following = following.where(later_than(place))
-        found = connection.execute(following.order_by(*BY_TIME).limit(BATCH))
+        found = connection.execute(following.order_by(*BY_TIME).limit(most))
         return [(at, number) for at, number in found]
 
     def preview(self, connection: Connection, numbers: Sequence[int]) -> list[RegradedAttempt]:
@@ -102,25 +110,60 @@ class Regrading:
         mine = regrade_queue.c.exercise == self._exercise.id
         return connection.scalar(select(func.count()).select_from(regrade_queue).where(mine)) or 0
 
-    def work(self, connection: Connection) -> list[RegradedAttempt]:
-        """Regrade some that wait and that nobody else is at; none where there is none.
+    def next_batch(self, engine: Engine) -> list[RegradedAttempt]:
+        """Regrade some that wait and that nobody else is at, in a transaction.
 
-        The caller commits; what was taken leaves the queue with that.
+        None where there is none, or in SQLite where another worker was faster.
         """
-        taken = connection.scalars(
-            select(regrade_queue.c.attempt)
-            .where(regrade_queue.c.exercise == self._exercise.id)
-            .order_by(regrade_queue.c.attempt)
-            .limit(BATCH)
-            .with_for_update(skip_locked=True)
-        ).all()
-        # One that came into the queue again while another worker was at it is done already.
-        rows = [row for row in self._rows(connection, taken) if self._needs(row)]
-        done = [(row, *self._regraded(row)) for row in rows]
-        if done:
+        prepared = self._prepared(engine) if engine.dialect.name == "sqlite" else None
+        return in_transaction(engine, partial(self.work, among=prepared))
+
+    def work(
+        self, connection: Connection, among: Sequence[int] | None = None
+    ) -> list[RegradedAttempt]:
+        """The same in the caller's transaction: what was taken leaves the queue with its commit.
+
+        ``among`` are the only ones that are taken, where some are named.
+        """
+        waiting = self._waiting()
+        if among is not None:
+            waiting = waiting.where(regrade_queue.c.attempt.in_(among))
+        taken = connection.scalars(waiting.with_for_update(skip_locked=True)).all()
+        rows = self._rows(connection, taken)
+        graded = self._graded_in_time(rows)
+        if done := [(row, *result) for row, result in graded if result]:
             self._write(connection, done)
-        connection.execute(delete(regrade_queue).where(regrade_queue.c.attempt.in_(taken)))
+        ended = [row.number for row, _ in graded]
+        connection.execute(delete(regrade_queue).where(regrade_queue.c.attempt.in_(ended)))
         return [change for _, change, _ in done]
+
+    def _waiting(self) -> Select[int]:
+        """The first that wait, as many as a batch."""
+        waiting = select(regrade_queue.c.attempt).where(
+            regrade_queue.c.exercise == self._exercise.id
+        )
+        return waiting.order_by(regrade_queue.c.attempt).limit(BATCH)
+
+    def _prepared(self, engine: Engine) -> list[int]:
+        """The first that wait; what they need is graded, and its reports are kept."""
+        with engine.connect() as connection:
+            rows = self._rows(connection, connection.scalars(self._waiting()).all())
+        return [row.number for row, _ in self._graded_in_time(rows)]
+
+    def _graded_in_time(
+        self, rows: Sequence[Row[Any]]
+    ) -> list[tuple[Row[Any], tuple[RegradedAttempt, WrittenReport] | None]]:
+        """As many as are graded before the time is over, one at the least.
+
+        None beside one that came into the queue again while another worker was at it: it is done.
+        """
+        graded: list[tuple[Row[Any], tuple[RegradedAttempt, WrittenReport] | None]] = []
+        end = time.monotonic() + _LONGEST
+        for row in rows:
+            graded.append((row, self._regraded(row) if self._needs(row) else None))
+            if time.monotonic() >= end:
+                break
+        return graded
 
     def _is_outdated(self) -> ColumnElement[bool]:
         another = or_(attempts.c.version != self._exercise.version, attempts.c.grader != VERSION)

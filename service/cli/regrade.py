@@ -63,7 +63,7 @@ def regrade_all(engine: Engine, exercise: Exercise, jobs: int) -> None:
         with progress(total) as bar:
             look_again = 0.0
             while left:
-                done = in_transaction(engine, regrading.work)
+                done = regrading.next_batch(engine)
                 begun = time.monotonic()
                 if done and begun < look_again:
                     continue
@@ -89,7 +89,7 @@ def work_off(exercise_id: str) -> None:
     try:
         engine = open_database(settings.database.get_secret_value(), create=False)
         regrading = Regrading(installed_exercise(exercise_id), settings.feedback)
-        while in_transaction(engine, regrading.work):
+        while regrading.next_batch(engine):
             pass
         engine.dispose()
     except (SQLAlchemyError, UnusableDatabaseError):

@@ -134,7 +134,7 @@ def regrade(store: AttemptStore, exercise: Exercise, most: int) -> None:
     regrading = Regrading(replace(exercise, version="corrected"), FeedbackLevel.HINTS)
     in_transaction(store.engine, regrading.enqueue)
     done, begun, used = 0, time.perf_counter(), time.process_time()
-    while done < most and (batch := in_transaction(store.engine, regrading.work)):
+    while done < most and (batch := regrading.next_batch(store.engine)):
         done += len(batch)
     took, used = time.perf_counter() - begun, time.process_time() - used
     took, used = 1e4 / done * took, 1e4 / done * used

@@ -1,15 +1,18 @@
 import json
 import os
 import signal
+import sqlite3
 import time
 from collections import Counter
 from collections.abc import Mapping
+from contextlib import closing
 from dataclasses import replace
 from typing import Any
 
 import pytest
 from sqlalchemy import func, select, text
 
+from service.attempts import regrading as regrading_module
 from service.attempts.database import in_transaction, open_database
 from service.attempts.reading import history
 from service.attempts.regrading import BATCH, RegradedAttempt, Regrading
@@ -32,7 +35,7 @@ def corrected(catalogue: Mapping[str, Exercise]) -> Exercise:
 def work_off(store: AttemptStore, regrading: Regrading) -> list[RegradedAttempt]:
     in_transaction(store.engine, regrading.enqueue)
     done: list[RegradedAttempt] = []
-    while batch := in_transaction(store.engine, regrading.work):
+    while batch := regrading.next_batch(store.engine):
         done += batch
     return done
 
@@ -118,6 +121,40 @@ def test_answers_to_a_part_that_was_taken_away_are_left_aside(
     assert done.before > done.after == 0
     assert done.reasons == ("table is no part any more", "t is new, missing")
     store.close()
+
+
+def test_in_sqlite_others_write_while_a_worker_grades(
+    sqlite_url: str,
+    catalogue: Mapping[str, Exercise],
+    corrected: Exercise,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    store = AttemptStore.open(sqlite_url)
+    recorded(store, catalogue["scara"], "ada", RIGHT)
+    grade = Regrading._report
+
+    def grade_beside_a_writer(*given: Any) -> Any:
+        with closing(sqlite3.connect(sqlite_url, timeout=0, isolation_level=None)) as another:
+            another.execute("BEGIN IMMEDIATE")
+        return grade(*given)
+
+    monkeypatch.setattr(Regrading, "_report", grade_beside_a_writer)
+    assert len(work_off(store, Regrading(corrected, FeedbackLevel.HINTS))) == 1
+    store.close()
+
+
+def test_a_batch_ends_when_its_time_is_over(
+    store: AttemptStore,
+    catalogue: Mapping[str, Exercise],
+    corrected: Exercise,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    recorded_all(store, [new_attempt(catalogue["scara"], f"l{i}", RIGHT) for i in range(3)])
+    regrading = Regrading(corrected, FeedbackLevel.HINTS)
+    in_transaction(store.engine, regrading.enqueue)
+    monkeypatch.setattr(regrading_module, "_LONGEST", 0.0)
+    done = [len(regrading.next_batch(store.engine)) for _ in range(4)]
+    assert done == [1, 1, 1, 0]
 
 
 def _worker(url: str, exercise: Exercise) -> None:
