@@ -1,6 +1,7 @@
 """Who is taken for a tutor: a student must never be, by whatever way the request comes."""
 
 import asyncio
+from typing import Any
 
 import httpx
 import pytest
@@ -17,17 +18,21 @@ def answered(
     *,
     client: str = "127.0.0.1",
     server: str = "127.0.0.1",
+    http_version: str = "1.1",
 ) -> bool:
-    """Whether the request has the right, with these ends of its connection."""
+    """Whether the request has the right, with these ends of its connection and this HTTP."""
     app = FastAPI()
     access = Access(solutions=solutions)
+
+    async def as_spoken(scope: Any, receive: Any, send: Any) -> None:
+        await app({**scope, "http_version": http_version}, receive, send)
 
     @app.get("/")
     def asked(request: Request) -> bool:
         return access.shows_solutions(request)
 
     async def ask() -> bool:
-        transport = httpx.ASGITransport(app, client=(client, 40000))
+        transport = httpx.ASGITransport(as_spoken, client=(client, 40000))
         host = f"[{server}]" if ":" in server else server
         async with httpx.AsyncClient(transport=transport, base_url=f"http://{host}:8000") as asking:
             return bool((await asking.get("/", headers=headers)).json())
@@ -55,6 +60,9 @@ def test_whoever_sits_at_the_machine_is_one(host: str) -> None:
         ({**PROGRAM, "x-forwarded-for": "127.0.0.1"}, {}),
         ({**PROGRAM, "forwarded": "for=127.0.0.1"}, {}),
         ({**PROGRAM, "via": "1.1 proxy"}, {}),
+        ({**PROGRAM, "x-forwarded-proto": "https"}, {}),
+        ({**PROGRAM, "cf-connecting-ip": "10.0.0.7"}, {}),
+        (PROGRAM, {"http_version": "1.0"}),  # nginx that nobody has told anything
         ({**PROGRAM, "origin": "https://course.example.edu"}, {}),
         ({**PROGRAM, "origin": "http://127.0.0.1:9000"}, {}),
         ({**PROGRAM, "origin": "null"}, {}),
