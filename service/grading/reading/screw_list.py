@@ -32,6 +32,11 @@ _COMMA: Final = re.compile(r",")
 _STYLE: Final = re.compile(r"\\(?:hat|vec|bar|tilde|bm|boldsymbol|mathbf|mathrm|mathit|text)")
 _OMEGA: Final = re.compile(r"\\?omega|[ωw]")
 _VELOCITY: Final = re.compile(r"v")
+# The names of both in a header that begins otherwise: "axis ω", "angular velocity".
+_IN_HEADER: Final = (
+    re.compile(r"omega|ω|angular|(?<![a-z])w(?![a-z])"),
+    re.compile(r"linear|(?<![a-z])v(?![a-z])"),
+)
 
 
 def screw_grid(text: str, count: int, reader: Reader) -> Grid:
@@ -53,7 +58,7 @@ def screw_grid(text: str, count: int, reader: Reader) -> Grid:
         return grid
     if len(grid.rows) == WIDTH and widths == {count}:
         return _of_columns(grid)
-    return _of_halves_in_cells(grid) or _of_vectors(plain, count, reader) or grid
+    return _of_halves_in_cells(grid, count) or _of_vectors(plain, count, reader) or grid
 
 
 def screw_rows(answer: object, count: int) -> object:
@@ -110,17 +115,41 @@ def _of_columns(grid: Grid) -> Grid:
     return replace(grid, rows=tuple(zip(*grid.rows, strict=True)), notes=(*grid.notes, note))
 
 
-def _of_halves_in_cells(grid: Grid) -> Grid | None:
-    """The axes of a table with the vector ω in one column and v in another, below a header."""
-    rows = [[vector for cell in row if (vector := _vector_in(cell))] for row in grid.rows]
-    if not rows[0] and len(rows) > 1:
-        header = [half for cell in grid.rows[0] if (half := _half(cell.text)) is not None]
-        if header == [1, 0]:
-            rows = [row[::-1] for row in rows]
-        rows = rows[1:]
-    if not all(len(row) == 2 for row in rows):
+def _of_halves_in_cells(grid: Grid, count: int) -> Grid | None:
+    """The axes of a table with the vector ω in one column and v in another.
+
+    Rows with numbers in front go by them. None where a header names another vector, such as q.
+    """
+    rows = [[(cell, _vector_in(cell)) for cell in row] for row in grid.rows]
+    header = None if any(vector for _, vector in rows[0]) else rows.pop(0)
+    if not rows or any(sum(bool(vector) for _, vector in row) != 2 for row in rows):
         return None
-    return replace(grid, rows=tuple((*omega, *velocity) for omega, velocity in rows))
+    halves: tuple[int | None, ...] = (0, 1)
+    if header is not None:
+        columns = zip(header, rows[0], strict=False)
+        names = [name.text for (name, _), (_, vector) in columns if vector]
+        halves = tuple(map(_half_of_column, names)) if any(names) else halves
+    if set(halves) != {0, 1}:
+        return None
+    axes = []
+    for row in rows:
+        vectors = [vector for _, vector in row if vector]
+        axes.append([*vectors[halves.index(0)], *vectors[halves.index(1)]])
+    labels = ["" if row[0][1] else row[0][0].text for row in rows]
+    if any(map(indices_of, labels)):
+        placed = _placed(labels, axes, count)
+        return None if placed is None else replace(grid, rows=tuple(map(tuple, placed)))
+    return replace(grid, rows=tuple(map(tuple, axes)))
+
+
+def _half_of_column(name: str) -> int | None:
+    """The half that a header names: 0 for ω, 1 for v, None for anything else."""
+    half = _half(name)
+    if half is None:
+        plain = name.lower()
+        named = [i for i, half_name in enumerate(_IN_HEADER) if half_name.search(plain)]
+        half = named[0] if len(named) == 1 else None
+    return half
 
 
 def _vector_in(cell: GridCell) -> list[GridCell]:

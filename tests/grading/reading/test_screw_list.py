@@ -34,6 +34,12 @@ TEXTS = {
     "| 2 | (0,0,0) | (1,0,0) |\n| 3 | (0,0,1) | (0,-L1,0) |",
     "v before ω": "| i | v | ω |\n|---|---|---|\n| 1 | (0,0,0) | (0,0,1) |\n"
     "| 2 | (1,0,0) | (0,0,0) |\n| 3 | (0,-L1,0) | (0,0,1) |",
+    "v before ω, in words": "linear velocity; angular velocity\n(0,0,0); (0,0,1)\n"
+    "(1,0,0); (0,0,0)\n(0,-L1,0); (0,0,1)",
+    "rows by their numbers": "| joint | axis ω | v |\n|---|---|---|\n| 3 | (0,0,1) | (0,-L1,0) |\n"
+    "| 1 | (0,0,1) | (0,0,0) |\n| 2 | (0,0,0) | (1,0,0) |",
+    "rows without numbers": "| type | ω | v |\n|---|---|---|\n| R | (0,0,1) | (0,0,0) |\n"
+    "| P | (0,0,0) | (1,0,0) |\n| R | (0,0,1) | (0,-L1,0) |",
 }
 LISTS: dict[str, Any] = {
     "pairs": [[[0, 0, 1], [0, 0, 0]], [[0, 0, 0], [1, 0, 0]], [[0, 0, 1], [0, "-L1", 0]]],
@@ -52,6 +58,14 @@ COLUMNS = {
 @pytest.fixture
 def rpr(catalogue: Mapping[str, Exercise]) -> Exercise:
     return catalogue["planar-rpr-poe"]
+
+
+@pytest.mark.parametrize("header", ["ω | q", "q | ω", "v | s", "ω | ω"])
+def test_a_table_of_other_vectors_is_not_read(header: str, rpr: Exercise) -> None:
+    """No point on an axis is taken for v, nor v for ω."""
+    rows = "| (0,0,0) | (0,0,1) |\n| (1,0,0) | (0,0,0) |\n| (0,L1,0) | (0,0,1) |"
+    report = part(handed_in(rpr, {PART: f"| {header} |\n|---|---|\n{rows}"}), PART)
+    assert report.verdict is Verdict.UNREADABLE
 
 
 @pytest.mark.parametrize("answer", [*TEXTS.values(), *LISTS.values()], ids=[*TEXTS, *LISTS])
