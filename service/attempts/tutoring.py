@@ -2,11 +2,16 @@
 
 from dataclasses import dataclass
 from datetime import datetime
+from typing import Final
 
 from sqlalchemy import Connection, Engine, delete, func, insert, select, text, update
+from sqlalchemy.exc import IntegrityError
 
 from service.attempts.errors import UnknownAttemptError, UnusablePointsError
 from service.attempts.tables import attempts, earlier_reports, overrides, regrade_queue
+
+# So often others may write of a learner in PostgreSQL while the learner is forgotten.
+_TRIES: Final = 4
 
 
 def override(
@@ -62,6 +67,17 @@ def forget(connection: Connection, learner: str) -> LearnerData:
     """
     if connection.dialect.name == "sqlite":
         connection.execute(text("PRAGMA secure_delete = ON"))
+    for _ in range(_TRIES):
+        try:
+            with connection.begin_nested():
+                return _forget(connection, learner)
+        except IntegrityError:
+            # Since its rows were deleted, another process has given points or begun a regrade.
+            continue
+    return _forget(connection, learner)
+
+
+def _forget(connection: Connection, learner: str) -> LearnerData:
     data = data_of(connection, learner)
     mine = select(attempts.c.number).where(attempts.c.learner == learner)
     for table in (regrade_queue, earlier_reports, overrides):

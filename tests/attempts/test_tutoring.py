@@ -1,8 +1,10 @@
+import time
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import pytest
-from sqlalchemy import func, select
+from sqlalchemy import func, select, text
 
 from service.attempts.errors import UnknownAttemptError, UnusablePointsError
 from service.attempts.reading import history
@@ -16,6 +18,7 @@ from service.attempts.tutoring import (
 )
 from service.catalogue import Exercise, FeedbackLevel
 from tests.attempts.recorded import NO_TWIST, NOON, RIGHT, recorded
+from tests.guards import ANSWER
 
 
 def test_points_of_a_tutor_count_and_can_be_withdrawn(
@@ -73,3 +76,31 @@ def test_nothing_of_a_forgotten_learner_is_left(
             if table not in (attempts, outcomes):
                 rows = connection.scalar(select(func.count()).select_from(table)) or 0
                 assert rows == (1 if table.name == "earlier_reports" else 0)
+
+
+def test_a_learner_is_forgotten_beside_a_regrade_that_begins(
+    postgresql_url: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    store = AttemptStore.open(postgresql_url)
+    recorded(store, catalogue["scara"], "ada", NO_TWIST)
+    regrading = Regrading(replace(catalogue["scara"], version="2"), FeedbackLevel.FULL)
+
+    def forgotten() -> LearnerData:
+        with store.engine.begin() as connection:
+            return forget(connection, "ada")
+
+    waiting = text("SELECT count(*) FROM pg_stat_activity WHERE wait_event_type = 'Lock'")
+    with ThreadPoolExecutor(1) as thread:
+        with store.engine.begin() as connection:
+            regrading.enqueue(connection)
+            deleted = thread.submit(forgotten)
+            end = time.monotonic() + ANSWER
+            with store.engine.connect() as watching:
+                while not watching.scalar(waiting) and time.monotonic() < end:
+                    # A transaction sees the same all the time.
+                    watching.rollback()
+                    time.sleep(0.01)
+        assert deleted.result(ANSWER) == LearnerData(1, 0, 0)
+    with store.engine.connect() as connection:
+        assert regrading.waiting(connection) == 0
+    store.close()
