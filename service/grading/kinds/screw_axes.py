@@ -1,7 +1,7 @@
 """Answer kind ``screw_axes``: the screw axis (ω; v) of each joint, seen from base or tool."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from service.catalogue.formulas import SCREW
 from service.catalogue.parts.screw_axes import ScrewAxesSpec
 from service.catalogue.robot import at_home
+from service.expressions import Note
 from service.grading.comparison import Match, entry_matches
 from service.grading.diagnosis.all_screws import WrongScrews, explain_screws
 from service.grading.diagnosis.home_position import NOT_AT_HOME, with_joint_variable
@@ -20,9 +21,15 @@ from service.grading.judging.expected import formula_values
 from service.grading.judging.report_rows import entry_rows
 from service.grading.judging.value_list import ComparedValues, number_corrections
 from service.grading.part import Grading, Judged
-from service.grading.reading.matrix import StudentMatrix, matrix_of_grid, read_matrix
+from service.grading.reading.entry import from_note
+from service.grading.reading.matrix import (
+    StudentMatrix,
+    matrix_of_entries,
+    matrix_of_grid,
+    read_matrix,
+)
 from service.grading.reading.pasted import from_grid_error
-from service.grading.reading.screw_list import screw_grid, screw_rows
+from service.grading.reading.screw_list import WIDTH, columns_as_axes, screw_grid, screw_rows
 from service.grading.reading.value_list import StudentValues
 from service.grading.report import Feedback, Place, Severity
 from service.grading.samples import SAMPLES, Samples
@@ -56,8 +63,38 @@ def read(part: ScrewAxesSpec, answer: object, grading: Grading) -> StudentMatrix
             grid = screw_grid(answer, count, grading.reader)
         except GridError as error:
             raise UnreadableAnswerError(from_grid_error(error)) from error
-        return matrix_of_grid(grid, quantities, grading.reader)
+        rows = matrix_of_grid(grid, quantities, grading.reader)
+        if count != WIDTH or not _columns_are_axes(part, rows, grading):
+            return rows
+        return _by_columns(rows, columns_as_axes(grid), grading)
     return read_matrix(screw_rows(answer, count), quantities, grading.reader)
+
+
+def _columns_are_axes(part: ScrewAxesSpec, rows: StudentMatrix, grading: Grading) -> bool:
+    """Whether at least two more columns than rows of a square matrix are right: one is by chance.
+
+    Lynch & Park, "Modern Robotics", write the axes as the columns of a matrix.
+    """
+    axes = _expected(part, grading).axes
+    senses = (1, -1) if part.directions == "free" else (1,)
+
+    def right(matrix: StudentMatrix) -> int:
+        found = [_matches(matrix, sense * axes, grading) for sense in senses]
+        return int((np.array(found) >= Match.ROUNDED).all(axis=2).any(axis=0).sum())
+
+    return right(_transposed(rows, grading)) >= right(rows) + 2
+
+
+def _transposed(rows: StudentMatrix, grading: Grading) -> StudentMatrix:
+    entries = [list(column) for column in zip(*rows.entries, strict=True)]
+    return matrix_of_entries(entries, rows.quantities, grading.reader)
+
+
+def _by_columns(rows: StudentMatrix, note: Note, grading: Grading) -> StudentMatrix:
+    columns = _transposed(rows, grading)
+    first = columns.entries[0][0]
+    columns.entries[0][0] = replace(first, findings=(*first.findings, from_note(note)))
+    return columns
 
 
 def judge(part: ScrewAxesSpec, answer: StudentMatrix, grading: Grading) -> Judged:

@@ -110,9 +110,14 @@ def _in_square_brackets(found: re.Match[str]) -> str:
 
 
 def _of_columns(grid: Grid) -> Grid:
+    notes = (*grid.notes, columns_as_axes(grid))
+    return replace(grid, rows=tuple(zip(*grid.rows, strict=True)), notes=notes)
+
+
+def columns_as_axes(grid: Grid) -> Note:
+    """The note that the columns of a matrix are the axes."""
     place = grid.rows[0][0].whole[0], grid.rows[-1][-1].whole[1]
-    note = Note("columns_as_axes", "The columns were read as the axes.", place)
-    return replace(grid, rows=tuple(zip(*grid.rows, strict=True)), notes=(*grid.notes, note))
+    return Note("columns_as_axes", "The columns were read as the axes.", place)
 
 
 def _of_halves_in_cells(grid: Grid, count: int) -> Grid | None:

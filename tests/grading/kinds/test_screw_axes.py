@@ -1,12 +1,13 @@
 """Screw axes: space and body, sliding joints, signs, and what a row is worth."""
 
+import json
 from collections.abc import Mapping
 from typing import Any
 
 import pytest
 
 from service.catalogue import Exercise
-from service.grading import Verdict
+from service.grading import PartReport, Verdict
 from tests.grading.support.exercise_texts import SPATIAL_RRR, Make, all_codes, graded, one_part
 from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
 
@@ -126,6 +127,37 @@ def test_where_directions_are_free_an_axis_may_be_reversed(make_exercise: Make) 
     assert graded(exercise, [[0, 0, -1, 0, "-l", 0]]).verdict is Verdict.PARTIAL
     given = make_exercise(FREE.replace('directions = "free"\n', ""))
     assert all_codes(graded(given, [[0, 0, -1, 0, "l", 0]])) == {"axis_reversed"}
+
+
+# Lynch & Park, "Modern Robotics" (2017), example 4.5: the space axes of the UR5, as columns.
+UR5 = [
+    ["0", "0", "0", "0", "0", "0"],
+    ["0", "1", "1", "1", "0", "1"],
+    ["1", "0", "0", "0", "-1", "0"],
+    ["0", "-H1", "-H1", "-H1", "-W1", "H2 - H1"],
+    ["0", "0", "0", "0", "L1 + L2", "0"],
+    ["0", "0", "L1", "L1 + L2", "0", "L1 + L2"],
+]
+
+
+def test_six_axes_may_be_the_columns_of_a_matrix(make_exercise: Make) -> None:
+    rows = [list(axis) for axis in zip(*UR5, strict=True)]
+    lengths = "".join(
+        f'{name} = {{ kind = "length", description = "a length" }}\n'
+        for name in ("H1", "H2", "W1", "L1", "L2")
+    )
+    expected = f'frame = "space"\nexpected = {json.dumps(rows)}'
+    exercise = make_exercise(one_part("screw_axes", expected, f"[symbols]\n{lengths}"))
+
+    def pasted(matrix: list[list[str]]) -> PartReport:
+        return graded(exercise, f"[{'; '.join(', '.join(row) for row in matrix)}]")
+
+    assert full_marks(pasted(rows))
+    assert all_codes(pasted(rows)) == set()
+    assert full_marks(pasted(UR5))
+    assert all_codes(pasted(UR5)) == {"columns_as_axes"}
+    slip = [*UR5[:5], ["0", "0", "L1", "L1", "0", "L1 + L2"]]
+    assert not_correct(pasted(slip)) == {("4", "6"): Verdict.INCORRECT}
 
 
 def test_one_axis_needs_no_list_around_it(make_exercise: Make) -> None:
