@@ -28,6 +28,7 @@ from sqlalchemy import (
 from service.attempts.database import without_time_limit
 from service.attempts.graded import AttemptGrading
 from service.attempts.kept_reports import KeptReports, PartResults, WrittenReport
+from service.attempts.reading import BY_TIME, TimePlace, later_than
 from service.attempts.recording import insert_or_ignore, outcome_ids
 from service.attempts.tables import attempts, earlier_reports, regrade_queue
 from service.catalogue import Exercise, FeedbackLevel, least
@@ -69,6 +70,18 @@ class Regrading:
         """The numbers of the attempts that another version has graded."""
         numbers = select(attempts.c.number).where(self._is_outdated()).order_by(attempts.c.number)
         return list(connection.scalars(numbers))
+
+    def outdated_count(self, connection: Connection) -> int:
+        """How many attempts another version has graded."""
+        return connection.scalar(select(func.count()).where(self._is_outdated())) or 0
+
+    def outdated_after(self, connection: Connection, place: TimePlace | None) -> list[TimePlace]:
+        """The next of these in the order of time, as many as a batch."""
+        following = select(*BY_TIME).where(self._is_outdated())
+        if place is not None:
+            following = following.where(later_than(place))
+        found = connection.execute(following.order_by(*BY_TIME).limit(BATCH))
+        return [(at, number) for at, number in found]
 
     def preview(self, connection: Connection, numbers: Sequence[int]) -> list[RegradedAttempt]:
         """What regrading these attempts would change; nothing is written."""

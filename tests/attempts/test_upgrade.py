@@ -13,7 +13,7 @@ from alembic.config import Config
 from sqlalchemy import create_engine, inspect, make_url, text
 
 from service.attempts import database
-from service.attempts.attempt import AttemptFilter
+from service.attempts.attempt import AttemptFilter, GradesFormat
 from service.attempts.database import in_transaction
 from service.attempts.grades import graded_attempts, written
 from service.attempts.reading import history, page
@@ -94,7 +94,7 @@ def store(oldest: str) -> Iterator[AttemptStore]:
 def exported(store: AttemptStore) -> list[dict[str, str]]:
     with store.engine.connect() as connection:
         graded = graded_attempts(connection, AttemptFilter("scara"), lambda _: "best")
-        lines = b"".join(written(graded, "csv", "")).decode("utf-8-sig").splitlines()
+        lines = b"".join(written(graded, GradesFormat.CSV, "")).decode("utf-8-sig").splitlines()
     return list(csv.DictReader(lines))
 
 
