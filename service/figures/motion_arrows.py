@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 
@@ -73,13 +72,14 @@ def sliding_arrow(
         middle = centre + along * half * axis
         return [camera.seen(middle + side * offset * aside + steps) for side in (reach, -reach)]
 
-    def badness(line: Numbers) -> tuple[int, float]:
+    def crossings(line: Numbers) -> int:
         # With its heads the arrow is longer.
-        return room.crossings(1.3 * line - 0.3 * line.mean(axis=0)), room.crowd(line, 7.0)
+        return room.crossings(1.3 * line - 0.3 * line.mean(axis=0))
 
     best = min(beside(1, 0), key=lambda line: room.crowd(line, 7.0))
-    if badness(best)[0]:
-        places = product((1, 1.6), (0, 1, -1))
-        others = [line for reach, along in places for line in beside(reach, along)]
-        best = min([best, *others], key=badness)
+    for reach in (1, 1.6, 2.2):
+        if crossings(best):
+            others = [line for along in (0, 1, -1) for line in beside(reach, along)]
+            freest = sorted(others, key=lambda line: room.crowd(line, 7.0))
+            best = min([best, *freest], key=crossings)
     return MotionArrow(best, both)

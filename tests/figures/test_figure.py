@@ -179,7 +179,7 @@ def test_frames_are_drawn_for_tutors() -> None:
     assert "x3, x4, x5" in framed
 
 
-@pytest.mark.parametrize("name", ["scara", "stanford-arm", "three-link-cylindrical"])
+@pytest.mark.parametrize("name", ["scara", "three-link-cylindrical"])
 def test_no_arrow_of_a_sliding_joint_crosses_an_axis(name: str) -> None:
     lines: dict[str, list[tuple[complex, complex]]] = {"motion": [], "frame": []}
     for line in ET.fromstring(reference_figure(SHIPPED[name])).iter(f"{SVG}polyline"):
