@@ -1,6 +1,6 @@
 """Answer kind ``screw_axes``: the screw axis of each joint."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
@@ -44,6 +44,10 @@ class ScrewAxesSpec(PartSpec):
     def formulas(self) -> WrittenFormulas | None:
         """The axes, if they are given."""
         return None if self.expected is None else screws_of("expected", self.expected)
+
+    def count(self, joints: Sequence[object]) -> int:
+        """The number of axes asked for, on a robot with these joints."""
+        return len(self.expected or joints)
 
     def shape(self, reference: Reference | None) -> ScrewAxesShape:
         """A list of six-vectors."""

@@ -16,7 +16,7 @@ _LETTERS: Final = rf"(?:\\?[A-Za-z]{{1,12}}[0-9]{{0,3}}|[{greek.CLASS}][0-9]{{0,
 _SCRIPT: Final = r"[_^]\s*(?:\{[^{}=]{0,24}\}|\\?[A-Za-z0-9*]{1,12})"
 _LEFT: Final = re.compile(
     rf"""
-    (?: \$ | \s | \\[(\[] | \\begin\{{[a-z]+\*?\}} ){{0,8}}
+    (?: \$ | \s | \\[(\[,;:!] | \\q?quad(?![A-Za-z]) | \\begin\{{[a-z]+\*?\}} ){{0,8}}
     (?P<side>
       (?P<left>
         (?: (?:let|const|var|double|float|auto) \s++ )?

@@ -19,17 +19,29 @@ from service.grading.judging.report_rows import value_places, value_rows
 from service.grading.judging.value_list import ComparedValues, number_corrections
 from service.grading.part import Grading, Judged
 from service.grading.reading.component_names import names_of_coordinates
-from service.grading.reading.value_list import StudentValues, read_list
+from service.grading.reading.value_list import (
+    HOMOGENEOUS,
+    PLANAR,
+    StudentValues,
+    Tail,
+    read_list,
+)
 from service.grading.report import Place
 from service.kinematics.transforms import Numbers
 
 
 def read(part: PositionSpec, answer: object, grading: Grading) -> StudentValues:
     """The coordinates in a list or a pasted text."""
-    # In [x, y, 0] for x and z, nobody can say whether z is the second or the third value.
-    planar = part.coordinates == "xy"
     names = names_of_coordinates(part.coordinates)
-    return read_list(answer, names, grading.reader, planar=planar)
+    return read_list(answer, names, grading.reader, _tails(part.coordinates))
+
+
+def _tails(coordinates: str) -> tuple[Tail, ...]:
+    """What may stand behind these coordinates."""
+    if coordinates == "xy":
+        return PLANAR, HOMOGENEOUS, (*PLANAR, *HOMOGENEOUS)
+    # In [x, y, 0] for x and z, nobody can say whether z is the second or the third value.
+    return (HOMOGENEOUS,) if len(coordinates) == len("xyz") else ()
 
 
 def judge(part: PositionSpec, answer: StudentValues, grading: Grading) -> Judged:

@@ -14,16 +14,19 @@ from service.grading.diagnosis.all_screws import WrongScrews, explain_screws
 from service.grading.diagnosis.home_position import NOT_AT_HOME, with_joint_variable
 from service.grading.diagnosis.screw_axis import explain_screw
 from service.grading.diagnosis.value_list import slips_of
-from service.grading.feedback import Finding
+from service.grading.feedback import Finding, UnreadableAnswerError
 from service.grading.judging.content import known_cells, of_rows
 from service.grading.judging.expected import formula_values
 from service.grading.judging.report_rows import entry_rows
 from service.grading.judging.value_list import ComparedValues, number_corrections
 from service.grading.part import Grading, Judged
-from service.grading.reading.matrix import StudentMatrix, read_matrix
+from service.grading.reading.matrix import StudentMatrix, matrix_of_grid, read_matrix
+from service.grading.reading.pasted import from_grid_error
+from service.grading.reading.screw_list import screw_grid, screw_rows
 from service.grading.reading.value_list import StudentValues
 from service.grading.report import Feedback, Place, Severity
 from service.grading.samples import SAMPLES, Samples
+from service.grids import GridError
 from service.kinematics.screws import moved
 from service.kinematics.transforms import Numbers, inverse
 
@@ -45,9 +48,16 @@ class ExpectedScrews:
 
 
 def read(part: ScrewAxesSpec, answer: object, grading: Grading) -> StudentMatrix:
-    """One six-vector for each joint, in a list of lists or a pasted text."""
-    quantities = (SCREW,) * _count(part, grading)
-    return read_matrix(_as_rows(answer, len(quantities)), quantities, grading.reader)
+    """One six-vector for each joint, in a list or a pasted text."""
+    count = part.count(grading.exercise.joints)
+    quantities = (SCREW,) * count
+    if isinstance(answer, str) and answer.strip():
+        try:
+            grid = screw_grid(answer, count, grading.reader)
+        except GridError as error:
+            raise UnreadableAnswerError(from_grid_error(error)) from error
+        return matrix_of_grid(grid, quantities, grading.reader)
+    return read_matrix(screw_rows(answer, count), quantities, grading.reader)
 
 
 def judge(part: ScrewAxesSpec, answer: StudentMatrix, grading: Grading) -> Judged:
@@ -148,18 +158,6 @@ REVERSED = Finding(
     "sign.",
     severity=Severity.INFO,
 )
-
-
-def _as_rows(answer: object, count: int) -> object:
-    """The answer, where one single axis may be handed in without a list around it."""
-    if count == 1 and isinstance(answer, list) and len(answer) == len(SCREW):
-        return [answer]
-    return answer
-
-
-def _count(part: ScrewAxesSpec, grading: Grading) -> int:
-    """The number of axes asked for."""
-    return len(part.expected or grading.exercise.joints)
 
 
 def _expected(part: ScrewAxesSpec, grading: Grading) -> ExpectedScrews:

@@ -15,7 +15,7 @@ from service.grading.judging.report_rows import value_places, value_rows
 from service.grading.judging.value_list import ComparedValues
 from service.grading.part import Grading, Judged
 from service.grading.reading.component_names import names_of_components
-from service.grading.reading.value_list import StudentValues, read_list
+from service.grading.reading.value_list import PLANAR, StudentValues, read_list
 from service.grading.report import Correction
 
 
@@ -24,7 +24,8 @@ def read(part: VectorSpec, answer: object, grading: Grading) -> StudentValues:
     names = names_of_components(
         tuple((each.name, each.quantity) for each in part.components), grading.reader.vocabulary
     )
-    return read_list(answer, names, grading.reader, planar=len(part.components) == 2)
+    tails = (PLANAR,) if len(part.components) == len("xy") else ()
+    return read_list(answer, names, grading.reader, tails)
 
 
 def judge(part: VectorSpec, answer: StudentValues, grading: Grading) -> Judged:

@@ -56,14 +56,18 @@ class PastedTable:
     is_named: bool = True
 
 
-def read_pasted_table(text: str, reader: Reader, order: Sequence[str] = COLUMNS) -> PastedTable:
+def read_pasted_table(text: str, reader: Reader) -> PastedTable:
+    """The rows of a pasted DH table; see ``table_of``. Raises GridError where it is none."""
+    return table_of(pasted_grid(text, reader), reader)
+
+
+def table_of(grid: Grid, reader: Reader, order: Sequence[str] = COLUMNS) -> PastedTable:
     """The rows of a pasted DH table.
 
     Columns go by their headers, in any order; without headers there must be four, or five with
     the rows' numbers in front, in ``order``. Rows go by their labels, where they have
-    any. Raises GridError where the text is no table, or which column is which cannot be told.
+    any. Raises GridError where it cannot be told which column is which.
     """
-    grid = pasted_grid(text, reader)
     findings: tuple[Finding, ...] = ()
     if _has_parameters_in_rows(grid):
         grid, findings = _turned(grid)

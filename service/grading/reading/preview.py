@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 from service.catalogue import Exercise, PartSpec
 from service.catalogue.parts.link_transforms import LinkTransformsSpec
+from service.catalogue.parts.screw_axes import ScrewAxesSpec
 from service.expressions import AngleUnit, Kind, Note
 from service.expressions.errors import Span
 from service.grading.feedback import Finding, UnreadableAnswerError
@@ -12,6 +13,7 @@ from service.grading.reading.entry import Entry, Reader
 from service.grading.reading.matrix_list import grids_in_order
 from service.grading.reading.pasted import pasted_grid, placed
 from service.grading.reading.pasted_table import entries_of, read_pasted_table
+from service.grading.reading.screw_list import screw_grid
 from service.grading.samples import draw
 from service.grading.work_budget import WorkBudget
 from service.grids import Grid, GridCell, GridError
@@ -129,7 +131,10 @@ def _preview(text: str, exercise: Exercise, spec: PartSpec, reader: Reader) -> P
         return _table(text, reader)
     if isinstance(spec, LinkTransformsSpec):
         return _matrices(text, exercise.robot.tables[spec.convention].labels, reader)
-    grid = pasted_grid(text, reader)
+    if isinstance(spec, ScrewAxesSpec):
+        grid = screw_grid(text, spec.count(exercise.joints), reader)
+    else:
+        grid = pasted_grid(text, reader)
     quantity: Kind = "angle" if spec.pasted_as == "angles" else "number"
     return PastedPreview(_rows(grid, quantity, reader), grid.notes)
 

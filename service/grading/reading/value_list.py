@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Final
 
 from service.expressions import LIMITS, Expression, Kind, LeftSide
 from service.expressions.errors import counted
@@ -30,25 +31,32 @@ class StudentValues:
         return [entry.expression for entry in self.entries]
 
 
+# What may stand behind the values asked for: the third coordinate of a point in the plane, and the
+# 1 of homogeneous coordinates.
+Tail = tuple[str, ...]
+PLANAR: Final[Tail] = ("0",)
+HOMOGENEOUS: Final[Tail] = ("1",)
+
+
 def read_list(
-    answer: object, names: ListNames, reader: Reader, *, planar: bool = False
+    answer: object, names: ListNames, reader: Reader, tails: Sequence[Tail] = ()
 ) -> StudentValues:
     """The values of a list, one for each of the ``names`` asked for.
 
     A list may also be a column (a list of lists of one), a row in a list of its own, or pasted
     text. Values that were left off at the end are missing. Values with names in front, as in
-    y = l1 s1, are put into the order of these; one with the name of another place is unreadable. A
-    ``planar`` answer may have one 0 more, as in [x, y, 0]: it is left aside, with a note. Raises
-    UnreadableAnswerError where there is no list of the length asked for.
+    y = l1 s1, are put into the order of these; one with the name of another place is unreadable.
+    One of the ``tails`` may stand behind them, as in [x, y, 0]: it is left aside, with a note.
+    Raises UnreadableAnswerError where there is no list of the length asked for.
     """
     if isinstance(answer, dict):
         answer = _by_keys(answer, names, reader)
     if isinstance(answer, str):
         # Of the same length, so that a place in the text stays where it is.
         answer = _NAME_WITH_COLON.sub(r"\1=", answer)
-        entries = _pasted(answer, names, reader, planar=planar)
+        entries = _pasted(_in_round_brackets(answer), names, reader, tails)
     else:
-        entries = _listed(answer, names, reader, planar=planar)
+        entries = _listed(answer, names, reader, tails)
     quantities = names.quantities
     return StudentValues(entries, quantities, entry_values(entries, quantities, reader.samples))
 
@@ -104,31 +112,44 @@ def _as_it_is(entry: Entry) -> Entry:
 _LEFT_OFF: _Written = (None, _as_it_is)
 
 
-def _listed(answer: object, names: ListNames, reader: Reader, *, planar: bool) -> list[Entry]:
+def _listed(answer: object, names: ListNames, reader: Reader, tails: Sequence[Tail]) -> list[Entry]:
     values, count = _flat(answer), len(names.quantities)
-    left_aside = planar and len(values) == count + 1 and _is_zero(values[-1], reader)
-    if left_aside:
-        values = values[:-1]
+    left_aside = _left_aside(values, count, reader, tails)
+    values = values[: len(values) - len(left_aside)]
     is_nested = all(isinstance(value, list) for value in values)
     if is_nested or len(values) > count:
         raise UnreadableAnswerError(_wrong_shape(count, 0 if is_nested else len(values)))
     entries = _read([(raw, _as_it_is) for raw in values], names, reader)
-    return _with_note(entries) if left_aside else entries
+    return _with_notes(entries, [(figure, None) for figure in left_aside])
 
 
-def _is_zero(raw: object, reader: Reader) -> bool:
-    """Whether a value is 0, with a name in front or without: z = 0."""
+def _left_aside(
+    values: Sequence[object], count: int, reader: Reader, tails: Sequence[Tail]
+) -> Tail:
+    """The tail behind ``count`` values; none where no tail is all that stands there."""
+    behind = values[count:]
+    for tail in tails:
+        if len(tail) == len(behind) and all(map(partial(_is, reader), behind, tail)):
+            return tail
+    return ()
+
+
+def _is(reader: Reader, raw: object, figure: str) -> bool:
+    """Whether a value is this figure; a 0 may have a name in front: z = 0."""
     if isinstance(raw, str):
-        name = name_of(raw, reader.vocabulary)
-        return (raw[name.span[1] :] if name else raw).strip() == "0"
-    return isinstance(raw, int | float) and not isinstance(raw, bool) and raw == 0
+        plain = _LATEX_BLANK.sub("", raw)
+        name = name_of(plain, reader.vocabulary) if figure == "0" else None
+        return (plain[name.span[1] :] if name else plain).strip() == figure
+    return isinstance(raw, int | float) and not isinstance(raw, bool) and raw == int(figure)
 
 
-def _with_note(entries: Sequence[Entry], span: tuple[int, int] | None = None) -> list[Entry]:
-    """The entries with the note on the last of them that a 0 behind it was left aside."""
+def _with_notes(
+    entries: Sequence[Entry], left_aside: Sequence[tuple[str, tuple[int, int] | None]]
+) -> list[Entry]:
+    """The entries with notes on the last of them: which figures behind it were left aside."""
     *before, last = entries
-    note = replace(_ZERO_LEFT_ASIDE, span=span)
-    return [*before, replace(last, findings=(*last.findings, note))]
+    notes = [replace(_LEFT_ASIDE[figure], span=span) for figure, span in left_aside]
+    return [*before, replace(last, findings=(*last.findings, *notes))]
 
 
 def _flat(answer: object) -> list[object]:
@@ -142,7 +163,16 @@ def _flat(answer: object) -> list[object]:
     return answer
 
 
-def _pasted(text: str, names: ListNames, reader: Reader, *, planar: bool) -> list[Entry]:
+def _in_round_brackets(text: str) -> str:
+    """The text with round brackets for <l1 c1, l1 s1>; each character stays at its place."""
+    found = _IN_ANGLE_BRACKETS.fullmatch(text)
+    if not found:
+        return text
+    pieces = ("(".ljust(len(found[2])), found[3], ")".rjust(len(found[4])))
+    return f"{found[1]}{''.join(pieces)}{found[5]}"
+
+
+def _pasted(text: str, names: ListNames, reader: Reader, tails: Sequence[Tail]) -> list[Entry]:
     count = len(names.quantities)
     if not text.strip():
         return [MISSING] * count
@@ -151,25 +181,26 @@ def _pasted(text: str, names: ListNames, reader: Reader, *, planar: bool) -> lis
     except GridError as error:
         entries = None
         if error.code in _OF_TABLES:
-            entries = _taken_apart(text, names, reader, planar=planar)
+            entries = _taken_apart(text, names, reader, tails)
         if entries is None:
             raise UnreadableAnswerError(_from_grid_error(error, count)) from error
         return entries
     cells: Sequence[GridCell] = rows[0] if len(rows) == 1 else [row[0] for row in rows]
     is_list = len(rows) == 1 or all(len(row) == 1 for row in rows)
-    left_aside = planar and len(cells) == count + 1 and _is_zero(cells[-1].text, reader)
-    if not is_list or len(cells) > count + left_aside:
-        entries = None if is_list else _taken_apart(text, names, reader, planar=planar)
+    left_aside = _left_aside([cell.text for cell in cells], count, reader, tails)
+    if not is_list or len(cells) > count + len(left_aside):
+        entries = None if is_list else _taken_apart(text, names, reader, tails)
         if entries is None:
             raise UnreadableAnswerError(_wrong_shape(count, len(cells) if is_list else 0))
         return entries
     written = [(cell.text, partial(placed, cell=cell)) for cell in cells[:count]]
     entries = _read(written, names, reader)
-    return _with_note(entries, cells[-1].whole) if left_aside else entries
+    places = [cell.whole for cell in cells[count:]]
+    return _with_notes(entries, [*zip(left_aside, places, strict=True)])
 
 
 def _taken_apart(
-    text: str, names: ListNames, reader: Reader, *, planar: bool
+    text: str, names: ListNames, reader: Reader, tails: Sequence[Tail]
 ) -> list[Entry] | None:
     """The values of a text with one on each line, or with semicolons or commas between them.
 
@@ -178,14 +209,14 @@ def _taken_apart(
     count = len(names.quantities)
     for pieces in (_lines(text), _split(text, ";"), _split(text, ",")):
         parts = [_stripped(at, piece) for at, piece in pieces if piece.strip()]
-        left_aside = planar and len(parts) == count + 1 and _is_zero(parts[-1][1], reader)
-        if len(parts) != count + left_aside:
+        left_aside = _left_aside([part for _, part in parts], count, reader, tails)
+        if len(parts) != count + len(left_aside):
             continue
         written = [(part, partial(_shifted, by=at)) for at, part in parts[:count]]
         entries = _read(written, names, reader)
         if any(entry.readable or entry.findings[0].suggestion for entry in entries):
-            at, zero = parts[-1]
-            return _with_note(entries, (at, at + len(zero))) if left_aside else entries
+            places = [(at, at + len(part)) for at, part in parts[count:]]
+            return _with_notes(entries, [*zip(left_aside, places, strict=True)])
     return None
 
 
@@ -244,6 +275,13 @@ def _shifted(entry: Entry, by: int) -> Entry:
 # A name at the begin of a line, with a colon behind it: "x: l1 c1".
 _NAME_WITH_COLON = re.compile(r"(?m)^([ \t]*[^\W\d][\w{}^]{0,20}[ \t]{0,3}):(?![:=])")
 
+# A vector in angle brackets: before it, the opening one, the values, the closing one, behind it.
+_IN_ANGLE_BRACKETS = re.compile(
+    r"(\s*)(<|⟨|\\langle(?![A-Za-z]))([^<>⟨⟩|]+)(>|⟩|\\rangle(?![A-Za-z]))(\s*)"
+)
+
+_LATEX_BLANK = re.compile(r"\\(?:q?quad(?![A-Za-z])|[,;:! ])")
+
 # A blank and a sign with none behind it: in MATLAB's brackets a new value begins there.
 _NEW_VALUE = re.compile(r"[^\s,;(\[{*/^+-]\s+[-+−–][^\s]")
 
@@ -258,9 +296,14 @@ _OF_TABLES = {
     "mixed_separators": "Inside a value, write a*b and a - b, not a b and a -b.",
 }
 
-_ZERO_LEFT_ASIDE = reading_note(
-    "zero_left_aside", "Only two values are asked for; the third, 0, was ignored."
-)
+_LEFT_ASIDE = {
+    "0": reading_note(
+        "zero_left_aside", "Only two values are asked for; the third, 0, was ignored."
+    ),
+    "1": reading_note(
+        "homogeneous_one", "The 1 at the end, of homogeneous coordinates, was ignored."
+    ),
+}
 
 
 def _wrong_shape(count: int, found: int) -> Finding:

@@ -64,6 +64,34 @@ def test_a_third_zero_of_a_planar_position_is_left_aside(make_exercise: Make) ->
     assert all_codes(report) == {"zero_left_aside"}
 
 
+@pytest.mark.parametrize("answer", [[*SPATIAL, 1], f"[{'; '.join(SPATIAL)}; 1]"])
+def test_the_one_of_homogeneous_coordinates_is_left_aside(
+    answer: object, make_exercise: Make
+) -> None:
+    report = graded(make_exercise(POSITION), answer)
+    assert full_marks(report)
+    assert all_codes(report) == {"homogeneous_one"}
+
+
+@pytest.mark.parametrize(
+    ("tail", "codes"),
+    [
+        ([1], {"homogeneous_one"}),
+        ([0, "1"], {"zero_left_aside", "homogeneous_one"}),
+        (["z = 0", 1], {"zero_left_aside", "homogeneous_one"}),
+        ([1, 0], {"wrong_shape"}),
+        (["z = 1"], {"wrong_shape"}),
+        ([0, 0], {"wrong_shape"}),
+    ],
+)
+def test_what_may_stand_behind_two_coordinates(
+    tail: list[object], codes: set[str], make_exercise: Make
+) -> None:
+    report = graded(make_exercise(COORDINATES_XY), [*SPATIAL[:2], *tail])
+    assert full_marks(report) == (codes != {"wrong_shape"})
+    assert all_codes(report) == codes
+
+
 @pytest.mark.parametrize("coordinates", ["xz", "yz"])
 def test_which_coordinate_a_zero_is_may_not_be_plain(coordinates: str, make_exercise: Make) -> None:
     """[x, y, 0], handed in for x and z, must not be read with y for z."""

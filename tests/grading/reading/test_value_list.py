@@ -27,6 +27,8 @@ POINT = one_part(
         "[l; k; 0]",
         "l\nk\n0",
         "(l, k, 0)",
+        "<l, k, 0>",
+        r"\langle l, k, 0 \rangle",
         r"\begin{bmatrix} l \\ k \\ 0 \end{bmatrix}",
     ],
 )

@@ -116,7 +116,11 @@ def test_a_coordinate_that_is_not_asked_for_is_named(make_exercise: Make) -> Non
 
 
 def test_a_named_zero_behind_two_values_is_left_aside(make_exercise: Make) -> None:
-    for answer in (["x = l", "y = k l", "z = 0"], "x = l, y = k l, z = 0"):
+    for answer in (
+        ["x = l", "y = k l", "z = 0"],
+        "x = l, y = k l, z = 0",
+        r"x = l,\quad y = k l,\quad z = 0",
+    ):
         report = graded(make_exercise(PLANE), answer)
         assert full_marks(report), report
         assert all_codes(report) == {"equation", "zero_left_aside"}

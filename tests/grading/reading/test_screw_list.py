@@ -1,0 +1,101 @@
+"""Screw axes in every way that students write them: rows, columns, named vectors, halves."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pytest
+
+from service.catalogue import Exercise
+from service.grading import Verdict
+from service.grading.reading.preview import preview_pasted
+from tests.grading.support.exercise_texts import all_codes
+from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
+
+PART = "space-screws"
+
+# The axes of the lecture's planar RPR arm: docs/answer-kinds.md.
+TEXTS = {
+    "MATLAB's rows with names": "S1 = [0 0 1 0 0 0]\nS2 = [0 0 0 1 0 0]\nS3 = [0 0 1 0 -L1 0]",
+    "MATLAB's columns": "S1 = [0;0;1;0;0;0]; S2=[0;0;0;1;0;0]; S3=[0;0;1;0;-L1;0];",
+    "columns without names": "[0;0;1;0;0;0], [0;0;0;1;0;0], [0;0;1;0;-L1;0]",
+    "transposed": "S_1 = (0,0,1,0,0,0)^T, S_2 = (0,0,0,1,0,0)^T, S_3 = (0,0,1,0,-L1,0)^T",
+    "Mathematica": "S1 = {0,0,1,0,0,0}; S2 = {0,0,0,1,0,0}; S3 = {0,0,1,0,-L1,0};",
+    "another order": "S3 = [0 0 1 0 -L1 0]\nS1 = [0 0 1 0 0 0]\nS2 = [0 0 0 1 0 0]",
+    "LaTeX": r"\mathcal{S}_1 = \begin{bmatrix}0\\0\\1\\0\\0\\0\end{bmatrix}, "
+    r"\mathcal{S}_2 = \begin{bmatrix}0\\0\\0\\1\\0\\0\end{bmatrix}, "
+    r"\mathcal{S}_3 = \begin{bmatrix}0\\0\\1\\0\\-L_1\\0\end{bmatrix}",
+    "NumPy, transposed": "np.array([[0,0,1,0,0,0],[0,0,0,1,0,0],[0,0,1,0,-L1,0]]).T",
+    "halves with names": "w1 = [0 0 1], v1 = [0 0 0]\nw2 = [0 0 0], v2 = [1 0 0]\n"
+    "w3 = [0 0 1], v3 = [0 -L1 0]",
+    "halves in LaTeX": r"\hat{\omega}_1 = (0,0,1), v_1 = (0,0,0), \hat{\omega}_2 = (0,0,0), "
+    r"v_2 = (1,0,0), \hat{\omega}_3 = (0,0,1), v_3 = (0,-L1,0)",
+    "halves in rows": "[[0,0,1],[0,0,0]], [[0,0,0],[1,0,0]], [[0,0,1],[0,-L1,0]]",
+    "a table of halves": "| i | ω | v |\n|---|---|---|\n| 1 | (0,0,1) | (0,0,0) |\n"
+    "| 2 | (0,0,0) | (1,0,0) |\n| 3 | (0,0,1) | (0,-L1,0) |",
+    "v before ω": "| i | v | ω |\n|---|---|---|\n| 1 | (0,0,0) | (0,0,1) |\n"
+    "| 2 | (1,0,0) | (0,0,0) |\n| 3 | (0,-L1,0) | (0,0,1) |",
+}
+LISTS: dict[str, Any] = {
+    "pairs": [[[0, 0, 1], [0, 0, 0]], [[0, 0, 0], [1, 0, 0]], [[0, 0, 1], [0, "-L1", 0]]],
+    "columns": [[[0], [0], [1], [0], [0], [0]], [[0], [0], [0], [1], [0], [0]],
+                [[0], [0], [1], [0], ["-L1"], [0]]],
+    "by name": {"S3": [0, 0, 1, 0, "-L1", 0], "S1": [0, 0, 1, 0, 0, 0], "S2": [0, 0, 0, 1, 0, 0]},
+    "objects": [{"omega": [0, 0, 1], "v": [0, 0, 0]}, {"v": [1, 0, 0], "w": [0, 0, 0]},
+                {"ω": [0, 0, 1], "v": [0, "-L1", 0]}],
+}  # fmt: skip
+COLUMNS = {
+    "MATLAB": "Slist = [0 0 0; 0 0 0; 1 0 1; 0 1 0; 0 0 -L1; 0 0 0]",
+    "blanks": "0 0 0\n0 0 0\n1 0 1\n0 1 0\n0 0 -L1\n0 0 0",
+}
+
+
+@pytest.fixture
+def rpr(catalogue: Mapping[str, Exercise]) -> Exercise:
+    return catalogue["planar-rpr-poe"]
+
+
+@pytest.mark.parametrize("answer", [*TEXTS.values(), *LISTS.values()], ids=[*TEXTS, *LISTS])
+def test_every_way_of_writing_is_read(answer: Any, rpr: Exercise) -> None:
+    report = part(handed_in(rpr, {PART: answer}), PART)
+    assert full_marks(report), report
+    assert all_codes(report) <= {"blank_before_sign"}
+
+
+@pytest.mark.parametrize("text", COLUMNS.values(), ids=COLUMNS)
+def test_axes_may_stand_in_columns(text: str, rpr: Exercise) -> None:
+    report = part(handed_in(rpr, {PART: text}), PART)
+    assert full_marks(report), report
+    assert all_codes(report) - {"blank_before_sign", "blank_columns"} == {"columns_as_axes"}
+
+
+@pytest.mark.parametrize("text", [*TEXTS.values(), *COLUMNS.values()], ids=[*TEXTS, *COLUMNS])
+def test_the_preview_has_the_same_rows(text: str, rpr: Exercise) -> None:
+    preview = preview_pasted(text, rpr, PART)
+    assert preview.ok
+    assert [[cell.text for cell in row] for row in preview.rows] == [
+        ["0", "0", "1", "0", "0", "0"],
+        ["0", "0", "0", "1", "0", "0"],
+        ["0", "0", "1", "0", "-L1", "0"],
+    ]
+
+
+def test_an_axis_that_is_not_there_is_missing(rpr: Exercise) -> None:
+    report = part(handed_in(rpr, {PART: "S1 = [0 0 1 0 0 0]; S3 = [0 0 1 0 -L1 0]"}), PART)
+    assert {(row, verdict) for (row, _), verdict in not_correct(report).items()} == {
+        ("2", Verdict.MISSING)
+    }
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "S1 = [0 0 1 0 0 0]\nS1 = [0 0 0 1 0 0]\nS3 = [0 0 1 0 -L1 0]",
+        "S1 = [0 0 1 0 0 0]\nS2 = [0 0 0 1 0 0]\nS7 = [0 0 1 0 -L1 0]",
+        "w1 = [0 0 1], q1 = [0 0 0]\nw2 = [0 0 0], q2 = [1 0 0]\nw3 = [0 0 1], q3 = [L1 0 0]",
+        "w1 = [0 0 1], w2 = [0 0 0], w3 = [0 0 1]",
+        "S1 = [0 0 1]\nS2 = [0 0 0 1 0 0]",
+    ],
+)
+def test_what_nobody_can_place_is_refused(text: str, rpr: Exercise) -> None:
+    report = part(handed_in(rpr, {PART: text}), PART)
+    assert report.verdict == Verdict.UNREADABLE
