@@ -16,10 +16,10 @@ from service.grading.reading.column_headers import (
 )
 from service.grading.reading.entry import Entry, Reader, from_note, unreadable
 from service.grading.reading.length_units import in_unit
-from service.grading.reading.pasted import pasted_grid, place_of, placed, quoted
+from service.grading.reading.pasted import pasted_grid, pasted_robot, place_of, placed, quoted
 from service.grading.reading.row_labels import in_order, is_label
 from service.grading.reading.written_names import Arrangement
-from service.grids import Grid, GridCell, GridError
+from service.grids import Grid, GridCell, GridError, RobotTable
 from service.kinematics.chain import COLUMNS
 
 ColumnOrder = tuple[int | None, Header]
@@ -47,13 +47,15 @@ class PastedRow:
 class PastedTable:
     """A table's rows in the order of its joints, and the header of each of a, α, d, θ.
 
-    ``is_named`` says that the columns have headers.
+    ``is_named`` says that the columns have headers, or names in a script. ``convention`` is the one
+    that a script names.
     """
 
     rows: tuple[PastedRow, ...]
     headers: tuple[Header, ...]
     findings: tuple[Finding, ...] = ()
     is_named: bool = True
+    convention: str | None = None
 
 
 def read_pasted_table(text: str, reader: Reader, order: Sequence[str] = COLUMNS) -> PastedTable:
@@ -61,9 +63,13 @@ def read_pasted_table(text: str, reader: Reader, order: Sequence[str] = COLUMNS)
 
     Columns go by their headers, in any order; without headers there must be four, or five with
     the rows' numbers in front, in ``order``. Rows go by their labels, where they have
-    any. Raises GridError where the text is no table, or which column is which cannot be told.
+    any. A script for a robotics toolbox has a row for each link. Raises GridError where the text is
+    no table, or which column is which cannot be told.
     """
-    grid = pasted_grid(text, reader)
+    robot = pasted_robot(text, reader)
+    if robot is not None and not robot.has_headers:
+        return _table_of_script(robot, reader)
+    grid = robot.grid if robot else pasted_grid(text, reader)
     findings: tuple[Finding, ...] = ()
     if _has_parameters_in_rows(grid):
         grid, findings = _turned(grid)
@@ -88,6 +94,19 @@ def read_pasted_table(text: str, reader: Reader, order: Sequence[str] = COLUMNS)
     notes = tuple(map(from_note, grid.notes))
     heads = tuple(header for _, header in columns)
     return PastedTable(rows, heads, (*notes, *findings), found is not None)
+
+
+def _table_of_script(robot: RobotTable, reader: Reader) -> PastedTable:
+    """The table of a robot's links: cells in the order a, α, d, θ, angles in radians."""
+    unit = "" if reader.angle_unit == "radians" else "rad"
+    headers = tuple(
+        Header(column, unit if QUANTITIES[column] == "angle" else "") for column in COLUMNS
+    )
+    rows = tuple(
+        _row(row, tuple(enumerate(headers)), len(COLUMNS), reader) for row in robot.grid.rows
+    )
+    notes = tuple(map(from_note, robot.grid.notes))
+    return PastedTable(rows, headers, notes, convention=robot.convention)
 
 
 def _has_parameters_in_rows(grid: Grid) -> bool:

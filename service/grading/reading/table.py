@@ -137,6 +137,8 @@ def read_table(
         pasted = _pasted(answer["rows"], reader, order)
         if pasted is None:
             return StudentTable((), _NO_ROWS, convention, findings)
+        if convention is None and pasted.convention:
+            convention = CONVENTION_NAMES[pasted.convention]
         rows = [_with_empty_cells(row, empty_is_zero) for row in entries_of(pasted, reader)]
         table = _table(rows, convention, (*findings, *pasted.findings), reader)
         return table if pasted.is_named else replace(table, reread=reread)
