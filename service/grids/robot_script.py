@@ -42,7 +42,7 @@ _TELLING: Final = "|".join(sorted({*LINK_CLASSES, *_ROBOTS, _TRANSFORM}, key=len
 # What makes a text a script for a robot. ``Link (i)`` is a header of many a table.
 _SCRIPT: Final = re.compile(
     r"(?<!\w)(?:(?:DHLink|(?:Revolute|Prismatic)M?DH|SerialLink|DHRobot|setFixedTransform)\("
-    r"|(?:Link|Revolute|Prismatic)\((?=[\['\")]|\w{1,20}\s?=|\w{1,20}\(|\w{1,20}\s?,\s?['\"]))"
+    r"|(?:Link|Revolute|Prismatic)\s?\((?=[\['\")]|\w{1,20}\s?=|\w{1,20}\(|\w{1,20}\s?,\s?['\"]))"
 )
 _WORD: Final = re.compile(rf"(?<!\w)(?:{_TELLING})\s?\(")
 _SIGNS_OF_A_SCRIPT: Final = ("Link", "Revolute", "Prismatic", "DHRobot", _TRANSFORM)
@@ -89,6 +89,7 @@ def read_script(source: SourceText) -> RobotTable | None:
     links = script.robot_links(source)
     rows, added, number = [], [], 0
     for link in links:
+        link.cells = {column: script.names.element(cell) for column, cell in link.cells.items()}
         number += link.joint is not JointType.FIXED
         row = row_of(link, number)
         rows.append(row.cells)
@@ -112,7 +113,8 @@ def _note(links: list[RobotLink], added: list[str]) -> Note:
     message = "Each link of the script was read as a row."
     if added:
         names = ", ".join(added[:_TOLD])
-        message = f"Each link of the script was read as a row, with the joint variables {names}."
+        variables = "joint variables" if len(added) > 1 else "joint variable"
+        message = f"Each link of the script was read as a row, with the {variables} {names}."
     first, last = links[0].source.whole, links[-1].source.whole
     return Note("script_rows", message, (min(first[0], last[0]), max(first[1], last[1])))
 
@@ -165,7 +167,11 @@ class _Script:
             self.names.name_links(statement, name, _number(found), links)
         elif tells and not self._makes_robot(value):
             raise _unclear(statement)
-        elif not tells and found["index"] is None and not found["property"]:
+        elif tells or found["property"]:
+            return
+        elif number := _number(found):
+            self.names.name_element(name, number, value)
+        elif number is None:
             self.names.name_value(name, value)
             if not _is_declared(name, value.text):
                 self.given.append(GivenValue(name, value.text, statement))

@@ -5,7 +5,8 @@ from collections.abc import Iterator
 from typing import Final
 
 from service.grids.grid import GridError
-from service.grids.pairs import split, strict_pairs
+from service.grids.limits import GRID_LIMITS
+from service.grids.pairs import CLOSES, split, strict_pairs
 from service.grids.program_text import without_remarks
 from service.grids.session import without_prompts
 from service.grids.source_text import SourceText, joined
@@ -20,9 +21,14 @@ _SHOWN: Final = 40
 def statements(source: SourceText) -> list[SourceText]:
     """The statements, in the order in which they stand; brackets may run over several lines.
 
-    Raises GridError for unbalanced brackets.
+    Raises GridError for unbalanced brackets, and more of them than the links of an arm have.
     """
     plain = without_remarks(_without_blocks(without_prompts(source)))
+    if sum(map(plain.text.count, CLOSES)) > GRID_LIMITS.separators:
+        raise unread_script(
+            f"This script has more than {GRID_LIMITS.separators:,} brackets. Paste only its links.",
+            source,
+        )
     pieces = (piece.strip() for piece in split(plain, _ENDS))
     return [piece for piece in pieces if piece.text]
 

@@ -15,7 +15,7 @@ from service.grids.script import shown, unread_script
 from service.grids.source_text import SourceText
 
 # A name, one of its elements, or all of them: L, L(2), L{2}, L[1], L(:), DH(2,:).
-_NAMED: Final = re.compile(
+NAMED: Final = re.compile(
     r"(?P<name>[A-Za-z_]\w{0,60})(?:\s?(?P<bracket>[({\[])\s?(?P<index>:|\d{1,2})"
     r"\s?(?P<columns>,\s?:)?\s?[)}\]])?"
 )
@@ -34,6 +34,7 @@ class ScriptNames:
     links: dict[str, Links] = field(default_factory=dict)
     notes: list[Note] = field(default_factory=list)
     _count: int = 0
+    _elements: dict[tuple[str, int], SourceText | None] = field(default_factory=dict)
     _values: dict[str, SourceText] = field(default_factory=dict)
     _matrices: dict[str, list[list[SourceText]]] = field(default_factory=dict)
 
@@ -41,6 +42,33 @@ class ScriptNames:
         """Keep a value that is no link."""
         self._values[name] = value
         self._matrices.pop(name, None)
+
+    def name_element(self, name: str, number: int, value: SourceText) -> None:
+        """Keep a value that an element of a list is given: ``d(2) = 0.4``."""
+        known = self._elements.setdefault((name, number), value)
+        if known is None or known.text != value.text:
+            self._elements[name, number] = None
+
+    def element(self, cell: SourceText) -> SourceText:
+        """The value of a cell that is an element of a list in the script; any other cell itself.
+
+        Raises GridError where the script gives the element two values.
+        """
+        named = NAMED.fullmatch(cell.text)
+        if not named or not (named["index"] or "").isdigit() or named["columns"]:
+            return cell
+        name, number = named["name"], int(named["index"]) + (named["bracket"] == "[")
+        if (name, number) in self._elements:
+            value = self._elements[name, number]
+            if value is None:
+                raise unread_script(
+                    f"The script gives `{shown(cell)}` two values. Write its value here.", cell
+                )
+            return value
+        rows = self._matrix(cell.cut(0, len(name))) if name in self._values else None
+        if rows and len(rows) == 1 and 1 <= number <= len(rows[0]):
+            return rows[0][number - 1]
+        return cell
 
     def name_links(
         self, statement: SourceText, name: str, number: int | None, links: list[RobotLink]
@@ -64,7 +92,7 @@ class ScriptNames:
         link = read_link(source, self.vector)
         if link is not None:
             return [link]
-        if named := _NAMED.fullmatch(source.text):
+        if named := NAMED.fullmatch(source.text):
             known = self.links.get(named["name"])
             if known is None or named["columns"]:
                 return None
@@ -87,7 +115,7 @@ class ScriptNames:
 
     def vector(self, source: SourceText) -> list[SourceText] | None:
         """The values of a row in brackets, or of a row of a matrix that was given a name."""
-        named = _NAMED.fullmatch(source.text)
+        named = NAMED.fullmatch(source.text)
         if named and named["columns"] and named["index"] != ":":
             rows = self._matrix(source.cut(*named.span("name")))
             number = int(named["index"])

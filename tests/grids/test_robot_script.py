@@ -85,6 +85,7 @@ def test_numbers_that_a_script_gives_its_letters_are_told() -> None:
         ("r = DHRobot([RevoluteDH()], base=T)", UNREAD, "base=T"),
         ("L(1)=Link([0 0 1 0]);\nr = SerialLink(L);\nr.base = T;", UNREAD, "r.base = T"),
         ("L(1)=Link([0 0 1 0]);\nr.links(1).offset = 1;", UNREAD, "r.links(1).offset = 1"),
+        ("d(1)=1; d(1)=2;\nL(1)=Link([0 d(1) 0 0]);", UNREAD, "d(1)"),
         # arguments, numbers, order
         ("L(1) = Link('d', 0, 'unit', 1);", UNREAD, "'unit'"),
         ("L(1) = Link('d', 0, 'd', 1);", UNREAD, "'d'"),
@@ -98,7 +99,8 @@ def test_numbers_that_a_script_gives_its_letters_are_told() -> None:
         ("{'a': [1, 2], 'alpha': [0, 0], 'd': [0], 'theta': [q1, q2]}", UNREAD, "[0]"),
         (THIRTEEN, "too_many_rows", "L(13)=Link([0 0 1 0])"),
         ("L(1)=Link([0 0 1 0];", "unbalanced_bracket", "("),
-        ("Link([" * 4000, "unbalanced_bracket", "["),
+        ("Link([" * 500, "unbalanced_bracket", "["),
+        ("Link([" * 4000, UNREAD, None),
         ("DHLink(0, 0, 0, 0, 0, 2)", UNREAD, "2"),
         ("Link([" * 10000, "too_long", None),
     ],
