@@ -34,12 +34,25 @@ def test_a_script_gets_full_marks_and_fills_the_same_rows(
     report = graded(exercise, text)
     assert full_marks(report), report
     assert {message.severity for message in report.feedback} <= {Severity.INFO}
-    # A script is in radians, whatever the numbers on the page are.
-    if write is not by_column:
-        assert full_marks(graded(exercise, text, "degrees"))
     preview = preview_pasted(text, exercise, "table")
     assert preview.ok
     assert full_marks(graded(exercise, table([cell.entry for cell in row] for row in preview.rows)))
+
+
+def test_a_script_is_in_radians_whatever_the_numbers_on_the_page_are(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    exercise = catalogue[SCARA.exercise]
+    text = in_matlab(SCARA).replace("a2 pi", "a2 3.141592653589793")
+    text = text.replace("0]);", "0 6.283185307179586]);", 1)
+    assert full_marks(graded(exercise, text, "degrees"))
+    rows = preview_pasted(text, exercise, "table", "degrees").rows
+    assert (rows[0][3].entry, rows[1][1].entry) == (
+        "theta1 + 6.283185307179586rad",
+        "3.141592653589793rad",
+    )
+    entries = table([cell.entry for cell in row] for row in rows)
+    assert full_marks(graded(exercise, entries, "degrees"))
 
 
 def test_the_links_of_the_other_convention_are_told(catalogue: Mapping[str, Exercise]) -> None:
