@@ -25,6 +25,7 @@ from service.access.keys import CredentialError, Keys, KeysUnreachableError
 from service.access.open_access import OPEN_ANYWHERE, OpenAccess
 from service.api.access_problems import (
     asking_for_password,
+    attempts_not_changed,
     attempts_not_shown,
     credential_refused,
     key_needed,
@@ -134,9 +135,17 @@ class Access:
         if caller.exercises is not None and exercise not in caller.exercises:
             raise other_exercise()
 
-    def require_tutor(self, request: Request, exercise: str) -> None:
-        """Check the right to what is known of a class in an exercise. Raises ProblemError."""
-        if self.require_reading(request, exercise).learner is not None:
+    def require_tutor(self, request: Request, exercise: str | None) -> None:
+        """Check the right to what is known of a class: in an exercise, or in all of them.
+
+        Raises ProblemError.
+        """
+        self.require_tutor_of_one(request)
+        self.require_reading(request, exercise)
+
+    def require_tutor_of_one(self, request: Request) -> None:
+        """Check the same right of whatever exercise it is about. Raises ProblemError."""
+        if self.require_reading_one(request).learner is not None:
             raise scope_missing(Scope.TUTOR)
 
     def require_reading(self, request: Request, exercise: str | None) -> Caller:
@@ -159,6 +168,22 @@ class Access:
         else:
             self.require(request, Scope.RECORD)
         return caller
+
+    def require_change(self, request: Request, exercise: str | None) -> Caller:
+        """Who may change what is recorded: of one exercise, or of all. Raises ProblemError."""
+        caller = self.require_change_of_one(request)
+        if caller.exercises is not None and exercise not in caller.exercises:
+            raise other_exercise()
+        return caller
+
+    def require_change_of_one(self, request: Request) -> Caller:
+        """Who may change one recorded attempt, of whatever exercise it is. Raises ProblemError.
+
+        Where there are no keys, nobody but who is at the machine, even where others may read.
+        """
+        shown = None if self._read_attempts else self._read_attempts
+        self._require_tutor(request, shown, attempts_not_changed())
+        return self._identity(request).caller
 
     def require_key(self, request: Request) -> Caller:
         """The holder of a key, not of a token. Raises ProblemError."""

@@ -106,6 +106,17 @@ def attempts_not_shown() -> ProblemError:
     )
 
 
+def attempts_not_changed() -> ProblemError:
+    """Recorded attempts are not changed for who asks."""
+    return ProblemError(
+        HTTPStatus.FORBIDDEN,
+        "Recorded attempts are changed by tutors: with a key, or where there are none from the "
+        "machine itself, on a page of the service or by dh-grader attempts.",
+        "attempts-not-changed",
+        "Recorded attempts are not changed here",
+    )
+
+
 def origin_refused() -> ProblemError:
     """The page that asks is of an origin that may not."""
     return ProblemError(

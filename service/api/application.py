@@ -21,6 +21,7 @@ from service.api import (
     recorded,
     reference,
     tokens,
+    tutoring,
 )
 from service.api import solutions as model_solutions
 from service.api.access import Access
@@ -158,6 +159,8 @@ def application(
         exercises.routes(catalogue, feedback),
         grading.routes(catalogue, feedback, access, monitor),
         attempts.routes(catalogue, feedback, store, access, monitor, cors_origins),
+        # Before the next one, to which /v1/attempts/export would be the id of an attempt.
+        tutoring.routes(catalogue, feedback, store, access),
         recorded.routes(catalogue, store, access),
         preview.routes(catalogue, access),
         figures.routes(catalogue),

@@ -1,23 +1,23 @@
 """The routes by which tutors read what is recorded."""
 
 import json
-from collections.abc import Awaitable, Callable
+import re
 from datetime import UTC, datetime
 from http import HTTPStatus
-from typing import TYPE_CHECKING, Annotated, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 from fastapi import APIRouter, Path, Query, Request, Response
-from pydantic import AfterValidator, AwareDatetime, BaseModel, StringConstraints
+from pydantic import AfterValidator, AwareDatetime, BeforeValidator, StringConstraints
 
 from service.access.caller import Caller
 from service.api.access import Access
 from service.api.access_problems import other_learner
-from service.api.attempts import not_recorded
 from service.api.lookup import Catalogue, ExerciseId, exercise_or_404
 from service.api.openapi import MAY_NEED_KEY, refusals
-from service.api.problems import ProblemError, invalid, store_down
+from service.api.problems import invalid
+from service.api.records import ask, private, private_json, unknown_attempt
 from service.attempts.attempt import MOST_ON_A_PAGE, AttemptFilter
-from service.attempts.errors import BadCursorError, StoreDownError
+from service.attempts.errors import BadCursorError
 from service.contract.attempts import (
     AttemptDetail,
     AttemptList,
@@ -33,8 +33,6 @@ if TYPE_CHECKING:  # they load the drivers of databases
     from service.attempts.reading import AttemptHistory
     from service.attempts.store import AttemptStore
 
-R = TypeVar("R")
-
 
 def _in_utc(moment: datetime) -> datetime:
     try:
@@ -43,7 +41,15 @@ def _in_utc(moment: datetime) -> datetime:
         raise ValueError("is no moment of the calendar in UTC") from error
 
 
-Moment = Annotated[AwareDatetime, AfterValidator(_in_utc)]
+def _written_out(moment: object) -> object:
+    # A number would be read as seconds since 1970.
+    if isinstance(moment, str) and _DATE.match(moment) is None:
+        raise ValueError("is no date with a time, such as 2026-10-01T08:00:00Z")
+    return moment
+
+
+_DATE: Final = re.compile(r"\d{4}-\d\d-\d\d[Tt ]")
+Moment = Annotated[AwareDatetime, BeforeValidator(_written_out), AfterValidator(_in_utc)]
 Since = Annotated[
     Moment | None,
     Query(description="The first moment, with its time zone: 2026-10-01T08:00:00Z."),
@@ -62,14 +68,6 @@ _REFUSED: Final = refusals(
 def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -> APIRouter:
     """The routes that read what is recorded: for tutors, and for learners what is their own."""
     router = APIRouter(prefix="/v1", tags=["attempts"])
-
-    async def read(ask: Callable[["AttemptStore"], Awaitable[R]]) -> R:
-        if store is None:
-            raise not_recorded()
-        try:
-            return await ask(store)
-        except StoreDownError as error:
-            raise store_down("The database does not answer; nothing could be read.") from error
 
     @router.get(
         "/attempts",
@@ -103,12 +101,12 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
         caller = access.require_reading(request, exercise)
         wanted = AttemptFilter(exercise, _readable(caller, learner), since, until, counted)
         try:
-            shown, following = await read(lambda store: store.page(wanted, cursor, limit))
+            shown, following = await ask(store, lambda it: it.page(wanted, cursor, limit))
         except BadCursorError as error:
             detail = {"type": "cursor", "loc": ("cursor",), "msg": "This is no cursor of a page."}
             raise invalid([detail]) from error
         attempts = [AttemptSummary.model_validate(each, from_attributes=True) for each in shown]
-        return _sent(AttemptList(attempts=attempts, next=following))
+        return private(AttemptList(attempts=attempts, next=following))
 
     @router.get(
         "/attempts/{attempt_id}",
@@ -127,15 +125,10 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
         To the learner with a token only answers and report.
         """
         caller = access.require_reading_one(request)
-        found = await read(lambda store: store.history(attempt_id))
+        found = await ask(store, lambda it: it.history(attempt_id))
         if found is None or not _may_read(caller, found):
-            raise ProblemError(
-                HTTPStatus.NOT_FOUND,
-                "No attempt with this id is recorded here.",
-                "unknown-attempt",
-                "There is no such attempt",
-            )
-        return _json(json.dumps(_detail(found, caller)).encode())
+            raise unknown_attempt()
+        return private_json(json.dumps(_detail(found, caller)).encode())
 
     @router.get(
         "/exercises/{exercise_id}/statistics",
@@ -153,8 +146,8 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
         access.require_tutor(request, exercise_id)
         exercise = exercise_or_404(catalogue, exercise_id)
         wanted = AttemptFilter(exercise=exercise.id, since=since, until=until)
-        figures = await read(lambda store: store.statistics(wanted))
-        return _sent(figures)
+        figures = await ask(store, lambda it: it.statistics(wanted))
+        return private(figures)
 
     return router
 
@@ -169,14 +162,6 @@ def _readable(caller: Caller, learner: str | None) -> str | None:
 def _may_read(caller: Caller, found: "AttemptHistory") -> bool:
     attempt = found.attempt
     return caller.reaches(attempt.exercise) and caller.learner in (None, attempt.learner)
-
-
-def _sent(model: BaseModel) -> Response:
-    return _json(model.model_dump_json(exclude_none=True).encode())
-
-
-def _json(content: bytes) -> Response:
-    return Response(content, HTTPStatus.OK, {"Cache-Control": "no-store"}, "application/json")
 
 
 def _detail(found: "AttemptHistory", caller: Caller) -> dict[str, Any]:

@@ -2,9 +2,24 @@
 
 from dataclasses import dataclass
 from datetime import datetime
+from enum import StrEnum
 from typing import Final
 
 MOST_ON_A_PAGE: Final = 100
+
+
+class GradesFormat(StrEnum):
+    """How attempts are exported: each of them, or the ones that count, for a gradebook."""
+
+    CSV = "csv"
+    JSONL = "jsonl"
+    CANVAS = "canvas"
+    MOODLE = "moodle"
+
+    @property
+    def is_gradebook(self) -> bool:
+        """Whether it has one column, for one exercise."""
+        return self in (GradesFormat.CANVAS, GradesFormat.MOODLE)
 
 
 @dataclass(frozen=True, slots=True)

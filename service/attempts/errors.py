@@ -9,5 +9,13 @@ class UnusableDatabaseError(Exception):
     """The URL names no database that can be used; the text says why."""
 
 
+class UnknownAttemptError(LookupError):
+    """No attempt has this id."""
+
+
+class UnusablePointsError(ValueError):
+    """So many points cannot be given; the text says why."""
+
+
 class BadCursorError(ValueError):
     """The text is no cursor of a page."""

@@ -1,20 +1,31 @@
 """Which attempt counts, and the attempts of a course as tables for other programs."""
 
 import json
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import groupby
 from typing import Final, Literal
 
 from sqlalchemy import Connection, select
 
-from service.attempts.attempt import AttemptFilter, ListedAttempt
+from service.attempts.attempt import AttemptFilter, GradesFormat, ListedAttempt
 from service.attempts.reading import LISTED, condition
 from service.attempts.tables import attempts
+from service.catalogue import Exercise
+from service.catalogue.attempts import AttemptsSpec
 from service.formats.shared import spreadsheet
 
 Counting = Literal["best", "last"]
-GradesFormat = Literal["csv", "jsonl", "canvas", "moodle"]
+
+
+def counting_rules(exercises: Mapping[str, Exercise]) -> Callable[[str], Counting]:
+    """The rule of each exercise by its id; one that is gone has that of a new one."""
+
+    def rule(exercise_id: str) -> Counting:
+        exercise = exercises.get(exercise_id)
+        return (AttemptsSpec() if exercise is None else exercise.attempts).counts
+
+    return rule
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,18 +73,18 @@ def written(graded: Iterable[GradedAttempt], form: GradesFormat, title: str) -> 
     counts, as a gradebook of that platform imports it; there ``title`` names the assignment.
     """
     match form:
-        case "csv":
+        case GradesFormat.CSV:
             yield spreadsheet.line(_FIELDS)
             for each in graded:
                 yield spreadsheet.line(map(_as_cell, _values(each)))
-        case "jsonl":
+        case GradesFormat.JSONL:
             for each in graded:
                 named = dict(zip(_FIELDS, _values(each), strict=True))
                 told = {name: value for name, value in named.items() if value is not None}
                 yield json.dumps(told, ensure_ascii=False).encode("utf-8", "replace") + b"\n"
-        case "canvas":
+        case GradesFormat.CANVAS:
             yield from _canvas((each.attempt for each in graded if each.counts), title)
-        case "moodle":
+        case GradesFormat.MOODLE:
             yield from _moodle(each.attempt for each in graded if each.counts)
 
 

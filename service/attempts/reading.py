@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from typing import Any, Final
 
-from sqlalchemy import ColumnElement, Connection, Row, and_, literal, select, tuple_
+from sqlalchemy import ColumnElement, Connection, Row, Tuple, and_, literal, select, tuple_
 
 from service.attempts.attempt import AttemptFilter, ListedAttempt
 from service.attempts.errors import BadCursorError
@@ -61,15 +61,13 @@ def page(
     """
     newest = select(*LISTED).where(condition(wanted))
     if cursor is not None:
-        at, number = _place(cursor)
-        last = tuple_(literal(at, UtcTime()), literal(number))
-        newest = newest.where(tuple_(attempts.c.at, attempts.c.number) < last)
+        newest = newest.where(earlier_than(place_of(cursor)))
     newest = newest.order_by(attempts.c.at.desc(), attempts.c.number.desc()).limit(most + 1)
     found = [ListedAttempt(**row._mapping) for row in connection.execute(newest)]
     if len(found) <= most:
         return found, None
     shown = found[:most]
-    return shown, _cursor(shown[-1])
+    return shown, cursor_of((shown[-1].at, shown[-1].number))
 
 
 def history(connection: Connection, attempt_id: str) -> AttemptHistory | None:
@@ -93,11 +91,34 @@ def history(connection: Connection, attempt_id: str) -> AttemptHistory | None:
     return AttemptHistory(attempt, submission, report, changed, replaced)
 
 
-def _cursor(last: ListedAttempt) -> str:
-    return f"{(last.at - _EPOCH) // _TICK:x}.{last.number:x}"
+# The place of an attempt in the order of time: its moment and its number.
+TimePlace = tuple[datetime, int]
+BY_TIME: Final = (attempts.c.at, attempts.c.number)
 
 
-def _place(cursor: str) -> tuple[datetime, int]:
+def earlier_than(place: TimePlace) -> ColumnElement[bool]:
+    """That an attempt comes before a place in the order of time."""
+    return tuple_(*BY_TIME) < _literal(place)
+
+
+def later_than(place: TimePlace) -> ColumnElement[bool]:
+    """That an attempt comes after a place in the order of time."""
+    return tuple_(*BY_TIME) > _literal(place)
+
+
+def _literal(place: TimePlace) -> Tuple:
+    at, number = place
+    return tuple_(literal(at, UtcTime()), literal(number))
+
+
+def cursor_of(place: TimePlace) -> str:
+    """The cursor of a place."""
+    at, number = place
+    return f"{(at - _EPOCH) // _TICK:x}.{number:x}"
+
+
+def place_of(cursor: str) -> TimePlace:
+    """The place that a cursor names. Raises BadCursorError."""
     if not _CURSOR.fullmatch(cursor):
         raise BadCursorError(cursor)
     try:

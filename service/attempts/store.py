@@ -1,26 +1,37 @@
 """The store of attempts: what a route of the service asks of it."""
 
 import asyncio
-from collections.abc import Callable
+import tempfile
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager, nullcontext
-from typing import Final, TypeVar
+from datetime import UTC, datetime
+from typing import IO, Final, TypeVar
 
 from sqlalchemy import Connection, Engine, literal, select
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.attempts.attempt import (
     AttemptFilter,
+    GradesFormat,
     ListedAttempt,
     RecordedAttempt,
     Standing,
 )
 from service.attempts.database import open_database, reason
 from service.attempts.errors import StoreDownError
+from service.attempts.grades import Counting, graded_attempts, written
 from service.attempts.reading import AttemptHistory, history, page
 from service.attempts.recording import AttemptAfter, record_next, standing
 from service.attempts.statistics import exercise_statistics
 from service.attempts.tables import attempts
+from service.attempts.tutoring import (
+    LearnerData,
+    data_of,
+    forget,
+    override,
+    overwrite_deleted,
+)
 from service.attempts.writer import AttemptWriter
 from service.contract.statistics import ExerciseStatistics
 
@@ -30,6 +41,8 @@ R = TypeVar("R")
 _ALIVE: Final = select(literal(1)).select_from(attempts).limit(1)
 # So many tutors read at once; others wait.
 _READERS: Final = 2
+# An export that is larger waits for its reader on the disk (bytes).
+_IN_MEMORY: Final = 1024 * 1024
 
 
 class AttemptStore:
@@ -112,6 +125,49 @@ class AttemptStore:
         """The statistics of the attempts at ``wanted.exercise`` in a span of time."""
         return await self._read(lambda connection: exercise_statistics(connection, wanted))
 
+    async def export(
+        self,
+        wanted: AttemptFilter,
+        form: GradesFormat,
+        title: str,
+        counting: Callable[[str], Counting],
+    ) -> IO[bytes]:
+        """The attempts in a format, as a file that the caller closes; see ``written``."""
+        return await self._read(
+            lambda connection: _file_of(
+                written(graded_attempts(connection, wanted, counting), form, title)
+            )
+        )
+
+    async def override(
+        self, attempt_id: str, points: float | None, reason_given: str, author: str
+    ) -> ListedAttempt:
+        """The attempt with these points in place of its report's; None withdraws earlier ones.
+
+        Raises UnknownAttemptError, UnusablePointsError.
+        """
+        now = datetime.now(UTC)
+
+        def work(connection: Connection) -> ListedAttempt:
+            override(connection, attempt_id, points, reason_given, author, now)
+            found = history(connection, attempt_id)
+            assert found is not None
+            return found.attempt
+
+        with self.measure("override"):
+            return await self._running.run(work)
+
+    async def data_of(self, learner: str) -> LearnerData:
+        """How much is recorded of a learner."""
+        return await self._read(lambda connection: data_of(connection, learner))
+
+    async def forget(self, learner: str) -> LearnerData:
+        """Delete all that is recorded of a learner, and tell how much it was."""
+        with self.measure("forget"):
+            deleted = await self._running.run(lambda connection: forget(connection, learner))
+            await asyncio.to_thread(overwrite_deleted, self.engine)
+        return deleted
+
     async def _read(self, work: Callable[[Connection], R]) -> R:
         """The result of ``work``, which writes nothing; beside the attempts that are recorded."""
         assert self._readers is not None, "the store has not been started"
@@ -130,3 +186,18 @@ class AttemptStore:
     def _running(self) -> AttemptWriter:
         assert self._writer is not None, "the store has not been started"
         return self._writer
+
+
+def _file_of(lines: Iterable[bytes]) -> IO[bytes]:
+    """Lines as a file that is read from its beginning.
+
+    So the database is done with them, however slowly they are then read.
+    """
+    file = tempfile.SpooledTemporaryFile(_IN_MEMORY)  # noqa: SIM115 - the caller closes it
+    try:
+        file.writelines(lines)
+    except BaseException:
+        file.close()
+        raise
+    file.seek(0)
+    return file

@@ -3,17 +3,10 @@
 from dataclasses import dataclass
 from datetime import datetime
 
-from sqlalchemy import Connection, delete, func, insert, select, text, update
+from sqlalchemy import Connection, Engine, delete, func, insert, select, text, update
 
+from service.attempts.errors import UnknownAttemptError, UnusablePointsError
 from service.attempts.tables import attempts, earlier_reports, overrides, regrade_queue
-
-
-class UnknownAttemptError(LookupError):
-    """No attempt has this id."""
-
-
-class UnusablePointsError(ValueError):
-    """So many points cannot be given; the text says why."""
 
 
 def override(
@@ -75,3 +68,10 @@ def forget(connection: Connection, learner: str) -> LearnerData:
         connection.execute(delete(table).where(table.c.attempt.in_(mine)))
     connection.execute(delete(attempts).where(attempts.c.learner == learner))
     return data
+
+
+def overwrite_deleted(engine: Engine) -> None:
+    """Overwrite what was deleted where it still stands: in SQLite, in the file of late changes."""
+    if engine.dialect.name == "sqlite":
+        with engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
+            connection.execute(text("PRAGMA wal_checkpoint(TRUNCATE)"))

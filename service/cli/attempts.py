@@ -8,24 +8,26 @@ from pathlib import Path
 from typing import Annotated, Final
 
 import typer
-from sqlalchemy import Engine, text
+from sqlalchemy import Engine
 from sqlalchemy.exc import SQLAlchemyError
 
-from service.attempts.attempt import AttemptFilter
+from service.attempts.attempt import AttemptFilter, GradesFormat
 from service.attempts.database import in_transaction, open_database, reason
-from service.attempts.errors import UnusableDatabaseError
-from service.attempts.grades import Counting, GradesFormat, graded_attempts, written
+from service.attempts.errors import (
+    UnknownAttemptError,
+    UnusableDatabaseError,
+    UnusablePointsError,
+)
+from service.attempts.grades import counting_rules, graded_attempts, written
 from service.attempts.reading import page
 from service.attempts.statistics import exercise_statistics
 from service.attempts.tutoring import (
     LearnerData,
-    UnknownAttemptError,
-    UnusablePointsError,
     data_of,
     forget,
     override,
+    overwrite_deleted,
 )
-from service.catalogue.attempts import AttemptsSpec
 from service.cli.output import write
 from service.cli.terminal import give_up, installed, installed_exercise, stdout
 from service.formats.shared.plain_text import number, percent, visible
@@ -144,19 +146,15 @@ def export(
             help="csv or jsonl: every attempt; canvas or moodle: the one that counts, for the "
             "gradebook.",
         ),
-    ] = "csv",
+    ] = GradesFormat.CSV,
     output: Annotated[Path | None, typer.Option(help="The file to write.")] = None,
 ) -> None:
     """Export attempts, for a spreadsheet or a gradebook."""
-    if form in ("canvas", "moodle") and exercise is None:
+    if form.is_gradebook and exercise is None:
         give_up(f"A gradebook has one column for one exercise: --format {form} needs --exercise.")
-    rules = {each.id: each.attempts.counts for each in installed().values()}
-
-    def rule(exercise_id: str) -> Counting:
-        return rules.get(exercise_id, AttemptsSpec().counts)
-
+    rules = counting_rules(installed())
     with database() as engine, engine.connect() as connection:
-        graded = graded_attempts(connection, AttemptFilter(exercise), rule)
+        graded = graded_attempts(connection, AttemptFilter(exercise), rules)
         write(written(graded, form, exercise or ""), output, at_once=False)
 
 
@@ -229,10 +227,7 @@ def forget_learner(
         if not yes:
             typer.confirm(f"Delete {_told(found)} for ever?", abort=True)
         deleted = in_transaction(engine, lambda connection: forget(connection, learner))
-        if engine.dialect.name == "sqlite":
-            # What was deleted stands in the file beside the database until this.
-            with engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
-                connection.execute(text("PRAGMA wal_checkpoint(TRUNCATE)"))
+        overwrite_deleted(engine)
     typer.echo(f"Deleted: {_told(deleted)}.")
 
 

@@ -48,6 +48,9 @@ def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
         read_attempts=settings.read_attempts,
         keys=_keys(settings, store, host),
     )
+    tutoring = Tutoring(
+        access, settings.exercises_dir, settings.editor_dir, records=store is not None
+    )
     app = application(
         catalogue,
         settings.cors_origins,
@@ -56,9 +59,11 @@ def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
         feedback=settings.feedback,
         turns=FairAdmission if metrics is None else metrics.fair_admission,
         store=store,
-        pages=web_routes(catalogue, Tutoring(access, settings.exercises_dir, settings.editor_dir)),
+        pages=web_routes(catalogue, tutoring),
         monitor=metrics,
     )
+    # For what is refused before the application has a say.
+    app.state.monitor = metrics
     if metrics is not None:
         app.include_router(metrics.routes())
     set_up_access_log(addresses=settings.log_addresses)

@@ -5,10 +5,10 @@ from typing import Final
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, Response
 
+from service.api.bounded_work import BoundedWork
 from service.api.lookup import Catalogue
 from service.api.piecewise import PiecewiseResponse
 from service.web.assets import Assets
-from service.web.bounded_work import BoundedWork
 from service.web.class_report import class_archive, unpacked
 from service.web.page_headers import NO_STORE, PRIVATE_HEADERS, policy
 from service.web.tutor_pages import class_page

@@ -9,10 +9,10 @@ from starlette.responses import HTMLResponse, JSONResponse, Response
 
 from service.api.access import is_at_the_machine
 from service.api.bodies import body_as
+from service.api.bounded_work import BoundedWork
 from service.api.lookup import Catalogue, exercise_or_404
 from service.api.problems import ProblemError
 from service.web.assets import Assets
-from service.web.bounded_work import BoundedWork
 from service.web.exercise_check import CheckRequest, checked
 from service.web.exercise_folder import ExerciseFolder, SaveRequest
 from service.web.page_headers import NO_STORE, PRIVATE_HEADERS

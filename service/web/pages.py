@@ -14,6 +14,7 @@ from service.web.assets import Assets
 # The entries of the menu: text and address, from the root.
 _MENU: Final = (("Exercises", ""), ("Free play", "play"), ("API", "docs"))
 
+_NOTE: Final = "Nothing that you write here is recorded. Answers stay in this browser."
 _TUTOR: Final = (("For tutors", "tutor"),)
 
 _KIND_NAMES: Final = {
@@ -167,10 +168,11 @@ def page(
     *,
     styles: Iterable[str] = (),
     tutor: bool = False,
+    note: str = _NOTE,
 ) -> bytes:
     """A whole page; ``root`` leads from its address to that of the catalogue.
 
-    The menu leads a ``tutor`` to more.
+    The menu leads a ``tutor`` to more. ``note`` stands at the end of the page.
     """
     static = f"{root}static/"
     modules = dict.fromkeys(name for script in scripts for name in assets.modules(script))
@@ -189,7 +191,7 @@ def page(
         *(element("link", rel="modulepreload", href=static + name) for name in modules),
         *(element("script", type="module", src=static + assets.name(script)) for script in scripts),
     )
-    body = element("body", *_header(root, assets, tutor=tutor), main, _footer(root))
+    body = element("body", *_header(root, assets, tutor=tutor), main, _footer(root, note))
     document = element("html", head, body, lang="en")
     written: bytes = tostring(document, encoding="utf-8", method="html")
     return b"<!doctype html>\n" + written
@@ -207,12 +209,12 @@ def _header(root: str, assets: Assets, *, tutor: bool) -> Iterable[Element]:
     yield element("header", brand, element("nav", *links, aria_label="Main"), theme, class_="top")
 
 
-def _footer(root: str) -> Element:
+def _footer(root: str, note: str) -> Element:
     return element(
         "footer",
         element(
             "p",
-            "Nothing that you write here is recorded. Answers stay in this browser. ",
+            f"{note} ",
             element("a", "Interface for programs", href=f"{root}docs"),
         ),
         class_="bottom",

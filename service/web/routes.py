@@ -11,6 +11,7 @@ from service.api.lookup import Catalogue, exercise_or_404
 from service.api.piecewise import PiecewiseResponse
 from service.api.problems import ProblemError
 from service.web.assets import Asset, load_assets
+from service.web.attempt_routes import attempt_routes
 from service.web.page_headers import PAGE_HEADERS
 from service.web.pages import catalogue_page, exercise_page, play_page
 from service.web.tutor_routes import Tutoring, tutor_routes
@@ -34,6 +35,7 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> APIRou
     files = assets.by_name
     tutoring = tutoring or Tutoring(Access())
     router.include_router(tutor_routes(catalogue, assets, tutoring))
+    router.include_router(attempt_routes(catalogue, assets, tutoring))
 
     @router.get("/")
     async def home(request: Request, exercise: str | None = None) -> Response:

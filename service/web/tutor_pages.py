@@ -26,6 +26,9 @@ def tutor_page(catalogue: Catalogue, assets: Assets) -> bytes:
             element("td", element("code", each.id)),
             element("td", element("a", "Solution", *_of(each), href=f"tutor/solutions/{each.id}")),
             element(
+                "td", element("a", "Statistics", *_of(each), href=f"tutor/statistics/{each.id}")
+            ),
+            element(
                 "td", element("a", "Edit", *_of(each), href=f"tutor/editor?exercise={each.id}")
             ),
         )
@@ -45,6 +48,12 @@ def tutor_page(catalogue: Catalogue, assets: Assets) -> bytes:
                 "Choose the folder that your platform gave you: scores, slips, a page for each "
                 "student.",
             ),
+            _way(
+                "Recorded attempts",
+                "tutor/attempts",
+                "What students handed in, where the service has a database: read, export, give "
+                "other points, regrade, forget.",
+            ),
             class_="exercises ways",
         ),
         element("h2", "Exercises", id="exercises"),
@@ -56,7 +65,7 @@ def tutor_page(catalogue: Catalogue, assets: Assets) -> bytes:
     return _page("For tutors · DH Grader", main, assets, "", _SCRIPTS)
 
 
-_COLUMNS: Final = ("Exercise", "Id", "Solution", "File")
+_COLUMNS: Final = ("Exercise", "Id", "Solution", "Attempts", "File")
 
 
 def _page(title: str, main: Element, assets: Assets, root: str, scripts: Iterable[str]) -> bytes:

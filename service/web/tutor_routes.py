@@ -10,13 +10,13 @@ from fastapi import APIRouter, Depends, Request
 from starlette.responses import HTMLResponse, Response
 
 from service.api.access import Access
+from service.api.bounded_work import BoundedWork
 from service.api.kept import Kept
 from service.api.lookup import Catalogue, exercise_or_404
 from service.api.piecewise import PiecewiseResponse
 from service.api.problems import ProblemError
 from service.catalogue import Exercise, Robot
 from service.web.assets import Assets
-from service.web.bounded_work import BoundedWork
 from service.web.class_routes import class_routes
 from service.web.editor_routes import editor_routes
 from service.web.exercise_folder import ExerciseFolder
@@ -26,11 +26,15 @@ from service.web.tutor_pages import solution_page, tutor_page
 
 @dataclass(frozen=True, slots=True)
 class Tutoring:
-    """Who may see solutions, the folders of exercise files, and the one that may be written to."""
+    """Who may see solutions, the folders of exercise files, and the one that may be written to.
+
+    ``records`` says whether the service records attempts.
+    """
 
     access: Access
     folders: Sequence[Path] = field(default=())
     editor_dir: Path | None = None
+    records: bool = False
 
 
 def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:

@@ -113,6 +113,8 @@ def test_a_plain_application_shows_nothing(client: httpx.Client) -> None:
         ("limit=100", 200),
         ("cursor=x", 422),
         ("since=2026-10-01", 422),
+        ("since=0.5", 422),
+        ("until=1790000000", 422),
         ("since=0001-01-01T00:00:00%2B14:00", 422),
         ("since=9999-12-31T23:59:59Z", 200),
         ("learner=%00", 422),

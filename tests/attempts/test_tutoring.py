@@ -4,14 +4,13 @@ from dataclasses import replace
 import pytest
 from sqlalchemy import func, select
 
+from service.attempts.errors import UnknownAttemptError, UnusablePointsError
 from service.attempts.reading import history
 from service.attempts.regrading import Regrading
 from service.attempts.store import AttemptStore
 from service.attempts.tables import attempts, metadata, outcomes, regrade_queue
 from service.attempts.tutoring import (
     LearnerData,
-    UnknownAttemptError,
-    UnusablePointsError,
     forget,
     override,
 )

@@ -4,13 +4,16 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import Final
 
 from playwright.sync_api import Page, ViewportSize, expect, sync_playwright
 
+from service.attempts.store import AttemptStore
+from service.catalogue import load_catalogue, shipped_folder
 from tests.api.serving import ROOT, announced_port
+from tests.attempts.recorded import LAZY, NO_TWIST, RIGHT, new_attempt, recorded_all
 from tests.browser.chromium import ABSENT, OPTIONS, find_chromium
 from tests.browser.steps import cells, open_exercise
 
@@ -23,6 +26,13 @@ SIZES: Final[Mapping[str, ViewportSize]] = {
 ANSWERS: Final = [
     "0", "-90°", "0", "theta1", "0", "pi/2", "d2", "theta2", "0", "0", "d3", "0",
     "0", "pi/2", "0", "theta4", "0", "90°", "0", "theta5", "0", "0", "d6 +", "theta6",
+]  # fmt: skip
+# Learners, tables, and which of their attempts each is; the oldest first.
+UNFINISHED: Final = RIGHT.replace("θ2", "θ2 +").replace("d4 θ4", "0 θ4")
+CLASS: Final = [
+    ("u4711", NO_TWIST, 1), ("u4712", LAZY, 1), ("u4713", NO_TWIST, 1), ("u4711", RIGHT, 2),
+    ("u4714", NO_TWIST, 1), ("u4715", RIGHT, 1), ("u4712", NO_TWIST, 2), ("u4716", LAZY, 1),
+    ("u4717", NO_TWIST, 1), ("u4714", RIGHT, 2), ("u4718", RIGHT, 1), ("u4713", UNFINISHED, 2),
 ]  # fmt: skip
 
 
@@ -89,6 +99,25 @@ def editor(page: Page, service: str) -> None:
     page.evaluate("scrollTo(0, 0)")
 
 
+def attempts(page: Page, service: str) -> None:
+    """What a class has recorded."""
+    page.goto(f"{service}/tutor/attempts?exercise=scara")
+    expect(page.locator("#list tbody tr")).to_have_count(len(CLASS))
+
+
+def attempt(page: Page, service: str) -> None:
+    """A recorded attempt with its report."""
+    attempts(page, service)
+    page.locator("#list").get_by_role("link", name="u4713").first.click()
+    expect(page.locator("td[data-verdict=unreadable]")).to_have_count(1)
+
+
+def statistics(page: Page, service: str) -> None:
+    """An exercise in counts."""
+    page.goto(f"{service}/tutor/statistics/scara")
+    expect(page.locator(".share").first).to_be_visible()
+
+
 VIEWS: Final[Mapping[str, Callable[[Page, str], None]]] = {
     "catalogue": home,
     "exercise": exercise,
@@ -97,11 +126,28 @@ VIEWS: Final[Mapping[str, Callable[[Page, str], None]]] = {
     "free-play": free_play,
     "solution": solution,
     "editor": editor,
+    "attempts": attempts,
+    "attempt": attempt,
+    "statistics": statistics,
 }
 
 
-def photograph(service: str) -> None:
-    """Every view, in light and dark, wide and narrow."""
+def recorded_class(database: Path) -> None:
+    """Write the attempts of a class, spread over some days."""
+    store = AttemptStore.open(str(database))
+    scara = load_catalogue(shipped_folder())["scara"]
+    recorded_all(
+        store,
+        (
+            new_attempt(scara, learner, table, ordinal, hours=31 * i)
+            for i, (learner, table, ordinal) in enumerate(CLASS)
+        ),
+    )
+    store.close()
+
+
+def photograph(service: str, names: Collection[str]) -> None:
+    """The views of these names, in light and dark, wide and narrow."""
     found = find_chromium()
     if found is None:
         raise SystemExit(ABSENT)
@@ -114,11 +160,11 @@ def photograph(service: str) -> None:
             for scheme in ("light", "dark"):
                 page = browser.new_page(viewport=viewport, reduced_motion="reduce")
                 page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
-                for name, view in VIEWS.items():
+                for name in names:
                     # Each view begins as a first visit does.
                     page.goto(service)
                     page.evaluate("localStorage.clear()")
-                    view(page, service)
+                    VIEWS[name](page, service)
                     # The pictures, too.
                     page.wait_for_load_state("networkidle")
                     page.screenshot(path=FOLDER / f"{name}-{size}-{scheme}.png")
@@ -127,11 +173,16 @@ def photograph(service: str) -> None:
 
 
 def main() -> None:
-    """Start the service and photograph it."""
+    """Start the service and photograph it: all views, or those that are named."""
+    names = sys.argv[1:] or VIEWS
+    if unknown := set(names) - set(VIEWS):
+        raise SystemExit(f"There is no view {', '.join(unknown)}; there are {', '.join(VIEWS)}.")
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "log"
         command = [sys.executable, "-m", "service", "serve", "--port", "0"]
-        environment = os.environ | {"NO_COLOR": "1"}
+        database = Path(folder) / "attempts.db"
+        recorded_class(database)
+        environment = os.environ | {"NO_COLOR": "1", "DH_GRADER_DATABASE": str(database)}
         with (
             log.open("wb") as output,
             subprocess.Popen(
@@ -139,7 +190,7 @@ def main() -> None:
             ) as process,
         ):
             try:
-                photograph(f"http://127.0.0.1:{announced_port(process, log)}")
+                photograph(f"http://127.0.0.1:{announced_port(process, log)}", names)
             finally:
                 process.terminate()
 

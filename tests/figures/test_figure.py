@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from service.catalogue import Exercise, load_catalogue, shipped_folder
+from service.catalogue import Exercise
 from service.catalogue.robot import Robot
 from service.catalogue.schema import ViewSpec
 from service.figures.figure import exercise_figure, plainest_view, reference_figure
@@ -21,12 +21,13 @@ from service.figures.symbol_numbers import drawing_numbers
 from service.figures.view import View
 from service.kinematics.transforms import Numbers
 from tests import chromium
+from tests.shipped import shipped_exercises
 
 DOCS = Path(__file__).parents[2] / "docs"
 SVG = "{http://www.w3.org/2000/svg}"
 SHIPPED = {
     name: exercise
-    for name, exercise in load_catalogue(shipped_folder()).items()
+    for name, exercise in shipped_exercises().items()
     if exercise.reference is not None
 }
 TABLES = [name for name, exercise in SHIPPED.items() if isinstance(exercise.reference, Robot)]
@@ -179,7 +180,7 @@ def test_frames_are_drawn_for_tutors() -> None:
 
 
 def test_an_exercise_without_a_robot_has_no_figure() -> None:
-    exercise = load_catalogue(shipped_folder())["dh-conditions"]
+    exercise = shipped_exercises()["dh-conditions"]
     with pytest.raises(LookupError, match="no robot"):
         exercise_figure(exercise)
 

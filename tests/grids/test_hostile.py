@@ -12,6 +12,7 @@ from service.grids import GRID_LIMITS, Grid, GridError, NamedGrid, read_grid, re
 from tests.grids.test_robot_script import SCRIPTS
 from tests.grids.writers import FORMATS, POSE
 from tests.guards import STALL
+from tests.samples import one_in
 
 Found = TypeVar("Found")
 SEEDS = [write(POSE) for write in FORMATS.values()]
@@ -122,8 +123,17 @@ def test_mutations_of_each_format(text: str) -> None:
     check(text)
 
 
-@pytest.mark.parametrize("before", ["", "[", "<tr><td>", "\\begin{matrix}"])
-@pytest.mark.parametrize("unit", [*FRAGMENTS, "1 ", "1 -", "1  ", "1\n", "[' ", '<a "', "\\cline{"])
+# Each unit behind one of the beginnings in turn; all pairs are in the campaign.
+BEGINNINGS = ["", "[", "<tr><td>", "\\begin{matrix}"]
+UNITS = [*FRAGMENTS, "1 ", "1 -", "1  ", "1\n", "[' ", '<a "', "\\cline{"]
+PAIRS = [
+    (BEGINNINGS[(i + j) % len(BEGINNINGS)], unit)
+    for i, unit in enumerate(UNITS)
+    for j in range(len(BEGINNINGS))
+]
+
+
+@pytest.mark.parametrize(("before", "unit"), one_in(len(BEGINNINGS), PAIRS))
 def test_sixteen_thousand_of_anything(before: str, unit: str) -> None:
     text = before + unit * GRID_LIMITS.characters
     check(text[: GRID_LIMITS.characters - 1] + ("]" if before == "[" else ""))

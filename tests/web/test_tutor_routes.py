@@ -15,10 +15,10 @@ from typer.testing import CliRunner
 
 from service.api.access import Access
 from service.api.application import application
+from service.api.bounded_work import WAITING
 from service.catalogue import Exercise, shipped_folder
 from service.cli.grade import commands
 from service.web import Tutoring, web_routes
-from service.web.bounded_work import WAITING
 from service.web.class_report import MAX_UPLOAD
 
 SCARA = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
@@ -32,6 +32,9 @@ ROUTES = [
     ("GET", "/tutor/class"),
     ("GET", "/tutor/class/report"),
     ("POST", "/tutor/class"),
+    ("GET", "/tutor/attempts"),
+    ("GET", "/tutor/attempts/0123"),
+    ("GET", "/tutor/statistics/{exercise_id}"),
 ]
 RIGHT = "a\talpha\td\ttheta\na1\t0\t0\ttheta1\na2\t0\t0\ttheta2\n"
 

@@ -58,18 +58,19 @@ class PastedTable:
     convention: str | None = None
 
 
-def read_pasted_table(text: str, reader: Reader, order: Sequence[str] = COLUMNS) -> PastedTable:
+def read_pasted_table(text: str, reader: Reader) -> PastedTable:
+    """The rows of a pasted DH table; see ``table_of``. Raises GridError where it is none."""
+    robot = pasted_robot(text, reader)
+    return table_of_robot(robot, reader) if robot else table_of(pasted_grid(text, reader), reader)
+
+
+def table_of(grid: Grid, reader: Reader, order: Sequence[str] = COLUMNS) -> PastedTable:
     """The rows of a pasted DH table.
 
     Columns go by their headers, in any order; without headers there must be four, or five with
     the rows' numbers in front, in ``order``. Rows go by their labels, where they have
-    any. A script for a robotics toolbox has a row for each link. Raises GridError where the text is
-    no table, or which column is which cannot be told.
+    any. Raises GridError where it cannot be told which column is which.
     """
-    robot = pasted_robot(text, reader)
-    if robot is not None and not robot.has_headers:
-        return _table_of_script(robot, reader)
-    grid = robot.grid if robot else pasted_grid(text, reader)
     findings: tuple[Finding, ...] = ()
     if _has_parameters_in_rows(grid):
         grid, findings = _turned(grid)
@@ -96,8 +97,13 @@ def read_pasted_table(text: str, reader: Reader, order: Sequence[str] = COLUMNS)
     return PastedTable(rows, heads, (*notes, *findings), found is not None)
 
 
-def _table_of_script(robot: RobotTable, reader: Reader) -> PastedTable:
-    """The table of a robot's links: cells in the order a, α, d, θ, angles in radians."""
+def table_of_robot(robot: RobotTable, reader: Reader) -> PastedTable:
+    """The rows of the robot that a script describes; the angles of its links are in radians.
+
+    Raises GridError as ``table_of``, where the table has headers.
+    """
+    if robot.has_headers:
+        return table_of(robot.grid, reader)
     unit = "" if reader.angle_unit == "radians" else "rad"
     headers = tuple(
         Header(column, unit if QUANTITIES[column] == "angle" else "") for column in COLUMNS

@@ -1,11 +1,49 @@
 // What a tutor's pages ask the service for.
 
+const HOME = new URL("../", import.meta.url);
+// So often a request is sent again that the service had no room for, and after at most so many seconds.
+const TRIES = 5;
+const LONGEST_PAUSE = 10;
+
+/** An address below that of the service. */
+export const address = (path) => new URL(path, HOME).href;
+
 /** The answer to a body; throws an Error with the reason where it is refused. */
-export async function post(path, body, type = "application/json") {
-  const answer = await fetch(path, { method: "POST", headers: { "Content-Type": type }, body });
+export function post(path, body, type = "application/json") {
+  return asked(path, { method: "POST", headers: { "Content-Type": type }, body });
+}
+
+/** The JSON that the service has at a path below its address. */
+export async function get(path) {
+  return (await asked(address(path), {})).json();
+}
+
+/** The JSON that the service answers to a JSON body, at a path below its address. */
+export async function send(path, body) {
+  return (await post(address(path), JSON.stringify(body))).json();
+}
+
+/** The same; where the service has no room for it now, it is sent again. */
+export async function sendPatiently(path, body) {
+  for (let left = TRIES; ; left -= 1) {
+    try {
+      return await send(path, body);
+    } catch (error) {
+      if (!error.pause || left === 0) throw error;
+      await pause(Math.min(error.pause, LONGEST_PAUSE));
+    }
+  }
+}
+
+export const pause = (seconds) => new Promise((done) => setTimeout(done, 1000 * seconds));
+
+async function asked(path, options) {
+  const answer = await fetch(path, options);
   if (answer.ok) return answer;
   const problem = await answer.json().catch(() => ({}));
-  throw Object.assign(new Error(problem.detail ?? `The service answered with the status ${answer.status}.`), { told: true });
+  const reason = problem.detail ?? `The service answered with the status ${answer.status}.`;
+  const more = { told: true, status: answer.status, type: problem.type ?? "", pause: Number(answer.headers.get("Retry-After")) };
+  throw Object.assign(new Error(reason), more);
 }
 
 /** The words for a request that failed. */

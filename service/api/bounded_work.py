@@ -25,7 +25,7 @@ class BoundedWork:
         if self._accepted > WAITING:
             raise ProblemError(
                 HTTPStatus.SERVICE_UNAVAILABLE,
-                "Other checks wait already. Try again in a few seconds.",
+                "Other work waits already. Try again in a few seconds.",
                 "busy",
                 "The service has a lot to do",
                 headers={"Retry-After": "5"},

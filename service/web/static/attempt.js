@@ -1,0 +1,142 @@
+// One recorded attempt: what was handed in, its report and those before it, and the points of a tutor.
+
+import { h, number, points, visible } from "./dom.js";
+import { RecordedReport } from "./recorded_report.js";
+import { byId, earned, failed, learnerName, moment, tell } from "./records.js";
+import { address, get, send } from "./tutor_service.js";
+
+const id = byId("main").dataset.attempt;
+const path = `v1/attempts/${encodeURIComponent(id)}`;
+const state = byId("state");
+const place = byId("attempt");
+
+async function load() {
+  try {
+    const found = await get(path);
+    const exercise = await get(`v1/exercises/${encodeURIComponent(found.attempt.exercise)}`).catch(() => null);
+    show(found, exercise);
+    tell(state, "");
+  } catch (error) {
+    place.replaceChildren();
+    failed(error, state);
+  }
+}
+
+function show(found, exercise) {
+  const { attempt } = found;
+  byId("title").textContent = visible(exercise?.title ?? attempt.exercise);
+  document.title = `${byId("title").textContent} · DH Grader`;
+  const drawn = new RecordedReport(exercise, found.submission);
+  drawn.show(found.report);
+  const about = h("section", { class: "card facts", "aria-label": "Facts" });
+  const given = new PointsGiven(attempt, (changed) => update(changed));
+  const update = (now) => {
+    about.replaceChildren(facts(now, exercise));
+    given.show(now);
+  };
+  update(found);
+  place.replaceChildren(about, h("div", { class: "handed-in" }, reports(found, drawn), drawn.element), given.element);
+}
+
+/** The choice between the report that counts and those that a regrade has replaced. */
+function reports({ attempt, report, earlier_reports: earlier }, drawn) {
+  if (!earlier.length) return null;
+  const all = [
+    { report, text: `The one that counts: ${points(attempt.points, attempt.max_points)}` },
+    ...earlier.toReversed().map((each) => ({
+      report: each.report,
+      text: `Until ${moment(each.replaced_at).textContent}: ${points(each.points, each.max_points)}, version ${each.version}`,
+    })),
+  ];
+  const options = all.map(({ text }, i) => h("option", { value: i }, visible(text)));
+  const choice = h("select", { id: "which-report", onchange: () => drawn.show(all[choice.value].report) }, ...options);
+  return h("p", { class: "field" }, h("label", { for: "which-report" }, "Report"), choice);
+}
+
+function facts({ attempt, submission }, exercise) {
+  const { learner, ordinal, at, is_late: late, version, grader } = attempt;
+  const list = (query, ...text) => h("a", { href: address(`tutor/attempts?${new URLSearchParams(query)}`) }, ...text);
+  const isOld = exercise && exercise.version !== version;
+  const pairs = [
+    ["Learner", list({ learner }, learnerName(learner))],
+    ["Exercise", list({ exercise: attempt.exercise }, h("code", {}, attempt.exercise))],
+    ["Handed in", h("span", {}, moment(at), late ? ", late" : "")],
+    ["Attempt", ordinal === undefined ? "does not count: nothing could be read" : `no. ${ordinal}`],
+    ["Points", h("strong", {}, earned(attempt))],
+    attempt.awarded !== undefined && ["by its report", points(attempt.points, attempt.max_points)],
+    ["Plain angles in", submission.angle_unit ?? "radians"],
+    ["Graded by", h("span", {}, `exercise ${version}${isOld ? " (not the one of today)" : ""}, program ${grader}`)],
+  ].filter(Boolean);
+  return h("dl", {}, ...pairs.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
+}
+
+/** The form for other points than the report's, and those that were given. */
+class PointsGiven {
+  /** `changed` gets the attempt anew after each change. */
+  constructor({ max_points: most }, changed) {
+    this.changed = changed;
+    this.points = h("input", { id: "points", type: "number", min: 0, max: most, step: "any", required: true, inputmode: "decimal" });
+    this.reason = h("input", { id: "reason", type: "text", maxlength: 1000, required: true, autocomplete: "off" });
+    this.author = h("input", { id: "author", type: "text", maxlength: 150, autocomplete: "name" });
+    this.withdrawal = h("button", { type: "submit", value: "withdraw" }, "Withdraw them");
+    this.told = h("p", { class: "state-line", role: "status" });
+    this.list = h("ul", { class: "given" });
+    this.element = h(
+      "section",
+      { class: "card override", "aria-labelledby": "override-title" },
+      h("h2", { id: "override-title" }, "Other points"),
+      h(
+        "form",
+        { onsubmit: (event) => this.#give(event) },
+        field("Points", this.points, `of ${number(most)}`),
+        field("Reason", this.reason, "kept, and not shown to the learner"),
+        field("Your name", this.author, "if others give points, too"),
+        h("p", { class: "choices" }, h("button", { type: "submit" }, "Give these points"), this.withdrawal),
+      ),
+      this.told,
+      this.list,
+    );
+  }
+
+  show({ attempt, overrides }) {
+    this.points.value = number(attempt.awarded ?? attempt.points);
+    this.withdrawal.hidden = attempt.awarded === undefined;
+    this.list.replaceChildren(...overrides.toReversed().map(override));
+    this.list.hidden = !overrides.length;
+  }
+
+  async #give(event) {
+    event.preventDefault();
+    const isWithdrawal = event.submitter === this.withdrawal;
+    const body = { reason: this.reason.value };
+    if (!isWithdrawal) body.points = this.points.valueAsNumber;
+    if (this.author.value.trim()) body.author = this.author.value;
+    try {
+      const { awarded } = await send(`${path}/override`, body);
+      this.changed(await get(path));
+      this.reason.value = "";
+      tell(this.told, isWithdrawal ? "Withdrawn: the report's points count." : `The attempt has ${number(awarded)} points.`);
+    } catch (error) {
+      failed(error, this.told);
+    }
+  }
+}
+
+function field(label, input, hint) {
+  const described = `${input.id}-hint`;
+  input.setAttribute("aria-describedby", described);
+  return h("p", { class: "field" }, h("label", { for: input.id }, label), input, h("span", { class: "quiet", id: described }, hint));
+}
+
+function override({ points: given, reason, author, at }) {
+  return h(
+    "li",
+    {},
+    h("strong", {}, given === undefined ? "Withdrawn" : `${number(given)} points`),
+    ": ",
+    h("bdi", {}, visible(reason)),
+    h("span", { class: "quiet" }, " ", h("bdi", {}, visible(author)), ", ", moment(at)),
+  );
+}
+
+load();

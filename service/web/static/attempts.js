@@ -1,0 +1,142 @@
+// The list of recorded attempts: filters, pages, and all of a learner deleted.
+
+import { h } from "./dom.js";
+import { byId, count, earned, failed, learnerName, moment, nothing, query, showExports, span, table, tell } from "./records.js";
+import { address, get, send } from "./tutor_service.js";
+
+const FIELDS = ["exercise", "learner", "since", "until", "counted"];
+const form = byId("filters");
+const state = byId("state");
+const list = byId("list");
+
+// The cursors of the pages up to the one that is shown; the first page has none.
+let cursors = [""];
+let turn = 0;
+
+const oneLine = (text) => text.trim().replace(/\s+/g, " ");
+const filter = () => ({ exercise: byId("exercise").value, learner: oneLine(byId("learner").value), ...span() });
+
+async function show() {
+  const mine = ++turn;
+  const wanted = { ...filter(), counted: byId("counted").value };
+  showExports(filter());
+  list.setAttribute("aria-busy", "true");
+  try {
+    const page = await get(`v1/attempts${query({ ...wanted, cursor: cursors.at(-1) })}`);
+    if (mine === turn) draw(page, wanted);
+  } catch (error) {
+    if (mine !== turn) return;
+    list.replaceChildren();
+    failed(error, state);
+  }
+  list.removeAttribute("aria-busy");
+}
+
+function draw({ attempts, next }, wanted) {
+  if (!attempts.length) {
+    tell(state, "");
+    const isNarrowed = Object.values(wanted).some(Boolean);
+    list.replaceChildren(
+      isNarrowed
+        ? nothing("No attempt is like this", "Take a filter away.")
+        : nothing("Nobody has handed in yet", "Attempts appear here when a course records them: POST /v1/exercises/{id}/attempts."),
+    );
+    return;
+  }
+  const page = cursors.length;
+  const more = next || page > 1 ? `Page ${page}: ` : "";
+  tell(state, `${more}${count(attempts.length, "attempt")}${next ? ", and there are older ones" : ""}.`);
+  list.replaceChildren(
+    wanted.exercise ? h("p", { class: "ways-on" }, h("a", { href: address(`tutor/statistics/${encodeURIComponent(wanted.exercise)}`) }, "Statistics and regrade of this exercise")) : "",
+    table("Attempts", ["When", "Learner", "Points", "No.", "Exercise", "Remarks"], attempts.map(row)),
+    pages(next),
+  );
+}
+
+function row(attempt) {
+  const { id, exercise, learner, ordinal, at, is_late: late, awarded } = attempt;
+  const remarks = [ordinal === undefined && "not readable", late && "late", awarded !== undefined && "points by a tutor"];
+  const open = h("a", { href: address(`tutor/attempts/${encodeURIComponent(id)}`) }, moment(at), h("span", { class: "aloud" }, " by ", learnerName(learner)));
+  return [open, learnerName(learner), earned(attempt), String(ordinal ?? "–"), h("code", {}, exercise), remarks.filter(Boolean).join(", ")];
+}
+
+function pages(next) {
+  if (!next && cursors.length === 1) return "";
+  const turnTo = (changed) => async () => {
+    cursors = changed;
+    await show();
+    list.querySelector(".wide")?.focus();
+  };
+  return h(
+    "nav",
+    { class: "pages", "aria-label": "Pages of the list" },
+    cursors.length > 1 ? h("button", { type: "button", onclick: turnTo(cursors.slice(0, -1)) }, "Newer attempts") : null,
+    next ? h("button", { type: "button", onclick: turnTo([...cursors, next]) }, "Older attempts") : null,
+  );
+}
+
+/** The filters have changed: the first page, at an address that can be kept. */
+function changed(event) {
+  event?.preventDefault();
+  cursors = [""];
+  history.replaceState(null, "", location.pathname + query(Object.fromEntries(FIELDS.map((name) => [name, byId(name).value]))));
+  return show();
+}
+
+// All of a learner deleted.
+
+const forgetState = byId("forget-state");
+
+async function lookUp(event) {
+  event.preventDefault();
+  const learner = oneLine(byId("forgotten").value);
+  try {
+    const found = await send("v1/learners/forget", { learner });
+    if (!found.attempts) return tell(forgetState, `Nothing is recorded of ${learner}.`);
+    tell(forgetState, "");
+    return confirm(found);
+  } catch (error) {
+    return failed(error, forgetState);
+  }
+}
+
+const amounts = ({ attempts, earlier_reports: earlier, overrides }) =>
+  [count(attempts, "attempt"), earlier && count(earlier, "earlier report"), overrides && `points given ${overrides === 1 ? "once" : `${overrides} times`}`]
+    .filter(Boolean)
+    .join(", ");
+
+function confirm(found) {
+  const close = () => dialog.close();
+  const dialog = h(
+    "dialog",
+    { "aria-labelledby": "forget-title", onclose: () => dialog.remove() },
+    h("h2", { id: "forget-title" }, "Forget ", learnerName(found.learner), "?"),
+    h("p", {}, `This deletes ${amounts(found)}, for ever. Backups are not touched.`),
+    h(
+      "p",
+      { class: "choices" },
+      h("button", { type: "button", class: "danger", onclick: () => forget(found.learner).then(close) }, "Delete all of ", learnerName(found.learner)),
+      h("button", { type: "button", autofocus: true, onclick: close }, "Keep it"),
+    ),
+  );
+  document.body.append(dialog);
+  dialog.showModal();
+}
+
+async function forget(learner) {
+  try {
+    const deleted = await send("v1/learners/forget", { learner, apply: true });
+    tell(forgetState, `Deleted of ${learner}: ${amounts(deleted)}.`);
+    byId("forgotten").value = "";
+    await changed();
+  } catch (error) {
+    failed(error, forgetState);
+  }
+}
+
+const asked = new URLSearchParams(location.search);
+for (const name of FIELDS) if (asked.has(name)) byId(name).value = asked.get(name);
+form.addEventListener("submit", changed);
+form.addEventListener("change", changed);
+byId("forget").addEventListener("submit", lookUp);
+show();

@@ -1,0 +1,44 @@
+// How often something was, day by day: bars in a small drawing, and the same in words.
+
+import { dayName } from "./records.js";
+
+const SVG = "http://www.w3.org/2000/svg";
+const WIDTH = 160;
+const HEIGHT = 28;
+// In a longer time, several days share a bar.
+const MOST_BARS = 40;
+const DAY = 24 * 60 * 60 * 1000;
+// So many days are said one by one.
+const MOST_SAID = 10;
+
+const at = (day) => Date.parse(`${day}T00:00:00Z`);
+
+/** The chart of `counts` (by day, as 2026-11-22) from a first to a last day. */
+export function daysChart(counts, first, last) {
+  const days = Math.round((at(last) - at(first)) / DAY) + 1;
+  const width = Math.ceil(days / MOST_BARS);
+  const bars = Array(Math.ceil(days / width)).fill(0);
+  for (const [day, times] of Object.entries(counts)) bars[Math.floor((at(day) - at(first)) / DAY / width)] += times;
+  const most = Math.max(...bars);
+  const step = Math.min(WIDTH / bars.length, 16);
+  const drawn = make("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, width: WIDTH, height: HEIGHT, role: "img", "aria-label": inWords(counts), class: "days" });
+  drawn.append(make("path", { d: `M0 ${HEIGHT - 0.5}H${bars.length * step}`, class: "ground" }));
+  bars.forEach((times, i) => {
+    const height = times && Math.max((times / most) * (HEIGHT - 3), 2);
+    if (times) drawn.append(make("rect", { x: i * step + step * 0.1, y: HEIGHT - 1 - height, width: step * 0.8, height }));
+  });
+  return drawn;
+}
+
+function inWords(counts) {
+  const days = Object.entries(counts);
+  const most = days.toSorted((one, other) => other[1] - one[1]).slice(0, MOST_SAID).sort();
+  const said = most.map(([day, times]) => `${dayName(day)}: ${times}`).join(", ");
+  return days.length > most.length ? `most on ${said}; ${days.length} days in all` : said;
+}
+
+function make(tag, attributes) {
+  const element = document.createElementNS(SVG, tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  return element;
+}

@@ -1,0 +1,229 @@
+"""A tutor and what students have recorded: read, other points, statistics, regrade, forget."""
+
+import csv
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from urllib.request import Request, urlopen
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from service.catalogue import shipped_folder
+from tests.api.serving import ROOT, announced_port
+from tests.browser.conftest import Visit
+from tests.browser.hostile import PICTURE
+from tests.browser.test_pages import violations
+from tests.browser.test_tutor import NARROW, wide
+from tests.guards import ANSWER
+
+Opening = Callable[..., Visit]
+
+RIGHT = "a1 0 0 θ1\na2 180deg 0 θ2\n0 0 d3 0\n0 0 d4 θ4"
+ROWS = [["a1", "0", "0", "theta1"], ["a2", "0", "0", "theta2 +"], ["0", "0", "d3", "0"]]
+WRONG = {"rows": [*ROWS, ["0", "0", PICTURE, "theta4"]]}
+ANSWERS: list[tuple[str, Any]] = [("ada", RIGHT), ("grace", WRONG), (PICTURE, WRONG)]
+
+
+@dataclass
+class Recording:
+    """A service that records, and the folder of its exercises."""
+
+    address: str
+    exercises: Path
+
+    def record(self, learner: str, table: Any) -> str:
+        """Record an attempt as a course does; its id."""
+        body = json.dumps({"learner": learner, "answers": {"table": table}}).encode()
+        headers = {"Content-Type": "application/json"}
+        asked = Request(f"{self.address}/v1/exercises/scara/attempts", body, headers)
+        with urlopen(asked, timeout=ANSWER) as answer:
+            return str(json.load(answer)["attempt"]["id"])
+
+    def correct(self) -> None:
+        """Have the exercise take a table for right that has no turn in it."""
+        text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
+        changed = text.replace('["a2", "180deg",', '["a2", "0",').partition("[[checks]]")[0]
+        assert "180deg" not in changed, "the exercise has changed"
+        (self.exercises / "scara.toml").write_text(changed, encoding="utf-8")
+
+
+@pytest.fixture
+def recording(tmp_path: Path) -> Iterator[Recording]:
+    folder = tmp_path / "exercises"
+    folder.mkdir()
+    text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
+    (folder / "scara.toml").write_text(text, encoding="utf-8")
+    log = tmp_path / "log"
+    command = [sys.executable, "-m", "service", "serve", "--port", "0"]
+    variables = {
+        "NO_COLOR": "1",
+        "DH_GRADER_DATABASE": str(tmp_path / "attempts.db"),
+        "DH_GRADER_EXERCISES_DIR": str(folder),
+        "DH_GRADER_RELOAD_EXERCISES": "true",
+    }
+    with (
+        log.open("wb") as output,
+        subprocess.Popen(
+            command, cwd=ROOT, stdout=output, stderr=output, env=os.environ | variables
+        ) as process,
+    ):
+        try:
+            yield Recording(f"http://127.0.0.1:{announced_port(process, log)}", folder)
+        finally:
+            process.terminate()
+            process.wait(timeout=ANSWER)
+    assert "Traceback" not in log.read_text(encoding="utf-8")
+
+
+def rows(page: Page) -> Any:
+    return page.locator("#list tbody tr")
+
+
+def test_a_tutor_works_with_recorded_attempts(
+    visit: Opening, recording: Recording, tmp_path: Path
+) -> None:
+    # Under the page's own policy, by keyboard where it matters, on a narrow screen.
+    page = visit(viewport=NARROW).page
+    page.add_init_script("window.taken = []; window.stolen = (what) => taken.push(what);")
+    page.goto(f"{recording.address}/tutor")
+    page.get_by_role("link", name="Recorded attempts").click()
+    expect(page.get_by_text("Nobody has handed in yet")).to_be_visible()
+    for learner, table in ANSWERS:
+        recording.record(learner, table)
+
+    # Filters, and an address that keeps them.
+    page.get_by_label("Exercise").select_option("scara")
+    expect(rows(page)).to_have_count(3)
+    expect(rows(page).first).to_contain_text(PICTURE)
+    page.get_by_label("Learner").first.fill(" grace ")
+    page.keyboard.press("Enter")
+    expect(rows(page)).to_have_count(1)
+    page.reload()
+    expect(rows(page)).to_have_count(1)
+    page.get_by_label("To, this day included").fill("2020-01-01")
+    expect(page.get_by_text("No attempt is like this")).to_be_visible()
+    page.get_by_label("To, this day included").fill("")
+    with page.expect_download() as downloading:
+        page.get_by_role("link", name="CSV").click()
+    assert downloading.value.suggested_filename == "attempts-scara.csv"
+    downloading.value.save_as(tmp_path / "attempts.csv")
+    with (tmp_path / "attempts.csv").open(encoding="utf-8", newline="") as file:
+        assert [each["learner"] for each in csv.DictReader(file)] == ["grace"]
+
+    # One attempt: what was typed, and its report.
+    rows(page).get_by_role("link").click()
+    entries = page.locator(".part").first.locator("tbody input")
+    expect(entries.nth(4)).to_have_value("a2")
+    assert [each.input_value() for each in entries.all()] == [
+        text for row in WRONG["rows"] for text in row
+    ]
+    expect(page.locator("td[data-verdict=unreadable]")).to_have_count(2)
+    expect(page.locator("td[data-verdict=incorrect]")).to_have_count(1)
+    # It is read only: neither keys nor what is pasted, and no repair, change it.
+    entries.nth(7).focus()
+    page.keyboard.type("x")
+    assert entries.nth(7).input_value() == "theta2 +"
+    expect(page.locator(".repair")).to_have_count(0)
+    assert wide(page) <= NARROW["width"]
+    page.get_by_label("Reason").fill("A <b>misprint</b>.")
+    page.locator("#points").fill("25")
+    page.get_by_role("button", name="Give these points").click()
+    assert page.locator("#points").evaluate("each => each.validity.rangeOverflow")
+    page.locator("#points").fill("7.5")
+    page.keyboard.press("Enter")
+    expect(page.get_by_text("The attempt has 7.5 points.")).to_be_visible()
+    expect(page.locator(".given")).to_contain_text("A <b>misprint</b>.")
+    expect(page.locator(".facts")).to_contain_text("7.5 / 24")
+
+    # The exercise in counts, and its regrade: first who changes, then for good.
+    page.goto(f"{recording.address}/tutor/statistics/scara")
+    expect(page.get_by_text("3 attempts of 3 learners")).to_be_visible()
+    shares = page.get_by_role("region", name="Shares: Denavit-Hartenberg table")
+    expect(shares.locator("tbody tr").nth(1).locator("td").nth(1)).to_have_text("33 %")
+    expect(page.locator(".groups")).to_contain_text(f"2 learners: {PICTURE}, grace")
+    # The drawing of the days, in words: twice, today.
+    expect(page.get_by_role("img", name=re.compile(r"^\d+ \w+ 20\d\d: 2$")).first).to_be_visible()
+    assert wide(page) <= NARROW["width"]
+    page.get_by_role("button", name="Look what would change").click()
+    expect(page.get_by_text("All attempts were graded by this version")).to_be_visible()
+    recording.correct()
+    changes = page.get_by_role("region", name="Changes")
+    write = page.get_by_role("button", name="Write the new reports")
+
+    def looked() -> None:
+        page.get_by_role("button", name="Look what would change").click()
+        expect(page.get_by_role("button", name="Stop")).to_be_hidden()
+
+    looked()
+    while not changes.is_visible():  # until the service has seen the new file
+        page.wait_for_timeout(100)
+        looked()
+    expect(page.get_by_text("3 attempts by another version; 3 would change.")).to_be_visible()
+    expect(changes).to_contain_text("table correct → partial")
+    write.click()
+    expect(page.get_by_text("Regraded: 3 attempts. The reports before are kept.")).to_be_visible()
+    expect(write).to_be_hidden()
+    page.get_by_role("region", name="Changes").get_by_role("link", name="ada").click()
+    expect(page.locator("td[data-verdict=incorrect]")).to_have_count(1)
+    page.get_by_label("Report", exact=True).select_option("1")
+    expect(page.locator("td[data-verdict=correct]")).to_have_count(16)
+
+    # A learner who wants to be forgotten is named before it happens.
+    page.get_by_role("link", name="List of attempts").click()
+    page.get_by_label("Learner").last.fill(PICTURE)
+    page.keyboard.press("Enter")
+    dialog = page.get_by_role("dialog", name=f"Forget {PICTURE}?")
+    expect(dialog).to_contain_text("1 attempt, 1 earlier report, for ever")
+    expect(dialog.get_by_role("button", name="Keep it")).to_be_focused()
+    page.keyboard.press("Enter")
+    expect(dialog).to_be_hidden()
+    page.get_by_role("button", name="Look up").click()
+    dialog.get_by_role("button", name=f"Delete all of {PICTURE}").click()
+    expect(page.get_by_text(f"Deleted of {PICTURE}: 1 attempt, 1 earlier report.")).to_be_visible()
+    expect(rows(page)).to_have_count(2)
+    expect(page.locator("#list")).not_to_contain_text(PICTURE)
+    assert page.evaluate("taken") == []
+
+
+@pytest.mark.campaign
+def test_nobody_is_kept_out_of_the_views_of_attempts(
+    visit: Opening, service: str, recording: Recording, axe: str
+) -> None:
+    [*_, attempt] = [recording.record(learner, table) for learner, table in ANSWERS]
+    page = visit(bypass_csp=True, viewport=NARROW).page
+    page.add_init_script(axe)
+
+    def check() -> None:
+        assert "\n".join(violations(page, "")) == ""
+        assert wide(page) <= NARROW["width"]
+
+    page.goto(f"{recording.address}/tutor/attempts?exercise=scara")
+    expect(rows(page)).to_have_count(3)
+    check()
+    page.get_by_label("Learner").last.fill("ada")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("dialog")).to_be_visible()
+    check()
+    page.goto(f"{recording.address}/tutor/attempts/{attempt}")
+    expect(page.locator("td[data-verdict=incorrect]")).to_have_count(1)
+    page.get_by_text("As it was sent").click()
+    check()
+    recording.correct()
+    page.goto(f"{recording.address}/tutor/statistics/scara")
+    expect(page.locator(".share").first).to_be_visible()
+    while not page.get_by_role("region", name="Changes").is_visible():
+        page.get_by_role("button", name="Look what would change").click()
+        expect(page.get_by_role("button", name="Stop")).to_be_hidden()
+        page.wait_for_timeout(100)
+    check()
+    # A service that has no database says how it gets one.
+    page.goto(f"{service}/tutor/attempts")
+    expect(page.get_by_text("DH_GRADER_DATABASE=attempts.db")).to_be_visible()
+    check()
