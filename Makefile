@@ -37,10 +37,16 @@ run: $(runtime) ## start the service on http://127.0.0.1:8000 (HOST=, PORT=)
 
 # A worker that has finished takes over tests of another.
 pytest := $(python) -m pytest -n auto --dist worksteal
+ruff   := $(python) -m ruff check . && $(python) -m ruff format --check .
 
-test: lint ## lint, type-check and test on every core
+# The types are checked beside the tests, on one of the cores; what is said of them comes last.
+test: $(dev) ## lint, type-check and test on every core
+	$(ruff)
 	-@$(python) -m tests.browser.chromium
-	$(pytest)
+	@types=$$(mktemp) && trap 'rm -f "$$types"' EXIT && { \
+	$(python) -m mypy >"$$types" 2>&1 & checker=$$!; \
+	echo '$(pytest)'; $(pytest); tested=$$?; \
+	wait $$checker; checked=$$?; cat "$$types"; [ $$tested = 0 ] && [ $$checked = 0 ]; }
 
 thorough: $(dev) ## the same tests, and all of which the suite has a sample (takes long)
 	$(pytest) -m "campaign or not campaign" --ignore tests/installed
@@ -55,8 +61,7 @@ coverage: $(dev) ## the same tests, and the lines that none of them runs (twice 
 	$(pytest) --cov
 
 lint: $(dev) ## ruff and mypy, without the tests
-	$(python) -m ruff check .
-	$(python) -m ruff format --check .
+	$(ruff)
 	$(python) -m mypy
 
 format: $(dev) ## rewrite the code in the house style

@@ -1,15 +1,17 @@
 """What every test folder may use: the shipped exercises, and exercises written for one test."""
 
+import gc
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
 
-from service.catalogue import Exercise, load_catalogue, load_exercise, shipped_folder
+from service.catalogue import Exercise, load_exercise
 from service.catalogue.parts.dh_table import DhTableSpec
+from tests.shipped import shipped_exercises
 
 # How long one example takes says more about the machine than about the code.
 settings.register_profile(
@@ -24,6 +26,17 @@ FIGURE = "figure"
 def pytest_xdist_auto_num_workers() -> int:
     """One more than there are cores: many a test waits for a process or a page."""
     return (os.cpu_count() or 1) + 1
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """The collector of garbage never looks at the tests themselves, which live to the end."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.fixture
@@ -51,7 +64,7 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
 @pytest.fixture(scope="session")
 def catalogue() -> Mapping[str, Exercise]:
     """The shipped exercises by id."""
-    return load_catalogue(shipped_folder())
+    return shipped_exercises()
 
 
 @pytest.fixture(scope="session")

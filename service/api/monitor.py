@@ -15,3 +15,6 @@ class Monitor(Protocol):
 
     def graded(self, report: Report, seconds: float) -> None:
         """Count a report that took so long."""
+
+    def refused(self, answer: str) -> None:
+        """Count what is refused before the application sees it: with a status, or "none"."""

@@ -200,6 +200,9 @@ class _Regrades:
         except BadCursorError as error:
             detail = {"type": "cursor", "loc": ("cursor",), "msg": "This is no cursor of a step."}
             raise invalid([detail]) from error
+        if done.following is None:
+            # The reports that it has kept are of no more use.
+            self._last = None
         changed = (each for each in done.regraded if each.is_changed)
         return RegradeAnswer(
             applied=body.apply,

@@ -25,6 +25,10 @@ _COUNTED: Final = select(func.max(attempts.c.ordinal)).where(
 _OUTCOME: Final = select(outcomes.c.id).where(
     outcomes.c.exercise == bindparam("exercise"), outcomes.c.digest == bindparam("digest")
 )
+_OUTCOMES: Final = select(outcomes.c.id, outcomes.c.exercise, outcomes.c.digest).where(
+    outcomes.c.exercise.in_(bindparam("exercises", expanding=True)),
+    outcomes.c.digest.in_(bindparam("digests", expanding=True)),
+)
 
 
 def insert_or_ignore(table: Table) -> dict[str, postgresql.Insert | sqlite.Insert]:
@@ -92,11 +96,29 @@ def outcome_ids(connection: Connection, wanted: Iterable[Outcome]) -> dict[Outco
     """The rows of outcomes, written where they are new."""
     # Always in one order: two workers that wait for each other's outcomes would wait for ever.
     ordered = sorted(set(wanted), key=lambda each: (each.exercise, each.digest))
-    return {each: _outcome_id(connection, each) for each in ordered}
+    ids = _written_outcomes(connection, ordered)
+    if new := [each for each in ordered if each not in ids]:
+        rows = [{"content": each.content} | _key(each) for each in new]
+        connection.execute(_NEW_OUTCOME[connection.dialect.name], rows)
+        ids |= _written_outcomes(connection, new)
+    return ids
+
+
+def _written_outcomes(connection: Connection, wanted: Iterable[Outcome]) -> dict[Outcome, int]:
+    """The rows of those outcomes that are written."""
+    by_digest = {(each.exercise, each.digest): each for each in wanted}
+    exercises, digests = zip(*by_digest, strict=True)
+    which = {"exercises": list(set(exercises)), "digests": list(digests)}
+    found = connection.execute(_OUTCOMES, which)
+    return {by_digest[exercise, digest]: row for row, exercise, digest in found}
+
+
+def _key(outcome: Outcome) -> dict[str, str]:
+    return {"exercise": outcome.exercise, "digest": outcome.digest}
 
 
 def _outcome_id(connection: Connection, outcome: Outcome) -> int:
-    key = {"exercise": outcome.exercise, "digest": outcome.digest}
+    key = _key(outcome)
     found = connection.scalar(_OUTCOME, key)
     if found is None:
         new = key | {"content": outcome.content}

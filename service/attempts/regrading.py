@@ -9,7 +9,6 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from functools import lru_cache
 from typing import Any, Final
 
 from sqlalchemy import (
@@ -27,19 +26,17 @@ from sqlalchemy import (
 )
 
 from service.attempts.database import without_time_limit
-from service.attempts.graded import AttemptGrading, AttemptReport
+from service.attempts.graded import AttemptGrading
+from service.attempts.kept_reports import KeptReports, PartResults, WrittenReport
 from service.attempts.reading import BY_TIME, TimePlace, later_than
 from service.attempts.recording import insert_or_ignore, outcome_ids
 from service.attempts.tables import attempts, earlier_reports, regrade_queue
 from service.catalogue import Exercise, FeedbackLevel, least
-from service.grading import Report
 from service.submissions.body import GradeRequest
 from service.version import VERSION
 
 # So many are regraded in one commit.
 BATCH: Final = 50
-# So many reports are kept for the next who sent the same answers.
-_KEPT: Final = 1000
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +64,7 @@ class Regrading:
         self._exercise = exercise
         self._ceiling = ceiling
         # The same answers get the same report.
-        self._graded = lru_cache(_KEPT)(self._grade)
+        self._kept = KeptReports()
 
     def outdated(self, connection: Connection) -> list[int]:
         """The numbers of the attempts that another version has graded."""
@@ -136,7 +133,7 @@ class Regrading:
         chosen = select(attempts).where(attempts.c.number.in_(numbers))
         return connection.execute(chosen.order_by(attempts.c.number)).all()
 
-    def _regraded(self, row: Row[Any]) -> tuple[RegradedAttempt, AttemptReport]:
+    def _regraded(self, row: Row[Any]) -> tuple[RegradedAttempt, WrittenReport]:
         before = json.loads(row.report)
         # What a learner was not told once is not told later: the service may have had a ceiling
         # that nobody has named to this process.
@@ -145,26 +142,28 @@ class Regrading:
             self._ceiling,
             FeedbackLevel(before["feedback"]),
         )
-        graded = self._graded(row.submission, level)
-        report = graded.report
+        report = self._kept.of(row.submission, level, lambda: self._report(row.submission, level))
         after = round(report.points * row.worth, 6)
-        reasons = tuple(_reasons(before, report))
+        reasons = tuple(_reasons(_results(before), report.parts))
         change = RegradedAttempt(
             row.id, row.learner, row.ordinal, row.points, after, report.max_points, reasons
         )
-        return change, graded
+        return change, report
 
-    def _grade(self, submission: str, level: FeedbackLevel) -> AttemptReport:
+    def _report(self, submission: str, level: FeedbackLevel) -> WrittenReport:
         body = GradeRequest.model_validate_json(submission)
-        return AttemptGrading(self._exercise, body).at(level)
+        graded = AttemptGrading(self._exercise, body).at(level)
+        report = graded.report
+        parts = {part.part: (str(part.verdict), part.points) for part in report.parts}
+        return WrittenReport(graded.text, report.points, report.max_points, parts, graded.outcome)
 
     def _write(
         self,
         connection: Connection,
-        done: Sequence[tuple[Row[Any], RegradedAttempt, AttemptReport]],
+        done: Sequence[tuple[Row[Any], RegradedAttempt, WrittenReport]],
     ) -> None:
         now = datetime.now(UTC)
-        ids = outcome_ids(connection, [graded.outcome for _, _, graded in done])
+        ids = outcome_ids(connection, [report.outcome for _, _, report in done])
         kept = ("report", "version", "grader", "points", "max_points")
         connection.execute(
             insert(earlier_reports),
@@ -179,22 +178,25 @@ class Regrading:
             [
                 {
                     "which": row.number,
-                    "report": graded.text,
-                    "version": graded.report.version,
-                    "grader": graded.report.grader,
+                    "report": report.text,
+                    "version": self._exercise.version,
+                    "grader": VERSION,
                     "points": change.after,
-                    "max_points": graded.report.max_points,
-                    "outcome": ids[graded.outcome],
+                    "max_points": report.max_points,
+                    "outcome": ids[report.outcome],
                 }
-                for row, change, graded in done
+                for row, change, report in done
             ],
         )
 
 
-def _reasons(before: Mapping[str, Any], after: Report) -> list[str]:
+def _results(report: Mapping[str, Any]) -> PartResults:
+    """The results of the parts of a report as it was written."""
+    return {part["part"]: (part["verdict"], part["points"]) for part in report["parts"]}
+
+
+def _reasons(old: PartResults, new: PartResults) -> list[str]:
     """The parts that are judged otherwise, each in a few words."""
-    old = {part["part"]: (part["verdict"], part["points"]) for part in before["parts"]}
-    new = {part.part: (str(part.verdict), part.points) for part in after.parts}
     told = []
     for name in dict.fromkeys((*old, *new)):
         if name not in new:

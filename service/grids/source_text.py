@@ -30,6 +30,8 @@ class SourceText:
 
     def cut(self, start: int, end: int) -> "SourceText":
         """The characters [start, end)."""
+        if start == 0 and end == len(self.text):
+            return self
         return SourceText(
             self.text[start:end], self.starts[start:end], self.ends[start:end], self.span(start)[0]
         )

@@ -48,7 +48,7 @@ class CellRepair:
 
 def one_factor_repairs(factors: Factors, pose: Matrices) -> list[CellRepair]:
     """The repairs of one factor: first those by one of its cells, then those by both."""
-    needed = inverse(factors.before[:-1]) @ pose @ inverse(factors.after[1:])
+    needed = factors.inverse_before[:-1] @ pose @ factors.inverse_after[1:]
     sizes, error = read_screws(needed, factors.axes)
     changed = ~_equal(sizes, factors.sizes)
     repairs = []
@@ -66,8 +66,7 @@ def two_factor_repairs(factors: Factors, pose: Matrices) -> Iterator[CellRepair]
     a, b = np.triu_indices(len(factors.axes), 1)
     kinds = np.repeat([[SHIFT, SHIFT, TURN, TURN], [SHIFT, TURN, SHIFT, TURN]], len(a), axis=1)
     pairs = np.concatenate([np.tile([a, b], 4), kinds])
-    first = slice(0, 1)
-    _, possible = _solved(factors.at(first), pose[first], pairs)
+    _, possible = _solved(factors, pose, pairs, slice(0, 1))
     pairs = pairs[:, possible]
     if not pairs.size:
         return
@@ -104,21 +103,23 @@ def _equal(sizes: Numbers, written: Numbers) -> NDArray[np.bool_]:
     return np.asarray(np.abs(error).max(axis=-1) < SAME_POSE)
 
 
-def _solved(factors: Factors, pose: Matrices, pairs: Integers) -> tuple[Numbers, NDArray[np.bool_]]:
-    """The x and y of each pair, ``(2, C, L)``, and whether they are a solution at all samples.
+def _solved(
+    factors: Factors, pose: Matrices, pairs: Integers, samples: slice = slice(None)
+) -> tuple[Numbers, NDArray[np.bool_]]:
+    """The x and y of each pair, ``(2, C, L)``, and whether they are a solution at all L samples.
 
     Pairs ``(4, C)`` are the factors A and B, and of each whether its SHIFT or TURN is wrong.
     """
     a, b, kind_a, kind_b = pairs
     a_turns, b_turns = (kind_a == TURN)[:, None], (kind_b == TURN)[:, None]
     axis_a, axis_b = factors.axes[a], factors.axes[b]
-    inverse_before = inverse(factors.before)
+    inverse_before = factors.inverse_before[:, samples]
     m = (
-        _right_part(factors, a, a_turns)
-        @ (inverse_before[a + 1] @ factors.before[b])
-        @ _right_part(factors, b, b_turns)
+        _right_part(factors, a, a_turns, samples)
+        @ (inverse_before[a + 1] @ factors.before[b, samples])
+        @ _right_part(factors, b, b_turns, samples)
     )
-    n = inverse_before[a] @ pose @ inverse(factors.after[1:])[b]
+    n = inverse_before[a] @ pose[samples] @ factors.inverse_after[b + 1, samples]
     turn = _turn_of_a(m, n, axis_a, axis_b, b_turns)
     shift = _shift_of_a(m, n, axis_a, axis_b, b_turns)
     x = np.where(a_turns, turn, shift)
@@ -129,9 +130,12 @@ def _solved(factors: Factors, pose: Matrices, pairs: Integers) -> tuple[Numbers,
     return np.array([x, y]), np.asarray(error.max(axis=-1) < SAME_POSE)
 
 
-def _right_part(factors: Factors, which: Integers, turn_is_wrong: NDArray[np.bool_]) -> Matrices:
+def _right_part(
+    factors: Factors, which: Integers, turn_is_wrong: NDArray[np.bool_], samples: slice
+) -> Matrices:
     """The factors with their right cell alone, the wrong one at 0: ``(C, L, 4, 4)``."""
-    shifts, turns = factors.sizes[which, SHIFT], factors.sizes[which, TURN]
+    sizes = factors.sizes[which, :, samples]
+    shifts, turns = sizes[:, SHIFT], sizes[:, TURN]
     return screws(
         factors.axes[which],
         np.where(turn_is_wrong, shifts, 0.0),

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from service.kinematics.chain import A, D, Table, products
 from service.kinematics.dh import Convention
-from service.kinematics.transforms import Matrices, Numbers
+from service.kinematics.transforms import Matrices, Numbers, inverse
 
 Integers = NDArray[np.int_]
 
@@ -57,6 +57,16 @@ class Factors:
             np.matmul(self.screws[k], reached[k + 1], out=reached[k])
         return reached
 
+    @cached_property
+    def inverse_before(self) -> Matrices:
+        """The inverses of ``before``."""
+        return inverse(self.before)
+
+    @cached_property
+    def inverse_after(self) -> Matrices:
+        """The inverses of ``after``."""
+        return inverse(self.after)
+
     def around(self, factor: int) -> tuple[Matrices, Matrices]:
         """The products of the factors before and after one of them, ``(L, 4, 4)`` each."""
         before = reduce(np.matmul, self.screws[:factor], np.eye(4))
@@ -72,10 +82,6 @@ class Factors:
         in_z = column >= D
         z_first = self.convention is Convention.STANDARD
         return 2 * row + (in_z != z_first), column - (D if in_z else A)
-
-    def at(self, samples: slice) -> "Factors":
-        """The same factors at some of the samples."""
-        return Factors(self.convention, self.sizes[..., samples], self.axes)
 
 
 def factors_of(table: Table, convention: Convention, unit: float = 1.0) -> Factors:

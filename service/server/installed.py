@@ -62,6 +62,8 @@ def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
         pages=web_routes(catalogue, tutoring),
         monitor=metrics,
     )
+    # For what is refused before the application has a say.
+    app.state.monitor = metrics
     if metrics is not None:
         app.include_router(metrics.routes())
     set_up_access_log(addresses=settings.log_addresses)

@@ -70,6 +70,12 @@ class Metrics:
             ["method", "route", "status"],
             registry=registry,
         )
+        self._refusals = Counter(
+            "dh_grader_refusals",
+            "Requests that were refused before the application saw them.",
+            ["status"],
+            registry=registry,
+        )
         self._request_seconds = Histogram(
             "dh_grader_request_seconds",
             "From the arrival of a request's head to the end of its answer.",
@@ -180,6 +186,10 @@ class Metrics:
             told |= {found.code for found, *_ in messages_of(part) if found.severity != "info"}
         for name in told:
             self._codes.labels(self._bounded(name)).inc()
+
+    def refused(self, answer: str) -> None:
+        """Count what is refused before the application sees it: with a status, or "none"."""
+        self._refusals.labels(answer).inc()
 
     def _bounded(self, name: str) -> str:
         if name not in self._known_codes and len(self._known_codes) < _MOST_CODES:

@@ -13,8 +13,10 @@ from typing import Final
 
 import uvicorn
 
+from service.api.monitor import Monitor
+from service.server.guarded_state import GuardedState
 from service.server.limits import GRACE
-from service.server.protocol import GuardedProtocol, GuardedState
+from service.server.protocol import GuardedProtocol
 from service.server.shared_port import Acceptor, SharedPort
 
 _log = logging.getLogger("uvicorn.error")
@@ -35,9 +37,10 @@ class Server(uvicorn.Server):
         config: uvicorn.Config,
         port: SharedPort | None = None,
         origins: Sequence[str] = (),
+        monitor: Monitor | None = None,
     ) -> None:
         super().__init__(config)
-        self.server_state: GuardedState = GuardedState(origins)
+        self.server_state: GuardedState = GuardedState(origins, monitor)
         self._port = port
         # The supervisor of this worker, which alone sends signals and must not die before it.
         self._parent = port.supervisor if port else None

@@ -9,7 +9,6 @@ import re
 import socket
 import struct
 import sys
-from collections.abc import Sequence
 from email.utils import formatdate
 from typing import Any, Final
 
@@ -23,11 +22,12 @@ from uvicorn.server import ServerState
 
 from service.api.problems import ProblemError
 from service.api.request_context import end_request
-from service.server.crowd import Crowd, client_key, room_here
-from service.server.early_cors import leave_to_read, origin_in
+from service.server.crowd import Crowd, client_key
+from service.server.early_cors import origin_in
 from service.server.framing import Framing
+from service.server.guarded_state import GuardedState
 from service.server.limits import HEALTH, LINGER, MAX_DISCARDED, MAX_UNREAD, PATIENCE
-from service.server.refusals import late, malformed, named, too_busy
+from service.server.refusals import late, malformed, too_busy
 from service.submissions.strict_json import MAX_BODY_SIZE
 
 # A server may ignore the wish for another protocol (RFC 9110, 7.8). The parser would stop at it.
@@ -35,16 +35,6 @@ _UPGRADE: Final = re.compile(rb"\r\n(?=upgrade:)", re.IGNORECASE)
 _HOST: Final = re.compile(rb"\r\nhost[ \t]*:", re.IGNORECASE)
 # Whether to linger, and for how many seconds: a close is then a reset.
 _AT_ONCE: Final = struct.pack("hh" if sys.platform == "win32" else "ii", 1, 0)
-
-
-class GuardedState(ServerState):
-    """What all connections of a server share."""
-
-    def __init__(self, origins: Sequence[str] = ()) -> None:
-        super().__init__()
-        self.crowd = Crowd(room_here())
-        # Pages of these may read refusals, too.
-        self.origins = origins
 
 
 class _Wire:
@@ -121,6 +111,7 @@ class GuardedProtocol(HttpToolsProtocol):
         self.transport = _Wire(transport, self.finish)  # type: ignore[assignment]
         self.address = client_key(self.client[0]) if self.client else ""
         if not self.crowd.enter(self, self.loop):
+            self.server_state.note_refusal("none")
             transport.abort()
 
     def connection_lost(self, exc: Exception | None) -> None:
@@ -307,10 +298,9 @@ class GuardedProtocol(HttpToolsProtocol):
             self.reset()
             return
         path = "" if self._framing.in_head else self._path()
-        answer = named(problem, path)
-        date = formatdate(usegmt=True).encode()
         origin = origin_in(framing.came) if (framing := self._framing).in_head else self._origin
-        answer.headers.update(leave_to_read(self.server_state.origins, origin))
+        answer = self.server_state.refusal(problem, path, origin)
+        date = formatdate(usegmt=True).encode()
         headers = [(b"date", date), (b"x-content-type-options", b"nosniff"), *answer.raw_headers]
         lines = [f"HTTP/1.1 {problem.status.value} {problem.status.phrase}".encode()]
         lines += [name + b": " + value for name, value in headers]
@@ -394,6 +384,6 @@ class GuardedProtocol(HttpToolsProtocol):
 
     async def _no_room(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer while as many connections as there is room for are being answered."""
-        answer = named(too_busy(1), scope["path"], Headers(scope=scope))
-        answer.headers.update(leave_to_read(self.server_state.origins, self._origin))
+        headers = Headers(scope=scope)
+        answer = self.server_state.refusal(too_busy(1), scope["path"], self._origin, headers)
         await answer(scope, receive, send)

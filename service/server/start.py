@@ -5,6 +5,7 @@ import sys
 from functools import partial
 
 import uvicorn
+from fastapi import FastAPI
 
 from service.catalogue import CatalogueError
 from service.server.installed import installed_app
@@ -25,7 +26,7 @@ def serve(settings: Settings) -> bool:
     with counting_together(settings) as forget:
         app = installed_app(settings, settings.host)
         if settings.workers == 1:
-            server = Server(_config(settings, app), origins=settings.cors_origins)
+            server = _server(settings, app)
             server.run()
             return server.started
         config = _config(settings, app)
@@ -36,6 +37,10 @@ def serve(settings: Settings) -> bool:
         except SystemExit:
             return False
         return Supervisor(partial(_work, settings), listener, settings.workers, forget).run()
+
+
+def _server(settings: Settings, app: FastAPI, port: SharedPort | None = None) -> Server:
+    return Server(_config(settings, app), port, settings.cors_origins, app.state.monitor)
 
 
 def _config(settings: Settings, app: object) -> uvicorn.Config:
@@ -61,4 +66,4 @@ def _work(settings: Settings, port: SharedPort) -> None:
     except CatalogueError as error:
         print(error, file=sys.stderr)  # noqa: T201 - the reason why this process ends
         raise SystemExit(1) from error
-    Server(_config(settings, app), port, settings.cors_origins).run()
+    _server(settings, app, port).run()

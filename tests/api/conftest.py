@@ -7,8 +7,9 @@ import pytest
 from fastapi import FastAPI
 
 from service.api.application import application
-from service.catalogue import Exercise, load_catalogue, shipped_folder
+from service.catalogue import Exercise
 from tests.api.serving import served
+from tests.shipped import shipped_exercises
 
 
 class InProcess(httpx.BaseTransport):
@@ -31,7 +32,7 @@ class InProcess(httpx.BaseTransport):
 
 @pytest.fixture(scope="session")
 def catalogue() -> Mapping[str, Exercise]:
-    return load_catalogue(shipped_folder())
+    return shipped_exercises()
 
 
 @pytest.fixture(scope="session")

@@ -269,7 +269,7 @@ def test_a_page_of_another_origin_records_nothing(
 
 def test_the_page_on_attempts_shows_what_is_answered(course_of: Any) -> None:
     page = (Path(__file__).parents[2] / "docs" / "attempts.md").read_text(encoding="utf-8")
-    sent, shown = re.findall(r"```json(?: attempt\.json)?\n(.*?)```", page, re.DOTALL)
+    sent, shown, *_ = re.findall(r"```json(?: attempt\.json)?\n(.*?)```", page, re.DOTALL)
     [(url, headers)] = re.findall(
         r"^curl -s http://127\.0\.0\.1:8000(\S+) \\\n(.*) -d @attempt\.json$", page, re.MULTILINE
     )

@@ -8,6 +8,7 @@ from fastapi import FastAPI
 
 from service.api.application import application
 from service.catalogue import Exercise, Robot, load_catalogue
+from tests.together import together
 
 # Its reference holds 0.125, 0.75, 61 and 0.3125, which stand nowhere else.
 SECRETIVE = """
@@ -138,8 +139,8 @@ def part(part_id: str, kind: str, title: str, prompt: str, points: float) -> dic
     }
 
 
-@pytest.mark.parametrize("path", ["/v1/exercises", "/v1/exercises/two-joints", "/openapi.json"])
-@pytest.mark.parametrize("secret", ["0.125", "0.75", "61deg", "1.06", "0.3125", '"robot"'])
+@together("path", ["/v1/exercises", "/v1/exercises/two-joints", "/openapi.json"])
+@together("secret", ["0.125", "0.75", "61deg", "1.06", "0.3125", '"robot"'])
 def test_nothing_of_the_reference_leaks(secretive: httpx.Client, path: str, secret: str) -> None:
     assert secret not in secretive.get(path).text
 

@@ -6,13 +6,14 @@ from typing import Any
 import httpx
 import pytest
 
-from service.catalogue import Exercise, load_catalogue, shipped_folder
+from service.catalogue import Exercise
 from service.catalogue.robot import Robot
 from service.contract.frames import MOST_CONFIGURATIONS
+from tests.shipped import shipped_exercises
 
 ROOT = Path(__file__).parents[2]
 URL = "/v1/frames"
-SHIPPED = load_catalogue(shipped_folder())
+SHIPPED = shipped_exercises()
 
 
 def answered(client: httpx.Client, body: object) -> Any:

@@ -7,11 +7,12 @@ from functools import cache
 from random import Random
 from typing import Any, Final, NamedTuple
 
-from service.catalogue import Exercise, load_catalogue, shipped_folder
+from service.catalogue import Exercise
 from tests.attack.in_process import Post, grade_path
 from tests.expressions.fuzzing import PIECES, hostile, mutated, seeds
 from tests.grids.test_hostile import FRAGMENTS
 from tests.grids.writers import FORMATS
+from tests.shipped import shipped_exercises
 from tests.solutions.solved import solved
 
 PREVIEW: Final = "/v1/preview"
@@ -51,7 +52,7 @@ class Model(NamedTuple):
 @cache
 def exercises() -> tuple[Exercise, ...]:
     """The shipped exercises."""
-    return tuple(load_catalogue(shipped_folder()).values())
+    return tuple(shipped_exercises().values())
 
 
 def drawn_model(random: Random) -> Model:

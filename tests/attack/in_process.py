@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 from service.api.application import application
-from service.catalogue import Exercise, load_catalogue, shipped_folder
+from service.catalogue import Exercise
+from tests.shipped import shipped_exercises
 
 
 class Post(NamedTuple):
@@ -27,7 +28,7 @@ class InProcess:
     """The application as a server calls it, on an event loop of its own."""
 
     def __init__(self) -> None:
-        self.catalogue = load_catalogue(shipped_folder())
+        self.catalogue = shipped_exercises()
         self._app = application(self.catalogue)
         self._loop = asyncio.new_event_loop()
 

@@ -8,16 +8,17 @@ import argparse
 import random
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from datetime import timedelta
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from sqlalchemy import Connection, insert
 
-from service.attempts.attempt import AttemptFilter, NewAttempt
+from service.attempts.attempt import AttemptFilter
 from service.attempts.database import in_transaction
 from service.attempts.reading import page
 from service.attempts.recording import outcome_ids
@@ -66,24 +67,37 @@ def fill(
         tables = [spelled(each, i) for i, each in enumerate(tables)]
     graded = [new_attempt(exercise, "l", each) for each in tables]
 
-    def row(i: int, new: NewAttempt, outcome: int) -> dict[str, object]:
-        moment = NOON + timedelta(minutes=i)
-        new = replace(new, learner=f"l{i // 5}", ordinal=i % 5 + 1, at=moment)
-        values = {name: getattr(new, name) for name in new.__dataclass_fields__}
-        return values | {"id": f"{i:032x}", "outcome": outcome}
+    # In all of a row that is not its own.
+    texts = [{name: getattr(new, name) for name in new.__dataclass_fields__} for new, _ in graded]
+
+    def row(i: int, which: int, outcome: int) -> dict[str, object]:
+        own = {"id": f"{i:032x}", "learner": f"l{i // 5}", "ordinal": i % 5 + 1}
+        return texts[which] | own | {"at": NOON + timedelta(minutes=i), "outcome": outcome}
 
     def write(connection: Connection) -> int:
         ids = outcome_ids(connection, [outcome for _, outcome in graded])
+        numbers = [ids[outcome] for _, outcome in graded]
         for begin in range(0, count, AT_ONCE):
-            rows = []
-            for i in range(begin, min(begin + AT_ONCE, count)):
-                new, outcome = graded[i] if no_two_alike else dice.choice(graded)
-                rows.append(row(i, new, ids[outcome]))
-            connection.execute(insert(attempts), rows)
+            at_once = range(begin, min(begin + AT_ONCE, count))
+            chosen = [i if no_two_alike else dice.randrange(len(graded)) for i in at_once]
+            rows = [row(i, which, numbers[which]) for i, which in zip(at_once, chosen, strict=True)]
+            _insert(connection, rows)
         return len(ids)
 
     outcomes = in_transaction(store.engine, write)
     show(f"{count} attempts, {outcomes} outcomes, {len(set(tables))} different tables")
+
+
+def _insert(connection: Connection, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Write the rows, to PostgreSQL in the way that is made for millions."""
+    if connection.dialect.name != "postgresql":
+        connection.execute(insert(attempts), rows)
+        return
+    columns = [*rows[0]]
+    driver: Any = connection.connection.driver_connection
+    with driver.cursor().copy(f"COPY attempts ({', '.join(columns)}) FROM STDIN") as copy:
+        for each in rows:
+            copy.write_row([each[name] for name in columns])
 
 
 def timed(what: str, work: Callable[[], object], most: float) -> None:

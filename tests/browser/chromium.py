@@ -40,6 +40,9 @@ OPTIONS: Final = [
     "--disable-background-networking", "--disable-component-update",
     # WebGL in software, where there is no graphics card.
     "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+    # The page itself is then drawn by the processor, as Chromium does it without a graphics card,
+    # and not by a graphics card that the processor plays: that takes 50 ms a frame.
+    "--disable-gpu-compositing",
     # Every name and address but this machine's leads nowhere.
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
 ]  # fmt: skip

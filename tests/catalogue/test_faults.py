@@ -19,6 +19,7 @@ from service.catalogue.schema import (
     SymbolSpec,
 )
 from tests.guards import ANSWER
+from tests.together import together
 
 VALID = """\
 title = "An arm"
@@ -183,7 +184,7 @@ FAULTS: dict[str, tuple[tuple[str, str], str, str]] = {
 }
 
 
-@pytest.mark.parametrize("name", FAULTS)
+@together("name", FAULTS)
 def test_a_fault_is_refused_where_it_is(name: str, tmp_path: Path) -> None:
     change, field, reason = FAULTS[name]
     file = write(tmp_path, changed(change))

@@ -10,6 +10,7 @@ from service.kinematics.screws import product_in_space
 from service.kinematics.transforms import rot_z
 from tests.grading.support.exercise_texts import ANGLES, HEAD, SPATIAL_RRR, one_part
 from tests.kinematics.constructions import trans
+from tests.together import together
 
 Make = Callable[[str], Exercise]
 
@@ -195,7 +196,7 @@ FAULTS: dict[str, tuple[str, str, str]] = {
 }
 
 
-@pytest.mark.parametrize("name", FAULTS)
+@together("name", FAULTS)
 def test_a_fault_is_refused_where_it_is(name: str, make_exercise: Make) -> None:
     text, field, reason = FAULTS[name]
     with pytest.raises(CatalogueError) as caught:

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from typer.testing import Result
 
-from service.catalogue import load_catalogue, shipped_folder
 from service.formats.json import rendered
 from service.grading import Report, Submission, grade
+from tests.shipped import shipped_exercises
 
 Run = Callable[..., Result]
 Save = Callable[..., Path]
@@ -97,7 +97,7 @@ def test_json_holds_exactly_the_report(run: Run, save: Save) -> None:
     result = run(
         "grade", save({"answers": answers}), "--exercise", "planar-rrr", "--format", "json"
     )
-    exercise = load_catalogue(shipped_folder())["planar-rrr"]
+    exercise = shipped_exercises()["planar-rrr"]
     [entry] = json.loads(result.stdout)
     assert entry["report"] == json.loads(rendered(grade(exercise, Submission(answers))))
     assert result.stderr == ""

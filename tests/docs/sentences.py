@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 from typing import Any, Final
 
 from service.api.preview import GENERIC
-from service.catalogue import Exercise, load_catalogue, shipped_folder
+from service.catalogue import Exercise, load_catalogue
 from service.expressions import LIMITS, AngleUnit, ExpressionError, Vocabulary, read
 from service.grading import FeedbackLevel, Submission, grade
 from service.grading.reading.preview import preview_pasted
@@ -26,6 +26,7 @@ from tests.docs.templates import Template, templates_in
 from tests.expressions.corpus_files import ROBOT, cases, repair_cases, repairs
 from tests.grading.support.robots import COLUMNS, EXACT, STANFORD
 from tests.grading.support.submitting import table
+from tests.shipped import shipped_exercises
 
 ROOT: Final = Path(__file__).parents[2]
 EXAMPLES: Final = Path(__file__).with_name("sentence_examples.toml")
@@ -249,7 +250,7 @@ def known_templates() -> list[Known]:
 
 def all_said() -> Iterator[Said]:
     """All that the examples draw."""
-    catalogue = {**load_catalogue(shipped_folder()), **_made()}
+    catalogue = {**shipped_exercises(), **_made()}
     yield from said_of_formulas(formulas())
     # A preview for no exercise reads in the names of books.
     yield from said_of_formulas(["g0"], GENERIC)

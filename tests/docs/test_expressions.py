@@ -7,6 +7,7 @@ import pytest
 
 from service.expressions import LIMITS, ExpressionError, read
 from tests.expressions.corpus_files import ROBOT
+from tests.together import together
 
 PAGE = (Path(__file__).parents[2] / "docs" / "expressions.md").read_text("utf-8")
 _COLUMN = re.compile(r"(?<!\\)\|")
@@ -28,7 +29,7 @@ def rows(*heads: str) -> list[tuple[str, ...]]:
     return found
 
 
-@pytest.mark.parametrize(("text", "meaning"), rows("You type", "It means"))
+@together(("text", "meaning"), rows("You type", "It means"))
 def test_it_means(text: str, meaning: str) -> None:
     assert read(text, ROBOT).text() == meaning
 

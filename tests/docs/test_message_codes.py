@@ -22,6 +22,7 @@ from tests.expressions.corpus_files import ROBOT
 from tests.grading.support.exercise_texts import all_codes
 from tests.grading.support.robots import COLUMNS, EXACT, STANFORD
 from tests.grading.support.submitting import as_data, handed_in, part, table
+from tests.together import together
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "messages.md").read_text(encoding="utf-8")
@@ -212,9 +213,9 @@ def codes_of(exercise: Exercise, part_id: str, answer: object) -> tuple[set[str]
 
 
 def examples(*sections: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Runs a test for each line of these sections that has an example."""
+    """Tries each line of these sections that has an example."""
     chosen = [line for line in LINES if line.section in sections and line.example]
-    return pytest.mark.parametrize("line", chosen, ids=lambda line: line.code)
+    return together("line", chosen)
 
 
 @examples(UNREAD)

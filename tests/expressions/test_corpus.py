@@ -6,16 +6,13 @@ import pytest
 from service.expressions import ExpressionError, read
 from tests.expressions.corpus_files import ROBOT, Case, cases, names, numbers
 from tests.expressions.reference import worth
+from tests.together import together
 
 VALUES = [(name, case) for name in names() for case in cases(name)]
 ERRORS = cases("errors")
 
 
-def _ids(found: list[Case]) -> list[str]:
-    return [case.place for case in found]
-
-
-@pytest.mark.parametrize(("name", "case"), VALUES, ids=_ids([case for _, case in VALUES]))
+@together(("name", "case"), VALUES)
 def test_value(name: str, case: Case) -> None:
     known = numbers(name)
     values = {
@@ -33,7 +30,7 @@ def test_value(name: str, case: Case) -> None:
     assert np.ravel(expression.evaluate(values)) == pytest.approx([expected], rel=1e-12, abs=1e-15)
 
 
-@pytest.mark.parametrize("case", ERRORS, ids=_ids(ERRORS))
+@together("case", ERRORS)
 def test_error(case: Case) -> None:
     code, place, suggestion = case.answers
     with pytest.raises(ExpressionError) as caught:

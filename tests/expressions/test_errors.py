@@ -3,6 +3,7 @@
 import pytest
 
 from service.expressions import ExpressionError, Symbol, Vocabulary, read
+from tests.together import together
 
 CASES = [
     ("", "empty", (0, 0), None),
@@ -91,7 +92,7 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize(("text", "code", "span", "suggestion"), CASES)
+@together(("text", "code", "span", "suggestion"), CASES)
 def test_error(
     text: str, code: str, span: tuple[int, int], suggestion: str | None, arm: Vocabulary
 ) -> None:
@@ -106,7 +107,7 @@ def test_error(
 REPAIRED = [case[0] for case in CASES if case[3] is not None and "\ufeff" not in case[0]]
 
 
-@pytest.mark.parametrize("text", REPAIRED)
+@together("text", REPAIRED)
 def test_a_suggestion_can_be_read(text: str, arm: Vocabulary) -> None:
     with pytest.raises(ExpressionError) as caught:
         read(text, arm)

@@ -8,6 +8,7 @@ from service.expressions import LIMITS, ExpressionError, read
 from tests.expressions.corpus_files import ROBOT
 from tests.expressions.fuzzing import PIECES, hostile, outcome, seeds, texts
 from tests.guards import STALL
+from tests.together import together
 
 HOSTILE = hostile()
 
@@ -59,7 +60,7 @@ def test_a_short_run_of_the_long_fuzz() -> None:
         _check(text)
 
 
-@pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
+@together("text", HOSTILE)
 def test_hostile(text: str) -> None:
     _check(text)
 

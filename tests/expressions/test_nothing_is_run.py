@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import service
+from tests.together import together
 
 FORBIDDEN = frozenset({
     "eval", "exec", "compile", "__import__", "sympify", "parse_expr", "parse_latex", "lambdify",
@@ -39,7 +40,7 @@ def found(source: str) -> list[str]:
     return calls
 
 
-@pytest.mark.parametrize("file", FILES, ids=[str(file.relative_to(ROOT)) for file in FILES])
+@together("file", FILES)
 def test_no_evaluator_is_called(file: Path) -> None:
     allowed = ALLOWED.get(file.relative_to(ROOT).as_posix(), set())
     assert set(found(file.read_text("utf-8"))) - allowed == set()

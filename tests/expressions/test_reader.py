@@ -7,6 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from service.expressions import Vocabulary, read
+from tests.together import together
 
 Values = dict[str, NDArray[np.float64]]
 
@@ -136,7 +137,7 @@ MARKED = [
 ]
 
 
-@pytest.mark.parametrize(("text", "expected"), [*NUMBERS, *SYMBOLS, *NAMES, *SHORTHAND, *MARKED])
+@together(("text", "expected"), [*NUMBERS, *SYMBOLS, *NAMES, *SHORTHAND, *MARKED])
 def test_value(text: str, expected: float, arm: Vocabulary, values: Values) -> None:
     assert np.ravel(read(text, arm).evaluate(values)) == pytest.approx([expected], rel=1e-14)
 

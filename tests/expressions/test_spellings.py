@@ -14,6 +14,7 @@ import pytest
 from service.expressions import ExpressionError, Symbol, Vocabulary, read
 from tests.expressions.corpus_files import ROBOT, SpellingCase, cases, names, spelling_cases
 from tests.expressions.reference import worth
+from tests.together import together
 
 CASES = spelling_cases()
 READ = [case for case in CASES if not case.refused]
@@ -45,16 +46,12 @@ def _means(text: str, meaning: str) -> None:
         assert found == pytest.approx([worth(meaning, known)], rel=1e-9, abs=1e-12), text
 
 
-def _ids(found: list[SpellingCase]) -> list[str]:
-    return [case.place for case in found]
-
-
-@pytest.mark.parametrize("case", READ, ids=_ids(READ))
+@together("case", READ)
 def test_a_spelling_is_read_as_it_is_meant(case: SpellingCase) -> None:
     _means(case.text, case.meaning)
 
 
-@pytest.mark.parametrize("case", REFUSED, ids=_ids(REFUSED))
+@together("case", REFUSED)
 def test_a_useful_spelling_that_is_refused_has_a_repair_that_keeps_its_meaning(
     case: SpellingCase,
 ) -> None:
@@ -84,7 +81,7 @@ LETTERS = Vocabulary(
 )
 
 
-@pytest.mark.parametrize(
+@together(
     "text",
     [
         *("a_b", "l_h", "l1_h", "a_{b}", "l_{h}", "l_{1h}", "l_{h1}", "l₁ₕ", "h_beta", "l_{c1}"),

@@ -6,12 +6,13 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from service.catalogue import Exercise, load_catalogue, shipped_folder
+from service.catalogue import Exercise
 from service.catalogue.robot import Robot
 from service.catalogue.schema import ViewSpec
 from service.figures.figure import exercise_figure, plainest_view, reference_figure
@@ -21,12 +22,13 @@ from service.figures.symbol_numbers import drawing_numbers
 from service.figures.view import View
 from service.kinematics.transforms import Numbers
 from tests import chromium
+from tests.shipped import shipped_exercises
 
 DOCS = Path(__file__).parents[2] / "docs"
 SVG = "{http://www.w3.org/2000/svg}"
 SHIPPED = {
     name: exercise
-    for name, exercise in load_catalogue(shipped_folder()).items()
+    for name, exercise in shipped_exercises().items()
     if exercise.reference is not None
 }
 TABLES = [name for name, exercise in SHIPPED.items() if isinstance(exercise.reference, Robot)]
@@ -178,8 +180,26 @@ def test_frames_are_drawn_for_tutors() -> None:
     assert "x3, x4, x5" in framed
 
 
+@pytest.mark.parametrize("name", ["scara", "three-link-cylindrical"])
+def test_no_arrow_of_a_sliding_joint_crosses_an_axis(name: str) -> None:
+    lines: dict[str, list[tuple[complex, complex]]] = {"motion": [], "frame": []}
+    for line in ET.fromstring(reference_figure(SHIPPED[name])).iter(f"{SVG}polyline"):
+        x, y, *_, u, v = map(float, re.findall(r"-?[\d.]+", line.attrib["points"]))
+        kind = line.attrib["class"].split()[0]
+        # Arcs have more points.
+        if kind == "frame" or (kind == "motion" and line.attrib["points"].count(",") < 20):
+            lines[kind].append((complex(x, y), complex(u, v)))
+    assert lines["motion"]
+    assert lines["frame"]
+    for (a, b), (c, d) in product(lines["motion"], lines["frame"]):
+        # Lines cross where each has its ends on either side of the other.
+        sides = [((q - p) * (r - p).conjugate()).imag for p, q, r in
+                 [(a, b, c), (a, b, d), (c, d, a), (c, d, b)]]  # fmt: skip
+        assert not (sides[0] * sides[1] < 0 and sides[2] * sides[3] < 0)
+
+
 def test_an_exercise_without_a_robot_has_no_figure() -> None:
-    exercise = load_catalogue(shipped_folder())["dh-conditions"]
+    exercise = shipped_exercises()["dh-conditions"]
     with pytest.raises(LookupError, match="no robot"):
         exercise_figure(exercise)
 

@@ -10,17 +10,18 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from service.catalogue import Exercise, load_catalogue, shipped_folder
+from service.catalogue import Exercise
 from service.catalogue.robot import Robot
 from service.catalogue.screw_robot import ScrewRobot
 from service.figures.mechanism import mechanism_of
 from service.figures.symbol_numbers import drawing_numbers
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers
+from tests.shipped import shipped_exercises
 
 POSES = 5
 EXACT = 1e-9
-SHIPPED = load_catalogue(shipped_folder())
+SHIPPED = shipped_exercises()
 ROBOTS = [name for name, exercise in SHIPPED.items() if exercise.reference is not None]
 
 

@@ -10,11 +10,11 @@ import httpx
 import pytest
 
 from service.api.application import application
-from service.catalogue import load_catalogue, shipped_folder
 from tests.api.conftest import InProcess
 from tests.browser.hostile import TEXTS
+from tests.shipped import shipped_exercises
 
-SHIPPED = load_catalogue(shipped_folder())
+SHIPPED = shipped_exercises()
 SVG = "{http://www.w3.org/2000/svg}"
 # A sliding joint a quarter turn from a turning one; the fixed row has no joint.
 TABLE = {"structure": "RP", "rows": "0 90° d1 q1\n0 0 q2 0\n0.2 0 0 0"}

@@ -13,6 +13,7 @@ from service.formats.shared.graded import GradedSubmission
 from service.formats.shared.part_results import distinct_names
 from service.formats.shared.report_format import UnusableSettingError
 from tests.formats.submissions import cases, document, graded, setting
+from tests.together import together
 
 NAMES = {
     "text", "json", "jsonl", "csv", "gradebook", "html", "gradescope", "classroom50",
@@ -48,8 +49,8 @@ def commands(line: str) -> Iterator[str]:
     yield from re.findall(r"##(?:vso|teamcity|\w*)\[", line)
 
 
-@pytest.mark.parametrize("case", cases())
-@pytest.mark.parametrize("name", sorted(FORMAT_NAMES))
+@together("case", cases())
+@together("name", sorted(FORMAT_NAMES))
 def test_nothing_that_is_printed_is_a_command_or_a_control(name: str, case: str) -> None:
     printed = document(name, cases()[case])
     if name != "text" or case != "unusable":  # its problem is told on standard error

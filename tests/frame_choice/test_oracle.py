@@ -22,6 +22,7 @@ from tests.frame_choice.robots import (
     conventions,
 )
 from tests.frame_choice.trials import equivalent
+from tests.together import together
 
 BY_NAME = {robot.name: robot for robot in ROBOTS}
 SCARA, STANFORD, RRRP = BY_NAME["SCARA"], BY_NAME["Stanford"], BY_NAME["RRRP"]
@@ -41,8 +42,8 @@ def with_cell(robot: Robot, row: int, column: int, text: str) -> list[list[str]]
     return rows
 
 
-@pytest.mark.parametrize("policy", POLICIES, ids=lambda policy: policy.name)
-@pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
+@together("policy", POLICIES)
+@together("robot", ROBOTS)
 def test_the_reference_is_valid(robot: Robot, policy: Policy) -> None:
     assert is_equivalent(robot, policy, robot.rows, robot.convention)
 

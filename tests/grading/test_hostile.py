@@ -24,6 +24,7 @@ from tests.grading.support.submitting import (
 )
 from tests.grading.support.worth import about, points
 from tests.guards import STALL
+from tests.together import together
 
 
 def nested(levels: int, core: Any = 0) -> Any:
@@ -124,7 +125,7 @@ def check_cost(spent: float) -> None:
 PLACES = {(str(i + 1), ("a", "alpha", "d", "theta")[i % 4]) for i in range(6)}
 
 
-@pytest.mark.parametrize("name", UNREADABLE)
+@together("name", UNREADABLE)
 def test_what_cannot_be_read_costs_its_own_cells(
     name: str, given_frames: Mapping[str, Exercise]
 ) -> None:
@@ -176,8 +177,8 @@ NO_TABLE: dict[str, Any] = {
 }
 
 
-@pytest.mark.parametrize("level", list(FeedbackLevel))
-@pytest.mark.parametrize("name", [name for name in NO_TABLE if name != "very deep"])
+@together("level", list(FeedbackLevel))
+@together("name", [name for name in NO_TABLE if name != "very deep"])
 def test_what_is_no_table_is_unreadable(
     name: str, level: FeedbackLevel, given_frames: Mapping[str, Exercise]
 ) -> None:

@@ -17,6 +17,8 @@ from service.solutions.lazy import IDENTITY, motion
 from tests.samples import one_in
 
 IDS = [file.stem for file in exercise_files(shipped_folder())]
+# The sample begins where it has most kinds of answers.
+SAMPLED = one_in(8, IDS[8:] + IDS[:8])
 PART, POSE, EXERCISE = 0.25, 0.5, 0.4
 ZERO_ROW = {"a": "0", "alpha": "0", "d": "0", "theta": "0"}
 GARBAGE = {"a": "0.37", "alpha": "0.61", "d": "0.83", "theta": "1.27"}
@@ -132,7 +134,7 @@ def best_together(exercise: Exercise) -> dict[str, float]:
     return best
 
 
-@pytest.mark.parametrize("exercise_id", one_in(6, IDS))
+@pytest.mark.parametrize("exercise_id", SAMPLED)
 def test_zero_knowledge_earns_little(
     exercise_id: str, catalogue: Mapping[str, Exercise], figure: Callable[[str], None]
 ) -> None:
@@ -180,7 +182,7 @@ def slips(exercise: Exercise, part: PartSpec) -> Iterator[tuple[float, float]]:
                 yield 1 - report.points / report.max_points, wrong.max_points / report.max_points
 
 
-@pytest.mark.parametrize("exercise_id", one_in(6, IDS))
+@pytest.mark.parametrize("exercise_id", SAMPLED)
 def test_one_slip_costs_a_fair_share(
     exercise_id: str, catalogue: Mapping[str, Exercise], figure: Callable[[str], None]
 ) -> None:

@@ -8,13 +8,16 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from service.grids import GRID_LIMITS, Grid, GridError, NamedGrid, read_grid, read_grids
+from service.grids import GRID_LIMITS, Grid, GridError, NamedGrid, read_grid, read_grids, read_robot
+from tests.grids.test_robot_script import SCRIPTS
 from tests.grids.writers import FORMATS, POSE
 from tests.guards import STALL
+from tests.samples import one_in
 
 Found = TypeVar("Found")
 SEEDS = [write(POSE) for write in FORMATS.values()]
 SEEDS += [f"A1 = {text}\nA2 = {text}" for text in SEEDS]
+SEEDS += [case["script"] for cases in SCRIPTS.values() for case in cases.values()]
 FRAGMENTS = [
     "[", "]", "(", ")", "{", "}", "<", ">", "&", "\\", "|", "'", '"', "%", "#", "...", ";", ",",
     "\n", "\r\n", "\t", " ", "=", "$", "\x00", "\ud800", "\u202e", "\u2028", "\ufeff", "\u0301",
@@ -24,6 +27,7 @@ FRAGMENTS = [
     "(*", "*)", "/*", "//MatrixForm", "Simplify[", "\\pmatrix{", "\\cr ", "[   ]\n", "/ 1 \\\n| ",
     " = ", ":=", "\n\n", "% A1\n", "import x\n", "x = Symbol(", "x", "x1 ", "\\begin{bmatrix}",
     "\\end{bmatrix}", "{}^0", "\\right)", "\\quad", "\\text{", "a*b", "é", "𝜃",
+    "SerialLink([", "\nL(1) = Link([0 0 ", "Revolute('d', ", "setFixedTransform(j1, ", "{'a': [",
 ]  # fmt: skip
 
 
@@ -36,7 +40,8 @@ def refusal(error: GridError) -> Refusal:
 
 def outcome(text: str) -> Grid | Refusal:
     try:
-        return read_grid(text)
+        robot = read_robot(text)
+        return robot.grid if robot else read_grid(text)
     except GridError as error:
         return refusal(error)
 
@@ -118,8 +123,17 @@ def test_mutations_of_each_format(text: str) -> None:
     check(text)
 
 
-@pytest.mark.parametrize("before", ["", "[", "<tr><td>", "\\begin{matrix}"])
-@pytest.mark.parametrize("unit", [*FRAGMENTS, "1 ", "1 -", "1  ", "1\n", "[' ", '<a "', "\\cline{"])
+# Each unit behind one of the beginnings in turn; all pairs are in the campaign.
+BEGINNINGS = ["", "[", "<tr><td>", "\\begin{matrix}"]
+UNITS = [*FRAGMENTS, "1 ", "1 -", "1  ", "1\n", "[' ", '<a "', "\\cline{"]
+PAIRS = [
+    (BEGINNINGS[(i + j) % len(BEGINNINGS)], unit)
+    for i, unit in enumerate(UNITS)
+    for j in range(len(BEGINNINGS))
+]
+
+
+@pytest.mark.parametrize(("before", "unit"), one_in(len(BEGINNINGS), PAIRS))
 def test_sixteen_thousand_of_anything(before: str, unit: str) -> None:
     text = before + unit * GRID_LIMITS.characters
     check(text[: GRID_LIMITS.characters - 1] + ("]" if before == "[" else ""))

@@ -4,6 +4,7 @@ import pytest
 
 from service.grids import GridError, read_grids
 from tests.grids.writers import MATRICES, POSE
+from tests.together import together
 
 FIRST, SECOND = [["a", "b"], ["c", "d"]], [["e", "f"], ["g", "h"]]
 TEX = r"\begin{bmatrix} a & b \\ c & d \end{bmatrix}", r"\begin{bmatrix} e&f\\g&h \end{bmatrix}"
@@ -17,7 +18,7 @@ def several(text: str) -> list[tuple[str, list[list[str]]]]:
     return found
 
 
-@pytest.mark.parametrize(
+@together(
     ("text", "names"),
     [
         # MATLAB and Octave

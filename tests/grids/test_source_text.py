@@ -1,12 +1,11 @@
 """The places of cells and of their characters."""
 
-import pytest
-
 from service.grids import read_grid
 from tests.grids.writers import FORMATS, POSE
+from tests.together import together
 
 
-@pytest.mark.parametrize("name", FORMATS)
+@together("name", FORMATS)
 def test_each_span_is_the_place_of_its_cell(name: str) -> None:
     text = FORMATS[name](POSE)
     for row in read_grid(text).rows:

@@ -8,9 +8,10 @@ from service.kinematics.chain import Table, pose
 from service.kinematics.dh import Convention
 from service.kinematics.factors import Factors, factors_of
 from service.kinematics.transforms import Numbers, inverse
+from tests.together import together
 
 SAMPLES = 3
-SEEDS = pytest.mark.parametrize("seed", range(30))
+SEEDS = together("seed", range(30))
 CONVENTIONS = pytest.mark.parametrize("convention", list(Convention))
 # The second of five joints slides.
 SLIDING = np.array([False, True, False, False, False])

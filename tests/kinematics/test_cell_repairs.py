@@ -7,10 +7,11 @@ from service.kinematics.cell_repairs import one_factor_repairs, repaired_values,
 from service.kinematics.chain import Table, pose
 from service.kinematics.dh import Convention
 from service.kinematics.factors import CellIndex, factors_of
+from tests.together import together
 
 SAMPLES = 4
 CONVENTIONS = pytest.mark.parametrize("convention", list(Convention))
-SEEDS = pytest.mark.parametrize("seed", range(40))
+SEEDS = together("seed", range(40))
 
 
 def arm(rng: np.random.Generator) -> Table:

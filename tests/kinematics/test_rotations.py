@@ -22,6 +22,7 @@ from service.kinematics.rotations import (
     to_angles,
 )
 from service.kinematics.transforms import Matrices
+from tests.together import together
 
 RNG = np.random.default_rng(4)
 ANGLES = RNG.uniform(-np.pi, np.pi, (40, 3))
@@ -48,8 +49,8 @@ def test_there_are_twelve_sequences() -> None:
     assert all(a != b != c for a, b, c in SEQUENCES)
 
 
-@pytest.mark.parametrize("fixed", [False, True])
-@pytest.mark.parametrize("sequence", SEQUENCES)
+@together("fixed", [False, True])
+@together("sequence", SEQUENCES)
 def test_the_rotation_of_a_triple(sequence: str, fixed: bool) -> None:
     np.testing.assert_allclose(
         from_angles(sequence, ANGLES, fixed=fixed),
@@ -58,8 +59,8 @@ def test_the_rotation_of_a_triple(sequence: str, fixed: bool) -> None:
     )
 
 
-@pytest.mark.parametrize("fixed", [False, True])
-@pytest.mark.parametrize("sequence", SEQUENCES)
+@together("fixed", [False, True])
+@together("sequence", SEQUENCES)
 def test_both_triples_of_a_rotation(sequence: str, fixed: bool) -> None:
     rotation = scipy_rotation(sequence, ANGLES, fixed)
     one = to_angles(sequence, rotation, fixed=fixed)
@@ -70,8 +71,8 @@ def test_both_triples_of_a_rotation(sequence: str, fixed: bool) -> None:
     np.testing.assert_allclose(one, scipy_angles(sequence, rotation, fixed), atol=1e-9)
 
 
-@pytest.mark.parametrize("fixed", [False, True])
-@pytest.mark.parametrize("sequence", SEQUENCES)
+@together("fixed", [False, True])
+@together("sequence", SEQUENCES)
 def test_where_the_outer_axes_are_one_line(sequence: str, fixed: bool) -> None:
     singular = [0.0, np.pi] if sequence in PROPER else [np.pi / 2, -np.pi / 2]
     for middle in singular:

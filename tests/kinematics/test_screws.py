@@ -20,6 +20,7 @@ from service.kinematics.screws import (
 )
 from service.kinematics.transforms import inverse, rot_x, rot_z
 from tests.kinematics.constructions import screw_axis, trans
+from tests.together import together
 
 Numbers = NDArray[np.float64]
 RNG = np.random.default_rng(5)
@@ -49,8 +50,8 @@ def test_the_worked_examples() -> None:
     assert (results.attempted >= 2, results.failed) == (True, 0)
 
 
-@pytest.mark.parametrize("name", SCREWS)
-@pytest.mark.parametrize("amount", [0.0, 1e-9, 0.7, -2.9, 11.0])
+@together("name", SCREWS)
+@together("amount", [0.0, 1e-9, 0.7, -2.9, 11.0])
 def test_the_exponential_is_that_of_the_matrix(name: str, amount: float) -> None:
     screw = SCREWS[name]
     np.testing.assert_allclose(

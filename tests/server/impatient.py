@@ -1,9 +1,11 @@
 """`python -m tests.server.impatient`: the service with little patience, so that tests need none.
 
-`GET /hanging` there never comes to an answer.
+`GET /hanging` there never comes to an answer. The variable ``PATIENCE`` lets it wait longer for the
+rest of a request; at its end it stays impatient.
 """
 
 import asyncio
+import os
 
 from fastapi import FastAPI
 
@@ -27,7 +29,7 @@ def _with_hanging(settings: Settings, host: str) -> FastAPI:
 
 if __name__ == "__main__":
     for module, name, seconds in (
-        (protocol, "PATIENCE", PATIENCE),
+        (protocol, "PATIENCE", float(os.environ.get("PATIENCE", PATIENCE))),
         (protocol, "LINGER", 0.3),
         (crowd, "SWEEP", 0.05),
         (process, "GRACE", PATIENCE / 2),

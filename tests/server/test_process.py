@@ -5,7 +5,7 @@ import signal
 import socket
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
 from pathlib import Path
 
@@ -89,8 +89,9 @@ def test_what_is_under_way_is_finished_and_what_is_not_begun_is_hung_up_on(
 
 
 def test_half_a_body_does_not_keep_it_and_is_reset(tmp_path: Path) -> None:
+    # On a busy machine, its usual patience may be over before it is asked to end.
     with (
-        service(tmp_path, module=IMPATIENT) as running,
+        service(tmp_path, module=IMPATIENT, PATIENCE="600") as running,
         running.connect(preview()[:HALF]) as half,
     ):
         running.ask(HEALTH)
@@ -187,44 +188,49 @@ def test_workers_end_when_nobody_looks_after_them(tmp_path: Path) -> None:
         until(lambda: not any(map(runs, staff)))
 
 
-def test_many_open_connections_leave_room_and_little_memory(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def lasting(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    """A process for tests that do not end it; it writes no address into its log."""
+    folder = tmp_path_factory.mktemp("lasting")
+    with service(folder, DH_GRADER_LOG_ADDRESSES="false") as running:
+        yield running
+        assert running.end() == 0
+
+
+def test_many_open_connections_leave_room_and_little_memory(lasting: Service) -> None:
     more = MAX_CONNECTIONS + 300
-    with service(tmp_path) as running:
-        running.ask(preview())
-        before = running.memory()
-        with ExitStack() as lines:
-            for number in range(more):
-                head = b"POST /v1/preview HTTP/1.1\r\nHost: x\r\n"
-                lines.enter_context(running.connect(head))
-                if number % 100 == 0:
-                    (answer,) = running.ask(HEALTH)
-                    assert answer.status == 200
-            (answer,) = running.ask(preview())
-            assert answer.status == 200
-            assert running.memory() - before < 100
-        assert running.end() == 0
+    lasting.ask(preview())
+    before = lasting.memory()
+    with ExitStack() as lines:
+        for number in range(more):
+            head = b"POST /v1/preview HTTP/1.1\r\nHost: x\r\n"
+            lines.enter_context(lasting.connect(head))
+            if number % 100 == 0:
+                (answer,) = lasting.ask(HEALTH)
+                assert answer.status == 200
+        (answer,) = lasting.ask(preview())
+        assert answer.status == 200
+        assert lasting.memory() - before < 100
 
 
-def test_addresses_can_be_left_out_of_the_log(tmp_path: Path) -> None:
-    with service(tmp_path, DH_GRADER_LOG_ADDRESSES="false") as running:
-        asked = running.ask(b"GET /healthz?name=Ada HTTP/1.1\r\nHost: x\r\n\r\n")
-        refused = running.ask(b"NONSENSE\r\n\r\n")
-        assert running.end() == 0
-        requests = [line for line in running.log.splitlines() if "HTTP/1.1" in line]
-    (well,), (nonsense,) = asked, refused
-    assert requests == [
+def test_addresses_can_be_left_out_of_the_log(lasting: Service) -> None:
+    (well,) = lasting.ask(b"GET /healthz?name=Ada HTTP/1.1\r\nHost: x\r\n\r\n")
+    (nonsense,) = lasting.ask(b"NONSENSE\r\n\r\n")
+    expected = [
         f'INFO:     - - "GET /healthz HTTP/1.1" 200 OK [{well.headers["x-request-id"]}]',
         f'INFO:     - - "- - HTTP/1.1" 400 Bad Request [{nonsense.json()["request_id"]}]',
     ]
+    # A line may come later than its answer.
+    until(lambda: lasting.log.count(nonsense.json()["request_id"]) > 0)
+    requests = [line for line in lasting.log.splitlines() if "HTTP/1.1" in line]
+    assert requests[-2:] == expected
+    assert "127.0.0.1" not in "".join(requests)
+    assert "Ada" not in lasting.log
 
 
-def test_a_port_that_is_taken_is_a_reason(tmp_path: Path) -> None:
-    with service(tmp_path) as running:
-        other = tmp_path / "other"
-        other.mkdir()
-        with (
-            pytest.raises(AssertionError, match=r"(?i)address already in use"),
-            service(other, "--port", str(running.port), "--workers", "2"),
-        ):
-            pass
-        assert running.end() == 0
+def test_a_port_that_is_taken_is_a_reason(lasting: Service, tmp_path: Path) -> None:
+    with (
+        pytest.raises(AssertionError, match=r"(?i)address already in use"),
+        service(tmp_path, "--port", str(lasting.port), "--workers", "2"),
+    ):
+        pass

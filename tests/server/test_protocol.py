@@ -9,6 +9,7 @@ import pytest
 
 from tests.server.impatient import PATIENCE
 from tests.server.raw import HEALTH, HOST, TEXT, Service, answers, preview, received, service
+from tests.server.test_metrics import asked, value
 
 COURSE = "https://course.example.edu"
 CHUNKED = b"POST /v1/preview HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n"
@@ -17,7 +18,8 @@ CHUNKED = b"POST /v1/preview HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r
 @pytest.fixture(scope="module")
 def impatient(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     folder = tmp_path_factory.mktemp("server")
-    with service(folder, module="tests.server.impatient", DH_GRADER_CORS_ORIGINS=COURSE) as running:
+    settings = {"DH_GRADER_CORS_ORIGINS": COURSE, "DH_GRADER_METRICS": "local"}
+    with service(folder, module="tests.server.impatient", **settings) as running:
         yield running
         assert running.end() == 0
 
@@ -155,6 +157,27 @@ def test_an_unfinished_request_is_given_up(impatient: Service, sent: bytes) -> N
         (answer,) = answers(connection)
     assert answer.status == 408
     assert answer.headers["content-type"] == "application/problem+json"
+
+
+def test_refusals_are_counted_which_the_application_never_sees(impatient: Service) -> None:
+    begun = (b"GET / HTTP/1.1\r\nHost: x\r\n", 408)
+    broken = (CHUNKED + b"two\r\n", 400)
+    long = (b"GET /" + b"x" * 9000, 414)
+    large = (b"GET / HTTP/1.1\r\nCookie: " + b"x" * 70_000, 431)
+    # The application refuses this one itself.
+    heavy = (preview(b" " * 300_000), 413)
+    before = asked(impatient)
+    for sent, status in (begun, broken, long, long, large, heavy):
+        with impatient.connect(sent) as connection:
+            assert [answer.status for answer in answers(connection)] == [status]
+    after = asked(impatient)
+
+    def more(name: str, *labels: str) -> float:
+        return value(after, name, *labels) - value(before, name, *labels)
+
+    counted = [more("refusals_total", str(status)) for status in (408, 400, 414, 431, 413)]
+    assert counted == [1, 1, 2, 1, 0]
+    assert more("requests_total", "POST", "other", "413") == 1
 
 
 def test_a_body_that_drips_is_given_up_all_the_same(impatient: Service) -> None:

@@ -8,7 +8,8 @@ from typing import Any
 import uvicorn
 
 from service.server.crowd import Crowd, Room
-from service.server.protocol import GuardedProtocol, GuardedState
+from service.server.guarded_state import GuardedState
+from service.server.protocol import GuardedProtocol
 from tests.server.raw import HEALTH
 
 MB = 1024 * 1024

@@ -15,11 +15,12 @@ import numpy as np
 import sympy as sp
 from sympy.printing.numpy import NumPyPrinter
 
-from service.catalogue import Exercise, load_catalogue, shipped_folder
+from service.catalogue import Exercise
 from service.catalogue.parts.link_transforms import LinkTransformsSpec
 from service.expressions import read
 from service.solutions.algebra import Algebra
 from tests.grading.support.submitting import full_marks, handed_in, part
+from tests.shipped import shipped_exercises
 from tests.solutions.solved import solved
 
 GREEK = frozenset({"theta", "alpha", "phi", "psi", "beta", "gamma"})
@@ -346,7 +347,7 @@ def main() -> int:
     parser.add_argument("--printer", default="", help="only prints with this in their name")
     parser.add_argument("--show", action="store_true", help="show the texts without full marks")
     chosen = parser.parse_args()
-    catalogue = load_catalogue(shipped_folder())
+    catalogue = shipped_exercises()
     exercises = [each for each in catalogue.values() if chosen.exercise in each.id]
     tried = [p for e in exercises for p in prints(e) if chosen.printer in p.name]
     failed = 0

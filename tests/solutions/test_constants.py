@@ -13,18 +13,16 @@ ROWS = [
     (0.0612, 0.31, 0.0892, 0.1),
     (-0.425, 0.2, 0.011, 0.2),
     (-0.39225, 0.7, 0.013, -0.35),
-    (0.012, 1.2, 0.10915, 0.0),
-    (0.023, -1.1, 0.09465, 0.7),
-    (0.0, 0.0, 0.0823, 0.0),
+    (0.023, -1.1, 0.09465, 0.0),
 ]
 NUMERIC = f"""
 title = "Numbers"
 source = "none"
-statement = "Six joints, and no length is a letter."
+statement = "Four joints, and no length is a letter."
 [robot]
-structure = "RRRRRR"
+structure = "RRRR"
 convention = "standard"
-joints = [{", ".join(f'"theta{i}"' for i in range(1, 7))}]
+joints = [{", ".join(f'"theta{i}"' for i in range(1, 5))}]
 table = [
 {
     "".join(

@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from service.solutions.motions import Motion, Turn, X, Y, Z
 from service.solutions.orientation import as_angle, euler_angles
+from tests.together import together
 
 AXES = {"X": X, "Y": Y, "Z": Z}
 TAIT_BRYAN = ["".join(letters) for letters in permutations("XYZ")]
@@ -23,9 +24,9 @@ CHAINS: dict[str, list[Motion]] = {
 }
 
 
-@pytest.mark.parametrize("axes", ["moving", "fixed"])
-@pytest.mark.parametrize("chain", CHAINS)
-@pytest.mark.parametrize("sequence", TAIT_BRYAN + PROPER)
+@together("axes", ["moving", "fixed"])
+@together("chain", CHAINS)
+@together("sequence", TAIT_BRYAN + PROPER)
 def test_the_angles_give_the_rotation(sequence: str, chain: str, axes: str) -> None:
     expected = np.eye(3)
     for motion in CHAINS[chain]:

@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from service.catalogue import load_catalogue, shipped_folder
 from service.submissions.answers import ExerciseAnswers, answers_in
 from service.submissions.assignment import Assignment, assigned, of_one
 from service.submissions.handed_in import all_handed_in
+from tests.shipped import shipped_exercises
 
-CATALOGUE = load_catalogue(shipped_folder())
+CATALOGUE = shipped_exercises()
 RRR = of_one(CATALOGUE["planar-rrr"])  # parts: table, pose
 TWO = Assignment(tuple(assigned(CATALOGUE[name]) for name in ("planar-rrr", "scara")))
 CSV = "a, alpha, d, theta\n0, 0, 0, q1\n"

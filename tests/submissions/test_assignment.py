@@ -3,20 +3,15 @@ from pathlib import Path
 
 import pytest
 
-from service.catalogue import (
-    CatalogueError,
-    Exercise,
-    FeedbackLevel,
-    load_catalogue,
-    shipped_folder,
-)
+from service.catalogue import CatalogueError, Exercise, FeedbackLevel, shipped_folder
 from service.grading import Submission, grade
 from service.submissions.answers import answers_in
 from service.submissions.assignment import Assignment, assigned, load_assignment
 from service.submissions.handed_in import all_handed_in
 from service.submissions.lookup import find_exercise
+from tests.shipped import shipped_exercises
 
-CATALOGUE = load_catalogue(shipped_folder())
+CATALOGUE = shipped_exercises()
 
 HOMEWORK = """\
 title = "Homework 3"

@@ -1,11 +1,11 @@
 import pytest
 
-from service.catalogue import load_catalogue, shipped_folder
 from service.submissions.lookup import UnknownExerciseError, find_exercise, nearest
+from tests.shipped import shipped_exercises
 
 
 def test_a_known_exercise_is_found() -> None:
-    catalogue = load_catalogue(shipped_folder())
+    catalogue = shipped_exercises()
     assert find_exercise(catalogue, "scara") is catalogue["scara"]
 
 
@@ -15,7 +15,7 @@ def test_a_known_exercise_is_found() -> None:
 )
 def test_an_unknown_one_brings_the_nearest(mistyped: str, meant: str | None) -> None:
     with pytest.raises(UnknownExerciseError) as caught:
-        find_exercise(load_catalogue(shipped_folder()), mistyped)
+        find_exercise(shipped_exercises(), mistyped)
     assert caught.value.suggestion == meant
     assert (str(meant) in str(caught.value)) == (meant is not None)
 

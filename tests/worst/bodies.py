@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Final
 
-from tests.worst.entry_points import FILE, FRAMES, GRADE, PREVIEW, Attack
+from tests.worst.entry_points import ATTEMPTS, FILE, FRAMES, GRADE, PREVIEW, Attack
 from tests.worst.seeds import (
     HALVES,
     LONG_TABLE,
@@ -87,6 +87,11 @@ KNOWN: Final[Mapping[str, Attack]] = {
     "a free table of long cells": free_frames_of(ARM, "sin(30)" * 60),
     "a free table of long cells without a figure": Attack(
         FRAMES, ARM, {**free_frames_of(ARM, "sin(30)" * 60).body, "figure": None}
+    ),
+    "decimals and halves, recorded": Attack(
+        ATTEMPTS,
+        f"{ARM}-either",
+        {"answers": {"table": _DECIMALS[:6], "links": [_DECIMALS[:4]] * 6, "pose": _HALVES}},
     ),
     "unknown parts": Attack(GRADE, ARM, _UNKNOWN),
     "unknown fields": Attack(GRADE, ARM, {**_UNKNOWN["answers"], "answers": {}}),

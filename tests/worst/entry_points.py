@@ -2,6 +2,7 @@
 
 import asyncio
 import gc
+import itertools
 import json
 import statistics
 import tempfile
@@ -17,6 +18,7 @@ from fastapi import FastAPI
 from rich.console import Console
 
 from service.api.application import application
+from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
 from service.expressions import reader, reading_work
 from service.expressions.evaluation import decimals
@@ -26,11 +28,12 @@ from service.formats.shared.report_format import Setting
 from service.local_grading import GradingTerms, graded
 from service.submissions.assignment import of_one
 from service.submissions.handed_in import all_handed_in
+from tests.attempts.databases import new_file
 from tests.benchmarks.floors import stanford_pose
 
-GRADE, PREVIEW, FILE = "grade", "preview", "file"
+GRADE, ATTEMPTS, PREVIEW, FILE = "grade", "attempts", "preview", "file"
 PREVIEWS, FRAMES = "many-previews", "frames"
-ENTRIES = (GRADE, PREVIEW, PREVIEWS, FRAMES, FILE)
+ENTRIES = (GRADE, ATTEMPTS, PREVIEW, PREVIEWS, FRAMES, FILE)
 _PATHS = {PREVIEW: "/v1/preview", PREVIEWS: "/v1/previews", FRAMES: "/v1/frames"}
 _CACHES = (
     reader._remembered, reader._remembered_long, reader._parsed, reading_work._remembered,
@@ -40,7 +43,10 @@ _CACHES = (
 
 @dataclass(frozen=True)
 class Attack:
-    """One request: where it goes, the exercise in its path, and its body."""
+    """One request: where it goes, the exercise in its path, and its body.
+
+    That of an attempt gets a learner of its own whenever it is sent.
+    """
 
     entry: str
     exercise: str
@@ -74,20 +80,24 @@ class Target:
 
     def __init__(self, exercises: Mapping[str, Exercise]) -> None:
         self.exercises = exercises
-        self._app: FastAPI = application(exercises)
         self._loop = asyncio.new_event_loop()
         self._folder = tempfile.TemporaryDirectory()
+        self._store = AttemptStore.open(new_file(Path(self._folder.name)))
+        self._store.start()
+        self._learners = itertools.count()
+        self._app: FastAPI = application(exercises, store=self._store)
         # As the service does at its start.
         gc.collect()
         gc.freeze()
 
     def close(self) -> None:
-        """Drop the loop and the folder."""
+        """Drop the loop, the store and the folder."""
         self._loop.close()
+        self._store.close()
         self._folder.cleanup()
 
     def answer(self, attack: Attack) -> int:
-        """Send it; the status of the answer, 200 where the body was accepted."""
+        """Send it; the status of the answer, 200 or 201 where the body was accepted."""
         return self._action(attack)()
 
     def seconds(self, attack: Attack, rounds: int = 2) -> tuple[float, int]:
@@ -108,8 +118,15 @@ class Target:
             path = Path(self._folder.name) / "submission.json"
             path.write_bytes(content)
             return lambda: self._file(path, attack.exercise)
+        if attack.entry == ATTEMPTS:
+            return lambda: self._loop.run_until_complete(self._recorded(attack.exercise, content))
         url = _PATHS.get(attack.entry, f"/v1/exercises/{attack.exercise}/grade")
         return lambda: self._loop.run_until_complete(self._posted(url, content))
+
+    async def _recorded(self, exercise: str, content: bytes) -> int:
+        # Who has tried too often would be refused.
+        learner = b'{"learner": "l%d", ' % next(self._learners)
+        return await self._posted(f"/v1/exercises/{exercise}/attempts", learner + content[1:])
 
     async def _posted(self, url: str, content: bytes) -> int:
         status = 0

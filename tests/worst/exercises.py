@@ -3,9 +3,10 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from service.catalogue import Exercise, load_catalogue, shipped_folder
+from service.catalogue import Exercise
 from service.catalogue.parts.dh_table import DhTableSpec
 from tests.frame_choice.robots import GIVEN, POLICIES, ROBOTS, exercise
+from tests.shipped import shipped_exercises
 
 # Of the robots that are shipped as no exercise, those with the most joints.
 _JOINTS = 6
@@ -13,7 +14,7 @@ _JOINTS = 6
 
 def exercises() -> Mapping[str, Exercise]:
     """All exercises by id; of those with a table, also one that may be in either convention."""
-    shipped = load_catalogue(shipped_folder())
+    shipped = shipped_exercises()
     return {**shipped, **dict(_either(shipped)), **dict(_robots())}
 
 

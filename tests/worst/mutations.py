@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from tests.grids.writers import FORMATS
-from tests.worst.entry_points import FILE, FRAMES, GRADE, PREVIEW, PREVIEWS, Attack
+from tests.worst.entry_points import ATTEMPTS, FILE, FRAMES, GRADE, PREVIEW, PREVIEWS, Attack
 
 # A step from a list or object to what stands in it.
 Place = tuple[Any, Any]
@@ -60,9 +60,9 @@ class Mutator:
                 self._answers(body["answers"], other)
         if self._choose.random() < 0.03:
             body["angle_unit"] = self._choose.choice(("radians", "degrees"))
-        if attack.entry in (GRADE, FILE) and self._choose.random() < 0.03:
+        if attack.entry in (GRADE, ATTEMPTS, FILE) and self._choose.random() < 0.03:
             body["echo"] = self._choose.random() < 0.5
-        if attack.entry in (GRADE, FILE) and self._choose.random() < 0.03:
+        if attack.entry in (GRADE, ATTEMPTS, FILE) and self._choose.random() < 0.03:
             body["feedback"] = self._choose.choice(("full", "hints", "verdicts", "score"))
         found = Attack(attack.entry, attack.exercise, body)
         return found if len(found.content) < LONGEST else attack

@@ -6,7 +6,7 @@ from typing import Any
 
 from service.catalogue import Exercise
 from tests.expressions.fuzzing import hostile, seeds
-from tests.worst.entry_points import FILE, FRAMES, GRADE, PREVIEW, PREVIEWS, Attack
+from tests.worst.entry_points import ATTEMPTS, FILE, FRAMES, GRADE, PREVIEW, PREVIEWS, Attack
 
 KEYS = ("a", "alpha", "d", "theta")
 HALVES = "½" * 78
@@ -133,6 +133,7 @@ def attacks(exercises: Mapping[str, Exercise], seed: int) -> Iterator[Attack]:
         bodies = [*answers_of(exercise), *(each for each in _spread(exercise, choose) if each)]
         for answers in bodies:
             yield Attack(GRADE, name, {"answers": answers})
+            yield Attack(ATTEMPTS, name, {"answers": answers})
             yield Attack(FILE, name, {"answers": answers})
             for answered, answer in answers.items():
                 if isinstance(answer, str):

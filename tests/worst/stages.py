@@ -17,6 +17,7 @@ _STAGES = (
     ("service/grading/judging/", "judging"),
     ("service/grading/kinds/", "judging"),
     ("service/formats/", "rendering"),
+    ("service/attempts/", "recording"),
     ("service/submissions/", "body"),
     ("service/api/", "body"),
 )

@@ -1,6 +1,6 @@
 """Tables without headers whose columns stand in another order: θ, d, a, α, or α, a, d, θ."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import permutations
 from typing import Final
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import Joint
+from service.expressions import Expression, Symbol
 from service.grading.comparison import difference
 from service.grading.diagnosis.intended_table import IntendedTable
 from service.grading.diagnosis.quantity import quantity_of
@@ -16,6 +17,7 @@ from service.grading.diagnosis.wording import SYMBOLS
 from service.grading.feedback import Finding
 from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE, StudentRow, StudentTable, values_of
+from service.grading.report import Verdict
 from service.grading.tolerances import INTENDED_CELL
 from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D
 
@@ -37,7 +39,7 @@ def in_other_orders(table: StudentTable, grading: Grading) -> Iterator[IntendedT
     degrees no lengths. Nothing where that does not tell more than that the columns are in order.
     Each table is built when it is asked for.
     """
-    if table.reread is None:
+    if table.reread is None or _suits(table, grading):
         return
     other = table.reread([COLUMNS[column] for column in _OTHER_QUANTITY])
     if len(other.rows) != len(table.rows):
@@ -60,9 +62,45 @@ def in_other_orders(table: StudentTable, grading: Grading) -> Iterator[IntendedT
         yield IntendedTable(intended, _finding(order), _moved(intended, table))
 
 
+def _suits(table: StudentTable, grading: Grading) -> bool:
+    """Whether plainly no cell misfits its own column, as ``_misfits`` counts.
+
+    Of most wrong tables that is seen without reading their cells as anything else.
+    """
+    sliding = _sliding(grading.exercise.joints)
+    known = grading.exercise.vocabulary.by_name
+    return all(
+        entry.verdict is Verdict.MISSING
+        if entry.expression is None
+        else _suits_column(entry.expression, column, sliding, known)
+        for row in table.rows
+        for column, entry in enumerate(row.entries)
+    )
+
+
+def _suits_column(
+    expression: Expression, column: int, sliding: Mapping[str, bool], known: Mapping[str, Symbol]
+) -> bool:
+    # A name in front of a value has a say in its column.
+    if any(note.code == "equation" for note in expression.notes):
+        return False
+    moving = [sliding[name] for name in expression.symbols if name in sliding]
+    if moving:
+        return column == (D if moving[0] else THETA)
+    if not IS_ANGLE[column]:
+        return expression.source.isdecimal() or quantity_of(expression.tree) != "angle"
+    # As a length it is one only where a length stands in it.
+    return all(name in known and known[name].kind != "length" for name in expression.symbols)
+
+
+def _sliding(joints: Sequence[Joint]) -> dict[str, bool]:
+    """Whether the joint of a variable slides."""
+    return {joint.variable: joint.prismatic for joint in joints}
+
+
 def _misfits(table: StudentTable, other: StudentTable, joints: Sequence[Joint]) -> NDArray[np.int_]:
     """How many cells of a written column do not suit each column: ``(written, columns)``."""
-    sliding = {joint.variable: joint.prismatic for joint in joints}
+    sliding = _sliding(joints)
     count = np.zeros((len(COLUMNS), len(COLUMNS)), np.int_)
     for one, two in zip(table.rows, other.rows, strict=True):
         for place in range(len(COLUMNS)):

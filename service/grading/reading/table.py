@@ -13,8 +13,13 @@ from service.grading.reading.absent_variables import absent_names
 from service.grading.reading.cell_names import first_number
 from service.grading.reading.column_headers import QUANTITIES
 from service.grading.reading.entry import Entry, Reader, entry_values
-from service.grading.reading.pasted import from_grid_error
-from service.grading.reading.pasted_table import PastedTable, entries_of, read_pasted_table
+from service.grading.reading.pasted import from_grid_error, pasted_grid, pasted_robot
+from service.grading.reading.pasted_table import (
+    PastedTable,
+    entries_of,
+    table_of,
+    table_of_robot,
+)
 from service.grading.reading.row_entries import read_row, remembered_row
 from service.grading.reading.table_json import canonical_table, has_unnamed_columns
 from service.grading.report import Severity, Verdict
@@ -119,27 +124,21 @@ def read_table(
     """
     if isinstance(answer, str):
         answer = {"rows": answer}
+    if isinstance(answer, Mapping) and isinstance(answer.get("rows"), str):
+        convention, findings = _convention(answer.get("convention"))
+        table = _pasted(answer["rows"], reader, empty_is_zero=empty_is_zero)
+        convention = convention or table.convention
+        return replace(table, convention=convention, findings=(*findings, *table.findings))
     written = answer
 
     def reread(other: Sequence[str]) -> StudentTable:
-        # What this costs must not be missing for the parts that follow. A table that is too long
-        # for it has no rows in another order.
-        afresh = replace(reader, budget=WorkBudget(MAX_SYMBOLS_AGAIN))
         try:
-            return read_table(written, afresh, other, empty_is_zero=empty_is_zero)
+            return read_table(written, _afresh(reader), other, empty_is_zero=empty_is_zero)
         except UnreadableAnswerError:
             return StudentTable((), _NO_ROWS, None)
 
     is_unnamed = has_unnamed_columns(answer)
     answer = canonical_table(answer, order)
-    if isinstance(answer, Mapping) and isinstance(answer.get("rows"), str):
-        convention, findings = _convention(answer.get("convention"))
-        pasted = _pasted(answer["rows"], reader, order)
-        if pasted is None:
-            return StudentTable((), _NO_ROWS, convention, findings)
-        rows = [_with_empty_cells(row, empty_is_zero) for row in entries_of(pasted, reader)]
-        table = _table(rows, convention, (*findings, *pasted.findings), reader)
-        return table if pasted.is_named else replace(table, reread=reread)
     if not isinstance(answer, Mapping) or not isinstance(answer.get("rows"), list):
         raise UnreadableAnswerError(_NO_TABLE if isinstance(answer, Mapping) else _NOT_ROWS)
     rows = answer["rows"]
@@ -151,17 +150,42 @@ def read_table(
     return replace(table, reread=reread) if is_unnamed else table
 
 
-def _pasted(text: str, reader: Reader, order: Sequence[str]) -> PastedTable | None:
-    """The pasted table; None for blanks alone. Raises UnreadableAnswerError."""
+def _afresh(reader: Reader) -> Reader:
+    """The reader with a budget of its own, for a table that is read in another order.
+
+    What this costs must not be missing for the parts that follow. A table that is too long for it
+    has no rows in another order.
+    """
+    return replace(reader, budget=WorkBudget(MAX_SYMBOLS_AGAIN))
+
+
+def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
+    """The pasted table, without rows for blanks alone. Raises UnreadableAnswerError."""
     if not text.strip():
-        return None
+        return StudentTable((), _NO_ROWS, None)
     try:
-        pasted = read_pasted_table(text, reader, order)
+        robot = pasted_robot(text, reader)
+        grid = robot.grid if robot else pasted_grid(text, reader)
+        pasted = table_of_robot(robot, reader) if robot else table_of(grid, reader)
     except GridError as error:
         raise UnreadableAnswerError(from_grid_error(error)) from error
     if len(pasted.rows) > MAX_ROWS:
         raise UnreadableAnswerError(_too_many_rows(len(pasted.rows)))
-    return pasted
+
+    def read(pasted: PastedTable, reader: Reader) -> StudentTable:
+        rows = [_with_empty_cells(row, empty_is_zero) for row in entries_of(pasted, reader)]
+        convention = CONVENTION_NAMES[pasted.convention] if pasted.convention else None
+        return _table(rows, convention, pasted.findings, reader)
+
+    def reread(other: Sequence[str]) -> StudentTable:
+        afresh = _afresh(reader)
+        try:
+            return read(table_of(grid, afresh, other), afresh)
+        except GridError:
+            return StudentTable((), _NO_ROWS, None)
+
+    table = read(pasted, reader)
+    return table if pasted.is_named else replace(table, reread=reread)
 
 
 def _with_empty_cells(row: tuple[Entry, ...], empty_is_zero: bool) -> tuple[Entry, ...]:

@@ -7,6 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from service.expressions import Kind, Vocabulary, read
+from tests.together import together
 
 Values = dict[str, NDArray[np.float64]]
 
@@ -58,7 +59,7 @@ NUMBERS = [
 ]
 
 
-@pytest.mark.parametrize(
+@together(
     ("text", "quantity", "expected"),
     [
         *((text, "angle", value) for text, value in ANGLES),
@@ -86,7 +87,7 @@ def test_a_length_is_no_angle(arm: Vocabulary) -> None:
     assert read("90", arm, quantity="length", angle_unit="degrees").evaluate({}) == 90.0
 
 
-@pytest.mark.parametrize("text", [text for text, _ in ANGLES])
+@together("text", [text for text, _ in ANGLES])
 def test_the_text_says_its_units(text: str, arm: Vocabulary) -> None:
     """What is printed reads to the same tree in degrees."""
     tree = read(text, arm, quantity="angle", angle_unit="degrees")

@@ -3,6 +3,7 @@
 import pytest
 
 from service.expressions import ExpressionError, Symbol, Vocabulary, read
+from tests.together import together
 
 CASES = [
     ("θ1*", [("joint_marker", (2, 3))]),
@@ -38,7 +39,7 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize(("text", "expected"), CASES)
+@together(("text", "expected"), CASES)
 def test_notes(text: str, expected: list[tuple[str, tuple[int, int]]], arm: Vocabulary) -> None:
     assert [(note.code, note.span) for note in read(text, arm).notes] == expected
 
@@ -80,7 +81,7 @@ MORE: list[tuple[str, list[tuple[str, tuple[int, int]]]]] = [
 ]
 
 
-@pytest.mark.parametrize(("text", "expected"), MORE)
+@together(("text", "expected"), MORE)
 def test_notes_on_other_spellings(
     text: str, expected: list[tuple[str, tuple[int, int]]], arm: Vocabulary
 ) -> None:

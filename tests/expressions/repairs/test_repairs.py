@@ -16,13 +16,14 @@ from service.expressions import ExpressionError, Symbol, Vocabulary, read, repai
 from service.expressions.repairs import RULES
 from tests.expressions import corpus_files
 from tests.expressions.corpus_files import ROBOT, RepairCase, repair_cases
+from tests.together import together
 
 MODULES = {file.stem for file in Path(repairs.__file__).parent.glob("*.py")}
 HELPERS = {"__init__", "failure", "nearest_name"}
 NAMES = corpus_files.repairs()
 CASES = [(name, case) for name in NAMES for case in repair_cases(name)]
-REFUSED = [pytest.param(name, case, id=case.place) for name, case in CASES if case.code]
-ACCEPTED = [pytest.param(name, case, id=case.place) for name, case in CASES if not case.code]
+REFUSED = [(name, case) for name, case in CASES if case.code]
+ACCEPTED = [(name, case) for name, case in CASES if not case.code]
 # What a repair needs besides the names of the robot.
 DECLARED = {"ambiguous_number": [Symbol("e1", "length"), Symbol("e", "number")]}
 
@@ -39,7 +40,7 @@ def test_every_rule_is_registered_once_and_has_cases() -> None:
     assert len(CASES) > 560
 
 
-@pytest.mark.parametrize(("repair", "case"), REFUSED)
+@together(("repair", "case"), REFUSED)
 def test_refused(repair: str, case: RepairCase) -> None:
     names = vocabulary(repair)
     with pytest.raises(ExpressionError) as caught:
@@ -57,7 +58,7 @@ def test_refused(repair: str, case: RepairCase) -> None:
         read(case.answer, names)
 
 
-@pytest.mark.parametrize("repair", NAMES)
+@together("repair", NAMES)
 def test_a_message_shows_no_separator_of_records(repair: str) -> None:
     """This character counts as blank space, so it may stand within whatever a message quotes."""
     texts = {str(case.text) for case in repair_cases(repair) if len(str(case.text)) < 30}
@@ -74,7 +75,7 @@ def _error(names: Vocabulary, text: str) -> ExpressionError | None:
     return None
 
 
-@pytest.mark.parametrize(("repair", "case"), ACCEPTED)
+@together(("repair", "case"), ACCEPTED)
 def test_accepted(repair: str, case: RepairCase) -> None:
     """A near text is read, so the rule leaves it alone."""
     assert read(case.text, vocabulary(repair)).text() == case.answer

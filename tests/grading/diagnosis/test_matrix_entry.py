@@ -14,6 +14,7 @@ from service.grading.misconception import Hypothesis, explanation
 from service.grading.report import Correction
 from service.grading.samples import SAMPLES, Samples
 from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.together import together
 
 Misconception = Callable[[WrongEntry], Iterator[Hypothesis[Any]]]
 
@@ -126,7 +127,7 @@ EXPLAINED: list[tuple[Misconception, str, str, str]] = [
 ]
 
 
-@pytest.mark.parametrize(("misconception", "written", "expected", "correction"), EXPLAINED)
+@together(("misconception", "written", "expected", "correction"), EXPLAINED)
 def test_a_misconception_explains_its_entry(
     misconception: Misconception, written: str, expected: str, correction: str
 ) -> None:

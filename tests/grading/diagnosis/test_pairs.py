@@ -12,6 +12,7 @@ import pytest
 from service.grading import diagnosis
 from service.grading.judging.own_frames import written_table
 from service.grading.misconception import Hypothesis
+from tests.together import together
 
 NAMES = [each.name for each in iter_modules(diagnosis.__path__)]
 FILES = [*(import_module(f"{diagnosis.__name__}.{name}") for name in NAMES), written_table]
@@ -30,7 +31,7 @@ def yields_hypotheses(function: Any) -> bool:
     return isinstance(origin, type) and issubclass(origin, Hypothesis)
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda file: file.__name__)
+@together("file", FILES)
 def test_every_misconception_is_listed(file: ModuleType) -> None:
     functions = inspect.getmembers(file, inspect.isfunction)
     misconceptions = {

@@ -5,12 +5,14 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 import pytest
 
-from service.catalogue import Exercise, Robot, load_catalogue, shipped_folder
+from service.catalogue import Exercise, Robot
 from service.grading.diagnosis.table_freedom import lost_freedom
 from service.grading.feedback import Finding
 from service.grading.samples import SAMPLES, Samples, draw
 from service.kinematics.chain import ALPHA, THETA, A, D, Table
 from service.kinematics.dh import Convention
+from tests.shipped import shipped_exercises
+from tests.together import together
 
 H = np.pi / 2
 Cell = str | float
@@ -71,13 +73,13 @@ def test_the_printed_stanford_table(stanford: Exercise) -> None:
 
 REFERENCES = [
     (exercise_id, convention)
-    for exercise_id, exercise in load_catalogue(shipped_folder()).items()
+    for exercise_id, exercise in shipped_exercises().items()
     if isinstance(exercise.reference, Robot)
     for convention in exercise.robot.tables
 ]
 
 
-@pytest.mark.parametrize(("exercise_id", "convention"), REFERENCES)
+@together(("exercise_id", "convention"), REFERENCES)
 def test_a_reference_has_lost_nothing(
     exercise_id: str, convention: Convention, catalogue: Mapping[str, Exercise]
 ) -> None:
@@ -228,8 +230,8 @@ def test_a_wrong_table_may_be_free_all_the_same(stanford: Exercise) -> None:
     assert found(stanford, table) == ()
 
 
-@pytest.mark.parametrize("length", [1e5, 1e7, 1e9])
-@pytest.mark.parametrize(("exercise_id", "convention"), REFERENCES)
+@together("length", [1e5, 1e7, 1e9])
+@together(("exercise_id", "convention"), REFERENCES)
 def test_a_length_beyond_all_others_takes_no_freedom(
     exercise_id: str, convention: Convention, length: float, catalogue: Mapping[str, Exercise]
 ) -> None:

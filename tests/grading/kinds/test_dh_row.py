@@ -9,6 +9,7 @@ from service.catalogue import Exercise
 from service.grading import Verdict
 from tests.grading.support.exercise_texts import Make, all_codes, graded, one_part
 from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
+from tests.together import together
 
 Cells = dict[str, Any]
 
@@ -22,7 +23,7 @@ def conditions(catalogue: Mapping[str, Exercise]) -> Exercise:
     return catalogue["dh-conditions"]
 
 
-@pytest.mark.parametrize(
+@together(
     ("part_id", "answer"),
     [
         ("first", FIRST),

@@ -15,6 +15,7 @@ from tests.grading.support.submitting import (
     graded_pose,
     not_correct,
 )
+from tests.together import together
 
 POSE = [
     ["c123", "-s123", "0", "l1 c1 + l2 c12 + l3 c123"],
@@ -38,8 +39,8 @@ def with_entry(i: int, j: int, text: object) -> list[list[object]]:
 PLACES = [(i, j) for i in range(4) for j in range(4)]
 
 
-@pytest.mark.parametrize(("i", "j"), PLACES)
-@pytest.mark.parametrize(
+@together(("i", "j"), PLACES)
+@together(
     ("text", "verdict", "code"),
     [
         ("0.05", Verdict.INCORRECT, "value"),

@@ -3,6 +3,7 @@
 import pytest
 
 from service.grading.reading.column_headers import Header, read_header
+from tests.together import together
 
 SPELLINGS = {
     "a": [
@@ -35,7 +36,7 @@ SPELLINGS = {
 CASES = [(text, column) for column, texts in SPELLINGS.items() for text in texts]
 
 
-@pytest.mark.parametrize(("text", "column"), CASES)
+@together(("text", "column"), CASES)
 def test_spelling(text: str, column: str) -> None:
     assert read_header(text) == Header(column)
     assert read_header(f"  {text}\u00a0") == Header(column)
@@ -109,7 +110,7 @@ def test_units_of_lengths(text: str, column: str, metres: float) -> None:
     assert (header.column, header.metres, header.angle_unit) == (column, metres, None)
 
 
-@pytest.mark.parametrize(
+@together(
     "text",
     [
         "", " ", "foo",

@@ -15,6 +15,7 @@ from service.grids import read_grid
 from tests.grading.support.robots import PLANAR_RRR, ROBOTS, Robot
 from tests.grading.support.submitting import cell, codes, full_marks, handed_in, not_correct, part
 from tests.grids.writers import FORMATS
+from tests.together import together
 
 POSE = [
     ["c123", "-s123", "0", "l1*c1+l2*c12+l3*c123"],
@@ -33,7 +34,7 @@ def pasted(exercise: Exercise, text: str) -> PartReport:
     return part(handed_in(exercise, {"pose": text}), "pose")
 
 
-@pytest.mark.parametrize("name", FORMATS)
+@together("name", FORMATS)
 def test_each_format_gets_full_marks(name: str, arm: Exercise) -> None:
     report = pasted(arm, FORMATS[name](POSE))
     assert full_marks(report), report
@@ -87,8 +88,8 @@ ALONE = {
 }
 
 
-@pytest.mark.parametrize("exercise", POSES)
-@pytest.mark.parametrize("name", PRINTS)
+@together("exercise", POSES)
+@together("name", PRINTS)
 def test_a_print_falls_into_the_entries_printed_alone(exercise: str, name: str) -> None:
     matrix = POSES[exercise]
     rows = read_grid(PRINTS[name](matrix)).rows
@@ -96,8 +97,8 @@ def test_a_print_falls_into_the_entries_printed_alone(exercise: str, name: str) 
     assert [[cell.text for cell in row] for row in rows] == expected
 
 
-@pytest.mark.parametrize("exercise", POSES)
-@pytest.mark.parametrize("name", PRINTS)
+@together("exercise", POSES)
+@together("name", PRINTS)
 def test_a_print_gets_full_marks(
     exercise: str, name: str, catalogue: Mapping[str, Exercise]
 ) -> None:

@@ -3,13 +3,14 @@
 import pytest
 
 from service.grading.reading.matrix_names import indices_of, is_changed, is_product, places_of
+from tests.together import together
 
 
 def places(names: str, count: int) -> list[int | None]:
     return list(places_of([indices_of(name.strip()) for name in names.split("|")], count)[0])
 
 
-@pytest.mark.parametrize(
+@together(
     "names",
     [
         "A1 | A2 | A3", "A_1 | A_2 | A_3", "A_{1} | A_{2} | A_{3}", "A{1} | A{2} | A{3}",

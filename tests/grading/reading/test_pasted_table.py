@@ -10,6 +10,7 @@ from tests.grading.support.robots import ROBOTS, RRRP, Robot, in_pi, with_unit
 from tests.grading.support.submitting import cell, codes, full_marks, handed_in, not_correct, part
 from tests.grading.support.worth import about, points
 from tests.grids.writers import FORMATS, TABLES
+from tests.together import together
 
 HEADERS = ["i", "a", "alpha", "d", "theta"]
 SPELLINGS: dict[str, tuple[Callable[[int], str], list[str]]] = {
@@ -37,9 +38,9 @@ def infos(report: PartReport) -> list[str]:
     return [message.code for message in report.feedback]
 
 
-@pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.exercise)
-@pytest.mark.parametrize("spelling", SPELLINGS)
-@pytest.mark.parametrize("name", TABLES)
+@together("robot", ROBOTS)
+@together("spelling", SPELLINGS)
+@together("name", TABLES)
 def test_a_table_with_headers(
     name: str, spelling: str, robot: Robot, catalogue: Mapping[str, Exercise]
 ) -> None:
@@ -49,8 +50,8 @@ def test_a_table_with_headers(
     assert infos(report) in ([], ["blank_columns"])
 
 
-@pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.exercise)
-@pytest.mark.parametrize("name", FORMATS)
+@together("robot", ROBOTS)
+@together("name", FORMATS)
 def test_a_table_without_headers(
     name: str, robot: Robot, catalogue: Mapping[str, Exercise]
 ) -> None:

@@ -1,11 +1,10 @@
 """The spellings of row labels: 1, Link 2, 0→1, e, TCP."""
 
-import pytest
-
 from service.grading.reading.row_labels import LAST, label_place
+from tests.together import together
 
 
-@pytest.mark.parametrize(
+@together(
     ("text", "place"),
     [
         ("1", 1), ("12", 12), ("1.", 1), ("Link 1", 1), ("link1", 1), ("J3", 3), ("joint 3", 3),

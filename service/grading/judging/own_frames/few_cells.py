@@ -28,7 +28,7 @@ from service.kinematics.cell_repairs import (
 )
 from service.kinematics.chain import Table, frames, joint_frames
 from service.kinematics.dh import Convention
-from service.kinematics.factors import CellIndex, factors_of
+from service.kinematics.factors import CellIndex, Factors, factors_of
 from service.kinematics.frame_choice import WRONG_CELL, departure
 from service.kinematics.tolerances import SAME_POSE
 from service.kinematics.transforms import Matrices, Numbers, inverse
@@ -174,13 +174,14 @@ def _likeliest(repairs: Sequence[CellRepair], case: _Case) -> NearestTable | Non
     on_axes = case.from_reference(frames(tables, case.convention))
     departures = departure(on_axes.reshape(-1, *on_axes.shape[2:]), case.unit)
     departures = departures.reshape(on_axes.shape[:2]).sum(axis=0)
+    factors = factors_of(case.table, case.convention, case.unit)
     best = None
     for k in np.argsort(departures, kind="stable").tolist():
         cells = repairs[k].cells
         cost = WRONG_CELL * len(cells) + float(departures[k])
         if best is not None and cost >= best.cost:
             break
-        table = _repaired(cells, case)
+        table = _repaired(cells, factors, case)
         if table is None:
             continue
         if len(repairs) > 1:
@@ -204,9 +205,8 @@ def _constant(values: Numbers, cell: CellIndex, case: _Case) -> Numbers:
     return values - variable if error.max() < SAME_MOTION else values + variable
 
 
-def _repaired(cells: Sequence[CellIndex], case: _Case) -> Table | None:
+def _repaired(cells: Sequence[CellIndex], factors: Factors, case: _Case) -> Table | None:
     """The table with these cells repaired, ``(rows, 4, SAMPLES)``; None where that fails."""
-    factors = factors_of(case.table, case.convention, case.unit)
     values = repaired_values(factors, _in_unit(case.reference[-1], case.unit), cells)
     if values is None:
         return None

@@ -1,0 +1,143 @@
+"""A database as the first version of the program left it, opened by today's."""
+
+import asyncio
+import csv
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+from alembic import command
+from alembic.config import Config
+from sqlalchemy import create_engine, inspect, make_url, text
+
+from service.attempts import database
+from service.attempts.attempt import AttemptFilter, GradesFormat
+from service.attempts.database import in_transaction
+from service.attempts.grades import graded_attempts, written
+from service.attempts.reading import history, page
+from service.attempts.regrading import Regrading
+from service.attempts.store import AttemptStore
+from service.catalogue import Exercise, FeedbackLevel
+from tests.attempts.databases import new_database, new_file
+from tests.attempts.recorded import RIGHT
+
+OLDEST = "0001"
+MIGRATIONS = Path(database.__file__).parent / "migrations"
+# Of another exercise version, under which the right table earned nothing.
+REPORT = json.dumps(
+    {
+        "exercise": "scara",
+        "version": "0",
+        "grader": "0.0.1",
+        "feedback": "hints",
+        "parts": [{"part": "table", "verdict": "incorrect", "points": 0.0, "rows": []}],
+    }
+)
+OUTCOME = '{"table":{"verdict":"incorrect","cells":{},"codes":[]}}'
+ROWS: tuple[dict[str, Any], ...] = (
+    {"id": "a" * 32, "learner": "ada", "ordinal": 1, "is_late": True, "worth": 0.5, "key": "k"},
+    {"id": "b" * 32, "learner": "bob", "ordinal": None, "is_late": False, "worth": 1, "key": None},
+)
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def oldest(request: pytest.FixtureRequest, tmp_path: Path) -> str:
+    """The URL of a database with the first tables, in which two attempts are recorded."""
+    if request.param == "sqlite":
+        path = new_file(tmp_path)
+        url, zone = f"sqlite:///{path}", ""
+    else:
+        server = request.getfixturevalue("server")
+        url, zone = new_database(server, "of_the_first_version"), "+00"
+    parsed = make_url(url)
+    if parsed.get_backend_name() == "postgresql":
+        parsed = parsed.set(drivername="postgresql+psycopg")
+    engine = create_engine(parsed)
+    config = Config()
+    config.set_main_option("script_location", str(MIGRATIONS))
+    with engine.begin() as connection:
+        config.attributes["connection"] = connection
+        command.upgrade(config, OLDEST)
+        connection.execute(
+            text(
+                "INSERT INTO outcomes (exercise, digest, content) VALUES ('scara', 'd', :content)"
+            ),
+            {"content": OUTCOME},
+        )
+        submission = json.dumps({"answers": {"table": RIGHT}})
+        connection.execute(
+            text(
+                "INSERT INTO attempts (id, exercise, learner, ordinal, at, is_late, worth, "
+                "submission, answers_digest, report, version, grader, points, max_points, outcome, "
+                "owner, idempotency_key, request_digest) VALUES (:id, 'scara', :learner, :ordinal, "
+                f"'2026-09-01 12:00:00.000000{zone}', :is_late, :worth, :submission, 'x', :report, "
+                "'0', '0.0.1', 0.0, 16.0, 1, 'course', :key, 'r')"
+            ),
+            [row | {"submission": submission, "report": REPORT} for row in ROWS],
+        )
+        assert not inspect(connection).has_table("keys")
+    engine.dispose()
+    return url
+
+
+@pytest.fixture
+def store(oldest: str) -> Iterator[AttemptStore]:
+    """The same, opened by today's program."""
+    store = AttemptStore.open(oldest)
+    store.start()
+    yield store
+    store.close()
+
+
+def exported(store: AttemptStore) -> list[dict[str, str]]:
+    with store.engine.connect() as connection:
+        graded = graded_attempts(connection, AttemptFilter("scara"), lambda _: "best")
+        lines = b"".join(written(graded, GradesFormat.CSV, "")).decode("utf-8-sig").splitlines()
+    return list(csv.DictReader(lines))
+
+
+def test_what_the_first_version_recorded_is_read_regraded_and_exported(
+    store: AttemptStore, catalogue: Mapping[str, Exercise]
+) -> None:
+    scara = catalogue["scara"]
+    table: Any = scara.part("table")
+    with store.engine.connect() as connection:
+        found, _ = page(connection, AttemptFilter("scara"), None, 10)
+        untouched = history(connection, ROWS[0]["id"])
+    assert [(each.learner, each.ordinal, each.is_late, each.points) for each in found] == [
+        ("bob", None, False, 0.0),
+        ("ada", 1, True, 0.0),
+    ]
+    assert {each.at.isoformat() for each in found} == {"2026-09-01T12:00:00+00:00"}
+    assert untouched is not None
+    assert (untouched.report, untouched.earlier) == (REPORT, [])
+    # A request that was sent then is known by its key today.
+    earlier = asyncio.run(store.standing("scara", "ada", "course", "k")).earlier
+    assert earlier is not None
+    assert earlier.id == ROWS[0]["id"]
+
+    regrading = Regrading(scara, FeedbackLevel.HINTS)
+    in_transaction(store.engine, regrading.enqueue)
+    done = in_transaction(store.engine, regrading.work)
+    assert [(each.learner, each.before, each.after) for each in done] == [
+        ("ada", 0.0, table.points / 2),
+        ("bob", 0.0, table.points),
+    ]
+    new = {f"{part.id} is new, missing" for part in scara.parts if part.id != "table"}
+    assert {reason for each in done for reason in each.reasons} == {
+        "table incorrect → correct",
+        *new,
+    }
+    with store.engine.connect() as connection:
+        after = history(connection, ROWS[0]["id"])
+    assert after is not None
+    assert [(each.report, each.version) for each in after.earlier] == [(REPORT, "0")]
+    assert [
+        (row["learner"], float(row["points"]), row["counts"], row["version"])
+        for row in exported(store)
+    ] == [
+        ("ada", table.points / 2, "true", scara.version),
+        ("bob", table.points, "false", scara.version),
+    ]
