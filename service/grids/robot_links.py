@@ -259,6 +259,8 @@ def row_of(link: RobotLink, number: int) -> LinkRow:
     A variable that the script implies is ``q`` with the number. Raises GridError where the place of
     the variable holds something that the toolbox ignores.
     """
+    if not all(cell.text for cell in link.cells.values()):
+        raise _unknown(link.source)
     zero = link.source.spelled("0")
     cells = {name: link.cells.get(name, zero) for name in PARAMETERS}
     added = ""

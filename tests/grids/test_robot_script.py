@@ -89,6 +89,7 @@ def test_numbers_that_a_script_gives_its_letters_are_told() -> None:
         # arguments, numbers, order
         ("L(1) = Link('d', 0, 'unit', 1);", UNREAD, "'unit'"),
         ("L(1) = Link('d', 0, 'd', 1);", UNREAD, "'d'"),
+        ("L(1)=Link([0 0 1 0]);\nL(1).offset = ", UNREAD, "Link([0 0 1 0])"),
         ("L(1) = Link([0 0 1]);", UNREAD, "[0 0 1]"),
         ("setFixedTransform(j1,[0 0 1],'dh')", UNREAD, None),
         ("L(1)=Link([0 0 1 0]);\nL(1)=Link([0 0 2 0]);", UNREAD, "L(1)=Link([0 0 2 0])"),
