@@ -9,7 +9,11 @@ from service.api.problems import ProblemError, store_down
 
 _BEARER: Final = "Bearer"
 # A browser asks for a password, which then is the key, and sends it with all that the pages ask.
-_PASSWORD: Final = 'Bearer, Basic realm="A key of DH Grader as password", charset="UTF-8"'
+# Chromium takes a line for one challenge: the first must be the one that it knows, and whatever
+# follows must look like parameters of it.
+_PASSWORD: Final = (
+    'Basic realm="A key of DH Grader as password", charset="UTF-8", Bearer realm="DH Grader"'
+)
 _MAY: Final = {
     Scope.GRADE: "have answers graded",
     Scope.RECORD: "record attempts",

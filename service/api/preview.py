@@ -108,7 +108,8 @@ def routes(catalogue: Catalogue, access: Access) -> APIRouter:
         if not shown.ok and exercise and body.part and _BETWEEN_CELLS & set(body.text):
             grid = preview_grid(body, exercise, body.part)
             # A text that is no grid either is better explained as the one entry that it may be.
-            shown = grid if grid.rows or "\n" in body.text else shown
+            is_script = grid.error is not None and grid.error.code == "unread_script"
+            shown = grid if grid.rows or is_script or "\n" in body.text else shown
         content = shown.model_dump_json(exclude_none=True)
         return Response(content, media_type="application/json")
 

@@ -19,7 +19,7 @@ class OverrideRequest(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    points: Annotated[float, Field(ge=0, allow_inf_nan=False)] | None = Field(
+    points: Annotated[float, Field(strict=True, ge=0, allow_inf_nan=False)] | None = Field(
         None,
         description="From 0 to the most that the attempt may have. Left out, those that were given "
         "earlier are withdrawn.",

@@ -61,9 +61,25 @@ def sliding_arrow(
     camera: Camera, centre: Numbers, axis: Numbers, half: float, offset: float,
     room: TakenRoom, *, both: bool,
 ) -> MotionArrow:  # fmt: skip
-    """A straight arrow beside the joint, on its freer side in the picture."""
+    """A straight arrow beside the joint, on its freer side in the picture.
+
+    Where it would cross an axis, a part or a name there, it stands farther along or away.
+    """
     aside = np.cross(perpendicular(axis, camera.towards), axis)
     steps = np.linspace(-half, half, 9)[:, None] * axis
-    lines = [camera.seen(centre + side * aside + steps) for side in (offset, -offset)]
-    best = min(lines, key=lambda line: room.crowd(line, 7.0))
+
+    def beside(reach: float, along: float) -> list[Numbers]:
+        middle = centre + along * half * axis
+        return [camera.seen(middle + side * offset * aside + steps) for side in (reach, -reach)]
+
+    def crossings(line: Numbers) -> int:
+        # With its heads the arrow is longer.
+        return room.crossings(1.3 * line - 0.3 * line.mean(axis=0))
+
+    best = min(beside(1, 0), key=lambda line: room.crowd(line, 7.0))
+    for reach in (1, 1.6, 2.2):
+        if crossings(best):
+            others = [line for along in (0, 1, -1) for line in beside(reach, along)]
+            freest = sorted(others, key=lambda line: room.crowd(line, 7.0))
+            best = min([best, *freest], key=crossings)
     return MotionArrow(best, both)

@@ -41,6 +41,11 @@ class Rectangle:
         upright = self.half_height + other.half_height + apart
         return abs(self.x - other.x) < across and abs(self.y - other.y) < upright
 
+    def holds_any(self, points: Numbers) -> bool:
+        """Whether one of the points ``(points, 2)`` is in it."""
+        offset = np.abs(points - (self.x, self.y))
+        return bool((offset < (self.half_width, self.half_height)).all(axis=1).any())
+
     @property
     def points(self) -> Numbers:
         """Points all over it, ``(15, 2)``."""
@@ -89,6 +94,17 @@ class TakenRoom:
         lacking = np.clip(1 - (distance - np.array(self._radii)) / clearance, 0.0, 1.5)
         return float((lacking * np.array(self._weights)).max(axis=1).sum())
 
+    def crossings(self, line: Numbers) -> int:
+        """How many labels and strokes of full weight a straight line ``(points, 2)`` crosses."""
+        written = sum(label.holds_any(line) for label in self.labels)
+        if not self._starts:
+            return written
+        starts, ends, first, last = np.array(self._starts), np.array(self._ends), line[0], line[-1]
+        # Two pieces cross where each has its ends on either side of the other.
+        parted = _turn(first, last, starts) * _turn(first, last, ends) < 0
+        parting = _turn(starts, ends, first) * _turn(starts, ends, last) < 0
+        return written + int((parted & parting & (np.array(self._weights) >= 1)).sum())
+
     def place(self, label: Label, wanted: Iterable[Numbers]) -> Rectangle:
         """The best free place for a label, and take it; the first of ``wanted`` points is best.
 
@@ -108,6 +124,12 @@ class TakenRoom:
         assert best is not None
         self.labels.append(best[1])
         return best[1]
+
+
+def _turn(start: Numbers, end: Numbers, point: Numbers) -> Numbers:
+    """Positive on one side of the line from ``start`` to ``end``, negative on the other."""
+    (x, y), (u, v) = (end - start).T, (point - start).T
+    return np.asarray(x * v - y * u)
 
 
 def around(point: Numbers, near: float) -> list[Numbers]:

@@ -5,6 +5,7 @@ left aside, with a note. Any other value may be needed to read the matrix: it is
 """
 
 import re
+from collections.abc import Sequence, Set
 from dataclasses import dataclass
 from typing import Final
 
@@ -30,7 +31,7 @@ _TOLD: Final = 8
 
 
 @dataclass(frozen=True, slots=True)
-class _GivenValue:
+class GivenValue:
     """``line`` is the statement that gives the letter ``name`` its ``value``."""
 
     name: str
@@ -39,6 +40,7 @@ class _GivenValue:
 
     @property
     def is_number(self) -> bool:
+        """Whether the value is a plain number."""
         return _NUMBER.fullmatch(self.value) is not None
 
     @property
@@ -59,36 +61,43 @@ def without_given_values(source: SourceText) -> tuple[SourceText, tuple[Note, ..
     rest = shown.cut(at, len(shown.text))
     if (shown is plain and not given) or not begins_as_matrix(rest.text):
         return source, ()
-    read = set(_READ.findall(rest.text))
+    return rest, told_numbers(given, set(_READ.findall(rest.text)))
+
+
+def told_numbers(given: Sequence[GivenValue], read: Set[str]) -> tuple[Note, ...]:
+    """The note on numbers that a script gives its letters, of which ``read`` stand in the cells.
+
+    Raises GridError where one of these is given a value that is no plain number.
+    """
     for each in given:
         if each.name in read and not each.is_number:
             raise GridError(
                 "given_value",
-                f"`{each.line.text[:40]}` gives {each.name} a value, which is not put into the "
-                "matrix here. Write it into the matrix, or delete this line.",
+                f"`{each.line.text[:40]}` gives {each.name} a value, which is not put in here. "
+                "Write it where the letter stands, or delete this line.",
                 each.line.whole,
             )
     numbers = [each for each in given if each.is_number]
     if not numbers:
-        return rest, ()
+        return ()
     names = ", ".join(dict.fromkeys(each.name for each in numbers[:_TOLD]))
     more = ", …" if len(numbers) > _TOLD else ""
     message = (
-        f"The script gives numbers to {names}{more}; they were not used. The letters in the matrix "
-        "were read as the exercise's symbols."
+        f"The script gives numbers to {names}{more}; they were not used. The letters were read as "
+        "the exercise's symbols."
     )
     span = numbers[0].line.whole[0], numbers[-1].line.whole[1]
-    return rest, (Note("given_numbers", message, span),)
+    return (Note("given_numbers", message, span),)
 
 
-def _given_values(source: SourceText) -> tuple[list[_GivenValue], int]:
+def _given_values(source: SourceText) -> tuple[list[GivenValue], int]:
     """The values that the statements at the top give, and the place behind these statements."""
-    found: list[_GivenValue] = []
+    found: list[GivenValue] = []
     text, at = source.text, 0
     while at < len(text):
         if assignment := ASSIGNMENT.match(text, at):
             line = source.cut(*assignment.span("line")).strip()
-            value = _GivenValue(assignment["name"], assignment["value"].strip(), line)
+            value = GivenValue(assignment["name"], assignment["value"].strip(), line)
             if not value.is_itself:
                 found.append(value)
             at = assignment.end()

@@ -226,8 +226,7 @@ def _unwrap_call(source: SourceText, call: re.Match[str], calls: int) -> Written
         message = f"`{call[1]}(…)` of a matrix is not worked out here. Paste the result."
         if name in _OF_ROBOTS:
             message = (
-                f"`{call[1]}(…)` describes a robot. Paste its DH table instead, one row for each "
-                "link."
+                f"`{call[1]}(…)` describes a robot and is no matrix. Paste the matrix, worked out."
             )
         raise GridError("unknown_call", message, source.span(0, len(call[1])))
     opened = source.text.index("(")

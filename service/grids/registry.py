@@ -9,7 +9,10 @@ from service.grids import (  # isort: skip
 from service.grids.given_values import without_given_values
 from service.grids.grid import Grid, GridError, GridFormat
 from service.grids.limits import GRID_LIMITS
+from service.grids.named_columns import describes_columns, read_columns
 from service.grids.program_text import without_title
+from service.grids.robot_script import describes_robot, read_script
+from service.grids.robot_table import RobotTable
 from service.grids.session import printed
 from service.grids.source_text import SourceText
 
@@ -35,6 +38,17 @@ def read_grid(text: str) -> Grid:
     return replace(found, notes=(*notes, *found.notes)) if notes else found
 
 
+def read_robot(text: str) -> RobotTable | None:
+    """The DH table of a robot that a pasted script describes; None for any other text.
+
+    Raises GridError where the text is such a script, and its table is not certain. Time is linear
+    in the text.
+    """
+    if describes_robot(text):
+        return read_script(_limited(text))
+    return read_columns(_limited(text)) if describes_columns(text) else None
+
+
 def pasted_source(text: str, *, named: bool = False) -> SourceText:
     """A pasted text within the limits, without the prompts of an interpreter.
 
@@ -42,6 +56,11 @@ def pasted_source(text: str, *, named: bool = False) -> SourceText:
 
     Raises GridError beyond the limits, and where nothing is written.
     """
+    return printed(_limited(text), named=named)
+
+
+def _limited(text: str) -> SourceText:
+    """A pasted text. Raises GridError beyond the limits, and where nothing is written."""
     if len(text) > GRID_LIMITS.characters:
         most = GRID_LIMITS.characters
         message = f"A pasted text has at most {most:,} characters; yours has {len(text):,}."
@@ -56,7 +75,7 @@ def pasted_source(text: str, *, named: bool = False) -> SourceText:
             "paste only the table or matrix.",
             (0, len(text)),
         )
-    return printed(source, named=named)
+    return source
 
 
 def grid_of(source: SourceText) -> Grid:

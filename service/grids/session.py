@@ -52,6 +52,14 @@ def printed(source: SourceText, *, named: bool = False) -> SourceText:
     return joined(pieces, source.whole[0])
 
 
+def without_prompts(source: SourceText) -> SourceText:
+    """The inputs and the outputs, without the prompts in front of them."""
+    if not _MARK.search(source.text):
+        return source
+    plain = joined(source.split(_MARK), source.at)
+    return _without_continuation(plain) if ">>>" in source.text else plain
+
+
 def _statement_end(text: str) -> int:
     """The end of the first line, or of the line on which the brackets opened in it are closed."""
     depth = 0

@@ -124,7 +124,7 @@ def test_an_attempt_gets_other_points_with_a_reason(
     refused: list[dict[str, Any]] = [
         {"points": 24.5, "reason": "x"}, {"points": -1, "reason": "x"}, {"points": 1},
         {"points": 1, "reason": "  "}, {"points": 1, "reason": "a\nb"},
-        {"points": "NaN", "reason": "x"},
+        {"points": "3", "reason": "x"}, {"points": True, "reason": "x"},
     ]  # fmt: skip
     answers = [tutor.ask("POST", f"{path}/override", body) for body in refused]
     assert [each.status_code for each in answers] == [422] * len(refused)

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 from urllib.request import Request, urlopen
@@ -15,6 +16,12 @@ from urllib.request import Request, urlopen
 import pytest
 from playwright.sync_api import Page, expect
 
+from service.access.caller import Scope
+from service.access.key_table import add_key
+from service.access.key_text import new_key_text
+from service.access.keys import Secret
+from service.attempts.database import in_transaction
+from service.attempts.store import AttemptStore
 from service.catalogue import shipped_folder
 from tests.api.serving import ROOT, announced_port
 from tests.browser.conftest import Visit
@@ -33,15 +40,22 @@ ANSWERS: list[tuple[str, Any]] = [("ada", RIGHT), ("grace", WRONG), (PICTURE, WR
 
 @dataclass
 class Recording:
-    """A service that records, and the folder of its exercises."""
+    """A service that records for whoever has the key, and the folder of its exercises."""
 
     address: str
     exercises: Path
+    key: str
+
+    @property
+    def visitor(self) -> dict[str, Any]:
+        """A browser in which the key is given when it asks for a password."""
+        password = {"username": "tutor", "password": self.key, "origin": self.address}
+        return {"viewport": NARROW, "http_credentials": password}
 
     def record(self, learner: str, table: Any) -> str:
         """Record an attempt as a course does; its id."""
         body = json.dumps({"learner": learner, "answers": {"table": table}}).encode()
-        headers = {"Content-Type": "application/json"}
+        headers = {"Content-Type": "application/json", "Authorization": f"Bearer {self.key}"}
         asked = Request(f"{self.address}/v1/exercises/scara/attempts", body, headers)
         with urlopen(asked, timeout=ANSWER) as answer:
             return str(json.load(answer)["attempt"]["id"])
@@ -60,11 +74,22 @@ def recording(tmp_path: Path) -> Iterator[Recording]:
     folder.mkdir()
     text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
     (folder / "scara.toml").write_text(text, encoding="utf-8")
+    secret, key, now = "0123456789abcdef" * 4, new_key_text(), datetime.now(UTC)
+    database = str(tmp_path / "attempts.db")
+    store = AttemptStore.open(database)
+    digest = Secret(secret).key_digest(key)
+    scopes = (Scope.RECORD, Scope.TUTOR)
+    until = now + timedelta(days=1)
+    in_transaction(
+        store.engine, lambda connection: add_key(connection, "", digest, scopes, None, now, until)
+    )
+    store.close()
     log = tmp_path / "log"
     command = [sys.executable, "-m", "service", "serve", "--port", "0"]
     variables = {
         "NO_COLOR": "1",
-        "DH_GRADER_DATABASE": str(tmp_path / "attempts.db"),
+        "DH_GRADER_DATABASE": database,
+        "DH_GRADER_SECRET": secret,
         "DH_GRADER_EXERCISES_DIR": str(folder),
         "DH_GRADER_RELOAD_EXERCISES": "true",
     }
@@ -75,7 +100,7 @@ def recording(tmp_path: Path) -> Iterator[Recording]:
         ) as process,
     ):
         try:
-            yield Recording(f"http://127.0.0.1:{announced_port(process, log)}", folder)
+            yield Recording(f"http://127.0.0.1:{announced_port(process, log)}", folder, key)
         finally:
             process.terminate()
             process.wait(timeout=ANSWER)
@@ -90,7 +115,7 @@ def test_a_tutor_works_with_recorded_attempts(
     visit: Opening, recording: Recording, tmp_path: Path
 ) -> None:
     # Under the page's own policy, by keyboard where it matters, on a narrow screen.
-    page = visit(viewport=NARROW).page
+    page = visit(**recording.visitor).page
     page.add_init_script("window.taken = []; window.stolen = (what) => taken.push(what);")
     page.goto(f"{recording.address}/tutor")
     page.get_by_role("link", name="Recorded attempts").click()
@@ -126,6 +151,8 @@ def test_a_tutor_works_with_recorded_attempts(
     ]
     expect(page.locator("td[data-verdict=unreadable]")).to_have_count(2)
     expect(page.locator("td[data-verdict=incorrect]")).to_have_count(1)
+    # How each was understood, which is asked for with the same key.
+    expect(page.locator(".part").first.locator(".shown math")).to_have_count(14)
     # It is read only: neither keys nor what is pasted, and no repair, change it.
     entries.nth(7).focus()
     page.keyboard.type("x")
@@ -139,7 +166,7 @@ def test_a_tutor_works_with_recorded_attempts(
     page.locator("#points").fill("7.5")
     page.keyboard.press("Enter")
     expect(page.get_by_text("The attempt has 7.5 points.")).to_be_visible()
-    expect(page.locator(".given")).to_contain_text("A <b>misprint</b>.")
+    expect(page.locator(".given")).to_contain_text("A <b>misprint</b>. key ")
     expect(page.locator(".facts")).to_contain_text("7.5 / 24")
 
     # The exercise in counts, and its regrade: first who changes, then for good.
@@ -177,6 +204,7 @@ def test_a_tutor_works_with_recorded_attempts(
 
     # A learner who wants to be forgotten is named before it happens.
     page.get_by_role("link", name="List of attempts").click()
+    expect(rows(page)).to_have_count(3)
     page.get_by_label("Learner").last.fill(PICTURE)
     page.keyboard.press("Enter")
     dialog = page.get_by_role("dialog", name=f"Forget {PICTURE}?")
@@ -197,7 +225,7 @@ def test_nobody_is_kept_out_of_the_views_of_attempts(
     visit: Opening, service: str, recording: Recording, axe: str
 ) -> None:
     [*_, attempt] = [recording.record(learner, table) for learner, table in ANSWERS]
-    page = visit(bypass_csp=True, viewport=NARROW).page
+    page = visit(bypass_csp=True, **recording.visitor).page
     page.add_init_script(axe)
 
     def check() -> None:

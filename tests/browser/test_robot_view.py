@@ -18,8 +18,10 @@ TABLE = ["l2", "0", "l1", "q1", "l3", "pi", "0", "q2", "0", "0", "l4", "q3", "0"
 
 
 def open_view(page: Page) -> None:
-    page.get_by_role("button", name="Move it in 3D").click()
+    page.get_by_role("button", name="Move it in 3D").press("Enter")
     expect(page.locator(".slider")).not_to_have_count(0)
+    # Whoever opened it by keyboard has not lost the button.
+    expect(page.get_by_role("button", name="Back to the drawing")).to_be_in_viewport()
 
 
 def picture(page: Page) -> bytes:

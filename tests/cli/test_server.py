@@ -3,6 +3,7 @@
 import json
 import signal
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 from random import Random
 
@@ -45,9 +46,10 @@ def homework(tmp_path: Path) -> Path:
     folder = tmp_path / "class"
     folder.mkdir()
     entries = [*POSITION, "q1", "a1 c1 +", "1/0", "0", 0]
-    random = Random(5)
-    for i in range(20):
-        answers = {"position": random.choices(entries, k=2), "table": "a1, 0, 0, q1\na2, 0, 0, q2"}
+    # No two alike: a report is kept by what it is on, and the second one would not be asked for.
+    positions = Random(5).sample([*product(entries, repeat=2)], 20)
+    for i, position in enumerate(positions):
+        answers = {"position": position, "table": "a1, 0, 0, q1\na2, 0, 0, q2"}
         (folder / f"s{i:02}.json").write_text(json.dumps({"answers": answers}), encoding="utf-8")
     (folder / "broken.json").write_text("{", encoding="utf-8")
     (folder / "other.json").write_text('{"answers": {"tabel": 1}}', encoding="utf-8")

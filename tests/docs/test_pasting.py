@@ -9,7 +9,7 @@ import pytest
 from service.catalogue import Exercise
 from service.grading.reading.column_headers import read_header
 from service.grading.work_budget import MAX_PASTED
-from service.grids import GRID_LIMITS, GridError, read_grid
+from service.grids import GRID_LIMITS, GridError, read_grid, read_robot
 from tests.grading.support.submitting import full_marks, handed_in, part
 
 PAGE = (Path(__file__).parents[2] / "docs" / "pasting.md").read_text(encoding="utf-8")
@@ -28,7 +28,7 @@ PARTS = {
 
 def test_every_block_is_an_example() -> None:
     assert len(BLOCKS) == PAGE.count("\n```") / 2
-    assert (len(READ), len(REFUSED)) == (19, 4)
+    assert (len(READ), len(REFUSED)) == (23, 5)
 
 
 @pytest.mark.parametrize(("kind", "text"), READ)
@@ -43,7 +43,7 @@ def test_an_example_gets_full_marks(
 @pytest.mark.parametrize(("code", "text"), REFUSED)
 def test_an_example_is_refused(code: str, text: str) -> None:
     with pytest.raises(GridError) as caught:
-        read_grid(text)
+        read_robot(text) or read_grid(text)
     assert caught.value.code == code
 
 

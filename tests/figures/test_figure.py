@@ -6,6 +6,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -177,6 +178,24 @@ def test_frames_are_drawn_for_tutors() -> None:
     assert {f"{axis}{i}" for axis in "xyz" for i in range(7)} <= names
     # Frames 3, 4 and 5 lie in the wrist: their common axes are drawn once.
     assert "x3, x4, x5" in framed
+
+
+@pytest.mark.parametrize("name", ["scara", "three-link-cylindrical"])
+def test_no_arrow_of_a_sliding_joint_crosses_an_axis(name: str) -> None:
+    lines: dict[str, list[tuple[complex, complex]]] = {"motion": [], "frame": []}
+    for line in ET.fromstring(reference_figure(SHIPPED[name])).iter(f"{SVG}polyline"):
+        x, y, *_, u, v = map(float, re.findall(r"-?[\d.]+", line.attrib["points"]))
+        kind = line.attrib["class"].split()[0]
+        # Arcs have more points.
+        if kind == "frame" or (kind == "motion" and line.attrib["points"].count(",") < 20):
+            lines[kind].append((complex(x, y), complex(u, v)))
+    assert lines["motion"]
+    assert lines["frame"]
+    for (a, b), (c, d) in product(lines["motion"], lines["frame"]):
+        # Lines cross where each has its ends on either side of the other.
+        sides = [((q - p) * (r - p).conjugate()).imag for p, q, r in
+                 [(a, b, c), (a, b, d), (c, d, a), (c, d, b)]]  # fmt: skip
+        assert not (sides[0] * sides[1] < 0 and sides[2] * sides[3] < 0)
 
 
 def test_an_exercise_without_a_robot_has_no_figure() -> None:

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from service.grids import GRID_LIMITS, Grid, GridError, NamedGrid, read_grid, read_grids
+from service.grids import GRID_LIMITS, Grid, GridError, NamedGrid, read_grid, read_grids, read_robot
+from tests.grids.test_robot_script import SCRIPTS
 from tests.grids.writers import FORMATS, POSE
 from tests.guards import STALL
 from tests.samples import one_in
@@ -16,6 +17,7 @@ from tests.samples import one_in
 Found = TypeVar("Found")
 SEEDS = [write(POSE) for write in FORMATS.values()]
 SEEDS += [f"A1 = {text}\nA2 = {text}" for text in SEEDS]
+SEEDS += [case["script"] for cases in SCRIPTS.values() for case in cases.values()]
 FRAGMENTS = [
     "[", "]", "(", ")", "{", "}", "<", ">", "&", "\\", "|", "'", '"', "%", "#", "...", ";", ",",
     "\n", "\r\n", "\t", " ", "=", "$", "\x00", "\ud800", "\u202e", "\u2028", "\ufeff", "\u0301",
@@ -25,6 +27,7 @@ FRAGMENTS = [
     "(*", "*)", "/*", "//MatrixForm", "Simplify[", "\\pmatrix{", "\\cr ", "[   ]\n", "/ 1 \\\n| ",
     " = ", ":=", "\n\n", "% A1\n", "import x\n", "x = Symbol(", "x", "x1 ", "\\begin{bmatrix}",
     "\\end{bmatrix}", "{}^0", "\\right)", "\\quad", "\\text{", "a*b", "é", "𝜃",
+    "SerialLink([", "\nL(1) = Link([0 0 ", "Revolute('d', ", "setFixedTransform(j1, ", "{'a': [",
 ]  # fmt: skip
 
 
@@ -37,7 +40,8 @@ def refusal(error: GridError) -> Refusal:
 
 def outcome(text: str) -> Grid | Refusal:
     try:
-        return read_grid(text)
+        robot = read_robot(text)
+        return robot.grid if robot else read_grid(text)
     except GridError as error:
         return refusal(error)
 

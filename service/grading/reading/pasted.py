@@ -12,8 +12,10 @@ from service.grids import (
     GridCell,
     GridError,
     NamedGrid,
+    RobotTable,
     read_grid,
     read_grids,
+    read_robot,
 )
 
 
@@ -24,6 +26,17 @@ def pasted_grid(text: str, reader: Reader) -> Grid:
     """
     _charge(text, reader)
     return read_grid(text)
+
+
+def pasted_robot(text: str, reader: Reader) -> RobotTable | None:
+    """The DH table of a robot that a pasted script describes; None for any other text.
+
+    Raises GridError where its table is not certain, and as ``pasted_grid``.
+    """
+    robot = read_robot(text)
+    if robot is not None:
+        _charge(text, reader)
+    return robot
 
 
 def pasted_grids(text: str, reader: Reader) -> tuple[NamedGrid, ...]:

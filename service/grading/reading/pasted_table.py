@@ -16,10 +16,10 @@ from service.grading.reading.column_headers import (
 )
 from service.grading.reading.entry import Entry, Reader, from_note, unreadable
 from service.grading.reading.length_units import in_unit
-from service.grading.reading.pasted import pasted_grid, place_of, placed, quoted
+from service.grading.reading.pasted import pasted_grid, pasted_robot, place_of, placed, quoted
 from service.grading.reading.row_labels import in_order, is_label
 from service.grading.reading.written_names import Arrangement
-from service.grids import Grid, GridCell, GridError
+from service.grids import Grid, GridCell, GridError, RobotTable
 from service.kinematics.chain import COLUMNS
 
 ColumnOrder = tuple[int | None, Header]
@@ -47,18 +47,21 @@ class PastedRow:
 class PastedTable:
     """A table's rows in the order of its joints, and the header of each of a, α, d, θ.
 
-    ``is_named`` says that the columns have headers.
+    ``is_named`` says that the columns have headers, or names in a script. ``convention`` is the one
+    that a script names.
     """
 
     rows: tuple[PastedRow, ...]
     headers: tuple[Header, ...]
     findings: tuple[Finding, ...] = ()
     is_named: bool = True
+    convention: str | None = None
 
 
 def read_pasted_table(text: str, reader: Reader) -> PastedTable:
     """The rows of a pasted DH table; see ``table_of``. Raises GridError where it is none."""
-    return table_of(pasted_grid(text, reader), reader)
+    robot = pasted_robot(text, reader)
+    return table_of_robot(robot, reader) if robot else table_of(pasted_grid(text, reader), reader)
 
 
 def table_of(grid: Grid, reader: Reader, order: Sequence[str] = COLUMNS) -> PastedTable:
@@ -92,6 +95,24 @@ def table_of(grid: Grid, reader: Reader, order: Sequence[str] = COLUMNS) -> Past
     notes = tuple(map(from_note, grid.notes))
     heads = tuple(header for _, header in columns)
     return PastedTable(rows, heads, (*notes, *findings), found is not None)
+
+
+def table_of_robot(robot: RobotTable, reader: Reader) -> PastedTable:
+    """The rows of the robot that a script describes; the angles of its links are in radians.
+
+    Raises GridError as ``table_of``, where the table has headers.
+    """
+    if robot.has_headers:
+        return table_of(robot.grid, reader)
+    unit = "" if reader.angle_unit == "radians" else "rad"
+    headers = tuple(
+        Header(column, unit if QUANTITIES[column] == "angle" else "") for column in COLUMNS
+    )
+    rows = tuple(
+        _row(row, tuple(enumerate(headers)), len(COLUMNS), reader) for row in robot.grid.rows
+    )
+    notes = tuple(map(from_note, robot.grid.notes))
+    return PastedTable(rows, headers, notes, convention=robot.convention)
 
 
 def _has_parameters_in_rows(grid: Grid) -> bool:

@@ -1,7 +1,9 @@
 """The preview of a pasted table or matrix: the reading of each cell, without a grading."""
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 from service.catalogue import Exercise, PartSpec
 from service.catalogue.parts.link_transforms import LinkTransformsSpec
@@ -9,6 +11,7 @@ from service.catalogue.parts.screw_axes import ScrewAxesSpec
 from service.expressions import AngleUnit, Kind, Note
 from service.expressions.errors import Span
 from service.grading.feedback import Finding, UnreadableAnswerError
+from service.grading.reading.column_headers import Header
 from service.grading.reading.entry import Entry, Reader
 from service.grading.reading.matrix_list import grids_in_order
 from service.grading.reading.pasted import pasted_grid, placed
@@ -155,11 +158,20 @@ def _table(text: str, reader: Reader) -> PastedPreview:
         )
         rows.append(
             tuple(
-                replace(cell, entry=cell.text) if header.unit and cell.text else cell
+                replace(cell, entry=_alone(cell.text, header, reader))
+                if header.unit and cell.text
+                else cell
                 for cell, header in zip(cells, table.headers, strict=True)
             )
         )
     return PastedPreview(tuple(rows), _notes(table.findings))
+
+
+def _alone(text: str, header: Header, reader: Reader) -> str:
+    """The text of a cell that is read below a header with a unit, for the same reading alone."""
+    if header.angle_unit == "radians" and reader.angle_unit == "degrees":
+        return _TERM.sub(r"\1rad", text)
+    return text
 
 
 def _matrices(text: str, labels: Sequence[str], reader: Reader) -> PastedPreview:
@@ -228,4 +240,8 @@ def _read(entry: Entry, empty: CellPreview, budget: WorkBudget) -> CellPreview:
     )
 
 
-_WORK_LIMIT = "The formulas are too long together: some are shown as text only."
+# A number that is a term by itself, and not 0.
+_TERM: Final = re.compile(
+    r"((?:^|(?<=[-+]\s)|(?<=^-))(?=[\d.]*[1-9])\d{1,20}(?:\.\d{1,20})?)(?=$|\s[-+]\s)"
+)
+_WORK_LIMIT: Final = "The formulas are too long together: some are shown as text only."

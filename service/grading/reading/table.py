@@ -13,8 +13,13 @@ from service.grading.reading.absent_variables import absent_names
 from service.grading.reading.cell_names import first_number
 from service.grading.reading.column_headers import QUANTITIES
 from service.grading.reading.entry import Entry, Reader, entry_values
-from service.grading.reading.pasted import from_grid_error, pasted_grid
-from service.grading.reading.pasted_table import PastedTable, entries_of, table_of
+from service.grading.reading.pasted import from_grid_error, pasted_grid, pasted_robot
+from service.grading.reading.pasted_table import (
+    PastedTable,
+    entries_of,
+    table_of,
+    table_of_robot,
+)
 from service.grading.reading.row_entries import read_row, remembered_row
 from service.grading.reading.table_json import canonical_table, has_unnamed_columns
 from service.grading.report import Severity, Verdict
@@ -122,6 +127,7 @@ def read_table(
     if isinstance(answer, Mapping) and isinstance(answer.get("rows"), str):
         convention, findings = _convention(answer.get("convention"))
         table = _pasted(answer["rows"], reader, empty_is_zero=empty_is_zero)
+        convention = convention or table.convention
         return replace(table, convention=convention, findings=(*findings, *table.findings))
     written = answer
 
@@ -158,8 +164,9 @@ def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
     if not text.strip():
         return StudentTable((), _NO_ROWS, None)
     try:
-        grid = pasted_grid(text, reader)
-        pasted = table_of(grid, reader)
+        robot = pasted_robot(text, reader)
+        grid = robot.grid if robot else pasted_grid(text, reader)
+        pasted = table_of_robot(robot, reader) if robot else table_of(grid, reader)
     except GridError as error:
         raise UnreadableAnswerError(from_grid_error(error)) from error
     if len(pasted.rows) > MAX_ROWS:
@@ -167,7 +174,8 @@ def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
 
     def read(pasted: PastedTable, reader: Reader) -> StudentTable:
         rows = [_with_empty_cells(row, empty_is_zero) for row in entries_of(pasted, reader)]
-        return _table(rows, None, pasted.findings, reader)
+        convention = CONVENTION_NAMES[pasted.convention] if pasted.convention else None
+        return _table(rows, convention, pasted.findings, reader)
 
     def reread(other: Sequence[str]) -> StudentTable:
         afresh = _afresh(reader)

@@ -9,12 +9,17 @@ const id = byId("main").dataset.attempt;
 const path = `v1/attempts/${encodeURIComponent(id)}`;
 const state = byId("state");
 const place = byId("attempt");
+// So many attempts of a learner are listed, the newest.
+const MOST_LISTED = 20;
 
 async function load() {
   try {
     const found = await get(path);
-    const exercise = await get(`v1/exercises/${encodeURIComponent(found.attempt.exercise)}`).catch(() => null);
-    show(found, exercise);
+    const { exercise: name, learner } = found.attempt;
+    const exercise = await get(`v1/exercises/${encodeURIComponent(name)}`).catch(() => null);
+    // Also, a browser that shows a key here shows it from then on to all that is beside /v1/attempts.
+    const { attempts } = await get(`v1/attempts?${new URLSearchParams({ exercise: name, learner, limit: MOST_LISTED })}`);
+    show(found, exercise, attempts);
     tell(state, "");
   } catch (error) {
     place.replaceChildren();
@@ -22,7 +27,7 @@ async function load() {
   }
 }
 
-function show(found, exercise) {
+function show(found, exercise, attempts) {
   const { attempt } = found;
   byId("title").textContent = visible(exercise?.title ?? attempt.exercise);
   document.title = `${byId("title").textContent} · DH Grader`;
@@ -31,7 +36,7 @@ function show(found, exercise) {
   const about = h("section", { class: "card facts", "aria-label": "Facts" });
   const given = new PointsGiven(attempt, (changed) => update(changed));
   const update = (now) => {
-    about.replaceChildren(facts(now, exercise));
+    about.replaceChildren(facts(now, exercise, attempts));
     given.show(now);
   };
   update(found);
@@ -53,7 +58,7 @@ function reports({ attempt, report, earlier_reports: earlier }, drawn) {
   return h("p", { class: "field" }, h("label", { for: "which-report" }, "Report"), choice);
 }
 
-function facts({ attempt, submission }, exercise) {
+function facts({ attempt, submission }, exercise, attempts) {
   const { learner, ordinal, at, is_late: late, version, grader } = attempt;
   const list = (query, ...text) => h("a", { href: address(`tutor/attempts?${new URLSearchParams(query)}`) }, ...text);
   const isOld = exercise && exercise.version !== version;
@@ -62,12 +67,21 @@ function facts({ attempt, submission }, exercise) {
     ["Exercise", list({ exercise: attempt.exercise }, h("code", {}, attempt.exercise))],
     ["Handed in", h("span", {}, moment(at), late ? ", late" : "")],
     ["Attempt", ordinal === undefined ? "does not count: nothing could be read" : `no. ${ordinal}`],
+    attempts.length > 1 && ["All attempts", h("ul", { class: "all-attempts" }, ...attempts.toReversed().map(ofLearner))],
     ["Points", h("strong", {}, earned(attempt))],
     attempt.awarded !== undefined && ["by its report", points(attempt.points, attempt.max_points)],
     ["Plain angles in", submission.angle_unit ?? "radians"],
     ["Graded by", h("span", {}, `exercise ${version}${isOld ? " (not the one of today)" : ""}, program ${grader}`)],
   ].filter(Boolean);
   return h("dl", {}, ...pairs.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
+}
+
+/** One of the learner's attempts at the exercise: a link, but for the one that is shown. */
+function ofLearner({ id: other, ordinal }) {
+  const name = ordinal === undefined ? "–" : String(ordinal);
+  const spoken = ordinal === undefined ? "one that does not count" : `no. ${ordinal}`;
+  if (other === id) return h("li", {}, h("strong", { "aria-current": "true", "aria-label": `${spoken}, shown` }, name));
+  return h("li", {}, h("a", { href: address(`tutor/attempts/${encodeURIComponent(other)}`), "aria-label": spoken }, name));
 }
 
 /** The form for other points than the report's, and those that were given. */

@@ -237,7 +237,8 @@ export class DhExercise extends HTMLElement {
     const { statement, statement_html: markup } = this.exercise;
     const text = markup ? html(markup) : statement.trim().split(/\n\n+/).map((each) => h("p", {}, visible(each)));
     this.figure = this.#figure();
-    return h("div", { class: "statement" }, this.figure, this.figure && this.#viewButton(), ...text);
+    // The button stands before what it opens: it stays in sight, and Tab goes on into the view.
+    return h("div", { class: "statement" }, this.figure && this.#viewButton(), this.figure, ...text);
   }
 
   #figure() {

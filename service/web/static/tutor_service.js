@@ -42,7 +42,8 @@ async function asked(path, options) {
   if (answer.ok) return answer;
   const problem = await answer.json().catch(() => ({}));
   const reason = problem.detail ?? `The service answered with the status ${answer.status}.`;
-  const more = { told: true, status: answer.status, type: problem.type ?? "", pause: Number(answer.headers.get("Retry-After")) };
+  const wait = Number(answer.headers.get("Retry-After"));
+  const more = { told: true, kind: wait ? "busy" : "refused", pause: wait };
   throw Object.assign(new Error(reason), more);
 }
 

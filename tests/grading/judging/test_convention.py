@@ -87,6 +87,15 @@ def test_the_one_that_is_named_is_kept(arm: Exercise) -> None:
     assert full_marks(graded(arm, {**table(MODIFIED), "convention": "modified"}))
 
 
+def test_the_links_of_a_script_name_one(arm: Exercise) -> None:
+    links = [f"Link([0 {d} {a} {alpha.replace('90deg', 'pi/2')}])" for a, alpha, d, _ in STANDARD]
+    report = graded(arm, f"SerialLink([{' '.join(links)}])")
+    assert full_marks(report)
+    assert taken(report) == []
+    modified = {"rows": f"SerialLink([{' '.join(links)}])", "convention": "modified"}
+    assert not full_marks(graded(arm, modified))
+
+
 def test_a_part_with_a_convention_takes_none(catalogue: Mapping[str, Exercise]) -> None:
     rows = [("a1", "0", "0", "theta1"), ("a2", "0", "0", "theta2")]
     assert taken(graded(catalogue["planar-rr"], table(rows))) == []

@@ -1,0 +1,67 @@
+"""Writers of scripts for robotics toolboxes from the tables of the textbooks' robots."""
+
+from tests.grading.support.robots import COLUMNS, Robot, in_pi
+
+
+def cells(robot: Robot) -> list[dict[str, str]]:
+    """The cells of each row with the joint variable left to the toolbox."""
+    found = []
+    for row in robot.rows:
+        named = dict(zip(COLUMNS, row, strict=True))
+        named["alpha"] = in_pi(int(named["alpha"]))
+        found.append({name: "" if "*" in cell else cell for name, cell in named.items()})
+    return found
+
+
+def in_matlab(robot: Robot) -> str:
+    """Vectors [θ d a α σ] of MATLAB's toolbox."""
+    lines = [
+        f"L({i}) = Link([{row['theta'] or 0} {row['d'] or 0} {row['a']} {row['alpha']} "
+        f"{int(not row['d'])}]);"
+        for i, row in enumerate(cells(robot), 1)
+    ]
+    return "\n".join(["clear, close all", *lines, "robot = SerialLink(L);", "robot.teach()"])
+
+
+def by_name(robot: Robot) -> str:
+    """Links of MATLAB's toolbox with names, all in the call that makes the robot."""
+    lines = []
+    for row in cells(robot):
+        given = ", ".join(f"'{name}', {cell}" for name, cell in row.items() if cell)
+        lines.append(f"    Link({given})")
+    return "\n".join(["robot = SerialLink([", *lines, "]);"])
+
+
+def in_python(robot: Robot) -> str:
+    """The classes of the toolbox for Python."""
+    lines = []
+    for row in cells(robot):
+        kind = "Revolute" if row["d"] else "Prismatic"
+        given = ", ".join(f"{name}={cell}" for name, cell in row.items() if cell not in ("", "0"))
+        lines.append(f"    rtb.{kind}DH({given}),")
+    return "\n".join(["import roboticstoolbox as rtb", "robot = rtb.DHRobot([", *lines, "])"])
+
+
+def of_bodies(robot: Robot) -> str:
+    """Joints of MATLAB's Robotics System Toolbox."""
+    lines = []
+    for i, row in enumerate(cells(robot), 1):
+        kind = "revolute" if row["d"] else "prismatic"
+        values = " ".join(row[name] or "0" for name in COLUMNS)
+        lines.append(f"jnt{i} = rigidBodyJoint('jnt{i}', '{kind}');")
+        lines.append(f"setFixedTransform(jnt{i}, [{values}], 'dh');")
+    return "\n".join(["robot = rigidBodyTree;", *lines])
+
+
+def by_column(robot: Robot) -> str:
+    """A dictionary of columns, which names its joint variables."""
+    columns = ((name, i) for i, name in enumerate(COLUMNS))
+    lists = ", ".join(
+        f"'{name}': [{', '.join(_value(name, row[i]) for row in robot.rows)}]"
+        for name, i in columns
+    )
+    return f"import pandas as pd\ndh = pd.DataFrame({{{lists}}})"
+
+
+def _value(name: str, cell: str) -> str:
+    return in_pi(int(cell)) if name == "alpha" else cell.removesuffix("*")

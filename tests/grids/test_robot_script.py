@@ -1,0 +1,132 @@
+"""Scripts for robotics toolboxes give the rows of their links, or say what leaves them open."""
+
+import tomllib
+from pathlib import Path
+from typing import Final
+
+import pytest
+
+from service.grids import GridError, RobotTable, read_robot
+
+SCRIPTS: Final = tomllib.loads(
+    Path(__file__).with_name("robot_scripts.toml").read_text(encoding="utf-8")
+)
+JOINT: Final = "j1 = rigidBodyJoint('j1','revolute');"
+PLACED: Final = "setFixedTransform(j1,[0 0 q1 0],'dh')"
+THIRTEEN: Final = "\n".join(f"L({i})=Link([0 0 1 0]);" for i in range(1, 14))
+UNREAD: Final = "unread_script"
+CASES: Final = [(convention, name) for convention in SCRIPTS for name in SCRIPTS[convention]]
+
+
+def table(text: str) -> RobotTable:
+    found = read_robot(text)
+    assert found is not None
+    return found
+
+
+def rows(found: RobotTable) -> list[str]:
+    return [" ".join(cell.text for cell in row) for row in found.grid.rows]
+
+
+@pytest.mark.parametrize(("convention", "name"), CASES)
+def test_each_link_is_a_row(convention: str, name: str) -> None:
+    case = SCRIPTS[convention][name]
+    found = table(case["script"])
+    assert rows(found) == case["rows"]
+    assert (found.convention, found.has_headers) == (convention, False)
+
+
+def test_a_dictionary_of_columns_keeps_its_headers() -> None:
+    columns = "'theta': [q1, q2], 'a': np.array([a1, a2]), 'd': [0, 0], 'alpha': [0, 'pi']"
+    text = f"df = pd.DataFrame({{{columns}}})\nprint(df)"
+    found = table(text)
+    assert rows(found) == ["theta a d alpha", "q1 a1 0 0", "q2 a2 0 pi"]
+    assert (found.convention, found.has_headers) == (None, True)
+
+
+def test_a_cell_is_where_it_is_written_and_an_implied_one_where_its_link_is() -> None:
+    text = "% a comment\nL(1) = Link('a', a1, ... comment\n  'd', 0.5, 'offset', pi/2);"
+    [row] = table(text).grid.rows
+    link = "Link('a', a1, ... comment\n  'd', 0.5, 'offset', pi/2)"
+    assert [text[slice(*cell.whole)] for cell in row] == ["a1", link, "0.5", "pi/2"]
+    [note] = table(text).grid.notes
+    assert (note.code, text[slice(*note.span)]) == ("script_rows", link)
+
+
+def test_numbers_that_a_script_gives_its_letters_are_told() -> None:
+    found = table("a1 = 0.4;\nm = 3;\nL(1) = Link([0 0 a1 0]);\nqz = 0;")
+    assert [note.code for note in found.grid.notes] == ["script_rows", "given_numbers"]
+    assert "to a1;" in found.grid.notes[1].message
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "marked"),
+    [
+        # nothing is run
+        ("for i=1:3\nL(i)=Link(DH(i,:));\nend", UNREAD, "L(i)=Link(DH(i,:))"),
+        ("L = [RevoluteDH(a=x) for x in lengths]", UNREAD, None),
+        ("def arm():\n    DHRobot([RevoluteDH()])", UNREAD, "DHRobot([RevoluteDH()])"),
+        ("L(1) = Link(DH(1,:));", UNREAD, "DH(1,:)"),
+        ("robot = SerialLink(L);", UNREAD, "L"),
+        ("a1 = 2*b;\nL(1) = Link([0 0 a1 0]);", "given_value", "a1 = 2*b"),
+        # what a toolbox ignores, and a student may mean
+        ("L(1) = Link([pi/2 0 a1 0]);", UNREAD, "pi/2"),
+        ("L(1) = Link([q1+pi/2 0 a1 0 0 pi]);", UNREAD, "q1+pi/2"),
+        (f"{JOINT}\nsetFixedTransform(j1,[0 0 0 pi/2],'dh')", UNREAD, "pi/2"),
+        ("setFixedTransform(j1,[a1 0 d1 0],'dh')", UNREAD, None),
+        ("setFixedTransform(j1,trvec2tform([0 0 1]))", UNREAD, None),
+        # the joint's type
+        ("L1 = Link('a', 1, 'alpha', 0);", UNREAD, "Link('a', 1, 'alpha', 0)"),
+        ("L1 = Link('theta', 0, 'd', 1);", UNREAD, "Link('theta', 0, 'd', 1)"),
+        ("L1 = Link('revolute', 'prismatic');", UNREAD, "Link('revolute', 'prismatic')"),
+        ("L1 = Link([0 0 0 0 x]);", UNREAD, "x"),
+        # other transforms
+        ("r = SerialLink([Link([0 0 1 0])], 'tool', T);", UNREAD, "'tool'"),
+        ("r = DHRobot([RevoluteDH()], base=T)", UNREAD, "base=T"),
+        ("L(1)=Link([0 0 1 0]);\nr = SerialLink(L);\nr.base = T;", UNREAD, "r.base = T"),
+        ("L(1)=Link([0 0 1 0]);\nr.links(1).offset = 1;", UNREAD, "r.links(1).offset = 1"),
+        ("d(1)=1; d(1)=2;\nL(1)=Link([0 d(1) 0 0]);", UNREAD, "d(1)"),
+        # arguments, numbers, order
+        ("L(1) = Link('d', 0, 'unit', 1);", UNREAD, "'unit'"),
+        ("L(1) = Link('d', 0, 'd', 1);", UNREAD, "'d'"),
+        ("L(1)=Link([0 0 1 0]);\nL(1).offset = ", UNREAD, "Link([0 0 1 0])"),
+        ("L(1) = Link([0 0 1]);", UNREAD, "[0 0 1]"),
+        ("setFixedTransform(j1,[0 0 1],'dh')", UNREAD, None),
+        ("L(1)=Link([0 0 1 0]);\nL(1)=Link([0 0 2 0]);", UNREAD, "L(1)=Link([0 0 2 0])"),
+        ("L(2)=Link([0 0 1 0]);", UNREAD, None),
+        ("L1=Link([0 0 1 0]);\nL2=RevoluteMDH('a',1);", UNREAD, None),
+        ("L1=Link([0 0 1 0]);\nM2=Link([0 0 1 0]);", UNREAD, None),
+        (f"{PLACED.replace('1', '2')}\n{PLACED}", UNREAD, PLACED),
+        ("{'a': [1, 2], 'alpha': [0, 0], 'd': [0], 'theta': [q1, q2]}", UNREAD, "[0]"),
+        (THIRTEEN, "too_many_rows", "L(13)=Link([0 0 1 0])"),
+        ("L(1)=Link([0 0 1 0];", "unbalanced_bracket", "("),
+        ("Link([" * 500, "unbalanced_bracket", "["),
+        ("Link([" * 4000, UNREAD, None),
+        ("DHLink(0, 0, 0, 0, 0, 2)", UNREAD, "2"),
+        ("Link([" * 10000, "too_long", None),
+    ],
+)  # fmt: skip
+def test_a_table_that_is_not_certain_is_refused(text: str, code: str, marked: str | None) -> None:
+    with pytest.raises(GridError) as caught:
+        read_robot(text)
+    span = caught.value.span
+    assert (caught.value.code, text[slice(*span)]) == (code, marked or text[slice(*span)])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "[a1 0 0 q1; a2 0 0 q2]",
+        "Link (i), a, alpha, d, theta\n1, a1, 0, 0, q1",
+        "Link(i) & a & alpha & d & theta",
+        "DH = [a1 0 0 q1]; % for SerialLink(DH)",
+        '[{"a": 1, "d": 2}]',
+        '{"rows": [[0, 0, 0, 1]]}',
+        r"\begin{tabular}{a:b:c:d} 1 & 2 \end{tabular}",
+        "{alpha0: 0, a0: 0, d2: 1}",
+        "{a1: 1, alpha2: 0, d1: 1}",
+    ],
+)
+def test_other_texts_are_no_script(text: str) -> None:
+    assert read_robot(text) is None
