@@ -186,11 +186,17 @@ def _nodes(tree: Node) -> Iterator[Node]:
 def _names(formula: TypedFormula, vocabulary: Vocabulary) -> dict[str, str]:
     """The names of the symbols in a formula as they were typed."""
     names: dict[str, str] = {}
+    # In c12 stands a sum of angles without their names, and in a long formula many times.
+    nameless: set[tuple[str, str]] = set()
     for node in _nodes(formula.tree):
-        if isinstance(node, SymbolNode) and node.symbol.name not in names:
+        if isinstance(node, SymbolNode) and (name := node.symbol.name) not in names:
             typed = _typed(node, formula)
+            if (name, typed) in nameless:
+                continue
             if _is_name(typed, node.symbol, vocabulary):
-                names[node.symbol.name] = typed
+                names[name] = typed
+            else:
+                nameless.add((name, typed))
     return names
 
 
