@@ -26,7 +26,10 @@ Detail = Mapping[str, str | int]
 
 @dataclass(eq=False)
 class ProblemError(Exception):
-    """A request that cannot be answered. ``name`` makes the type; empty for the bare status."""
+    """A request that cannot be answered. ``name`` makes the type; empty for the bare status.
+
+    Each of ``challenges`` is a line ``WWW-Authenticate`` of its own.
+    """
 
     status: HTTPStatus
     detail: str
@@ -34,12 +37,20 @@ class ProblemError(Exception):
     title: str = ""
     errors: Sequence[Detail] = ()
     headers: Mapping[str, str] | None = None
+    challenges: Sequence[str] = ()
 
     def response(self, instance: str) -> Response:
         """The problem as an answer to a request for the path ``instance``."""
         request = current_request()
         content = self.content(instance, "" if request is None else request.id)
-        return Response(content, self.status, self.headers, MEDIA_TYPE)
+        return self.answer(content, MEDIA_TYPE)
+
+    def answer(self, content: bytes, media_type: str) -> Response:
+        """The answer with this content, and with the status and headers of the problem."""
+        response = Response(content, self.status, self.headers, media_type)
+        for challenge in self.challenges:
+            response.headers.append("WWW-Authenticate", challenge)
+        return response
 
     def content(self, instance: str, request_id: str = "") -> bytes:
         """The problem as JSON; ``instance`` is what was asked for."""
