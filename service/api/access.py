@@ -135,10 +135,14 @@ class Access:
 
     def require_solutions(self, request: Request, exercise: str | None = None) -> None:
         """Check the right to model solutions: of one exercise, or of all. Raises ProblemError."""
-        self._require_tutor(request, self._solutions, solutions_off())
-        caller = self._identity(request).caller
+        caller = self.require_solutions_of_some(request)
         if caller.exercises is not None and exercise not in caller.exercises:
             raise other_exercise()
+
+    def require_solutions_of_some(self, request: Request) -> Caller:
+        """Who has that right, of whatever exercises. Raises ProblemError."""
+        self._require_tutor(request, self._solutions, solutions_off())
+        return self._identity(request).caller
 
     def require_tutor(self, request: Request, exercise: str | None) -> None:
         """Check the right to what is known of a class: in an exercise, or in all of them.
@@ -148,10 +152,12 @@ class Access:
         self.require_tutor_of_one(request)
         self.require_reading(request, exercise)
 
-    def require_tutor_of_one(self, request: Request) -> None:
-        """Check the same right of whatever exercise it is about. Raises ProblemError."""
-        if self.require_reading_one(request).learner is not None:
+    def require_tutor_of_one(self, request: Request) -> Caller:
+        """Who has the same right, of whatever exercises. Raises ProblemError."""
+        caller = self.require_reading_one(request)
+        if caller.learner is not None:
             raise scope_missing(Scope.TUTOR)
+        return caller
 
     def require_reading(self, request: Request, exercise: str | None) -> Caller:
         """Who asks for recorded attempts: of one exercise, or of all. Raises ProblemError.
@@ -207,9 +213,9 @@ class Access:
         return self.keys.token(caller, expires_at)
 
     def shows_solutions(self, request: Request) -> bool:
-        """Whether who asks has the right to the model solutions of all exercises."""
+        """Whether who asks has the right to model solutions: of all exercises, or of some."""
         try:
-            self.require_solutions(request)
+            self.require_solutions_of_some(request)
         except ProblemError:
             return False
         return True

@@ -9,11 +9,8 @@ from service.api.problems import ProblemError, store_down
 
 _BEARER: Final = "Bearer"
 # A browser asks for a password, which then is the key, and sends it with all that the pages ask.
-# Chromium takes a line for one challenge: the first must be the one that it knows, and whatever
-# follows must look like parameters of it.
-_PASSWORD: Final = (
-    'Basic realm="A key of DH Grader as password", charset="UTF-8", Bearer realm="DH Grader"'
-)
+# A line each: of several challenges in one line Chromium reads the first alone.
+_PASSWORD: Final = ('Basic realm="A key of DH Grader as password", charset="UTF-8"', _BEARER)
 _MAY: Final = {
     Scope.GRADE: "have answers graded",
     Scope.RECORD: "record attempts",
@@ -28,7 +25,7 @@ def key_needed(*, with_password: bool = False) -> ProblemError:
         "This needs a key. Send it in the header Authorization: Bearer dhg_…",
         "key-needed",
         "A key is needed",
-        headers={"WWW-Authenticate": _PASSWORD if with_password else _BEARER},
+        challenges=_PASSWORD if with_password else (_BEARER,),
     )
 
 
@@ -39,7 +36,7 @@ def credential_refused(reason: str) -> ProblemError:
         reason,
         "key-not-valid",
         "The key is not valid",
-        headers={"WWW-Authenticate": f'{_BEARER} error="invalid_token"'},
+        challenges=(f'{_BEARER} error="invalid_token"',),
     )
 
 
@@ -47,7 +44,7 @@ def asking_for_password(problem: ProblemError) -> ProblemError:
     """The same problem, at which a browser asks for another key."""
     if problem.status is not HTTPStatus.UNAUTHORIZED:
         return problem
-    return replace(problem, headers={"WWW-Authenticate": _PASSWORD})
+    return replace(problem, challenges=_PASSWORD)
 
 
 def keys_unreachable() -> ProblemError:

@@ -5,7 +5,7 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING, Any
 
-from fastapi import APIRouter, FastAPI
+from fastapi import FastAPI
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp
 
@@ -37,6 +37,7 @@ from service.api.lookup import Catalogue
 from service.api.monitor import Monitor
 from service.api.openapi import HEADING, completed, other_failures
 from service.api.request_context import HEADER
+from service.api.web_pages import WebPages
 from service.catalogue import FeedbackLevel
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.version import VERSION
@@ -141,7 +142,7 @@ def application(
     feedback: FeedbackLevel = FeedbackLevel.FULL,
     turns: Layer | None = None,
     store: "AttemptStore | None" = None,
-    pages: APIRouter | None = None,
+    pages: WebPages | None = None,
     monitor: Monitor | None = None,
 ) -> FastAPI:
     """The HTTP service for these exercises; pages of ``cors_origins`` may call it.
@@ -154,7 +155,7 @@ def application(
     """
     access = access or Access()
     app = _Api(cors_origins, turns, store, access, rates, monitor)
-    problems.install(app)
+    problems.install(app, None if pages is None else pages.of_problem)
     for router in (
         exercises.routes(catalogue, feedback),
         grading.routes(catalogue, feedback, access, monitor),
@@ -172,5 +173,5 @@ def application(
         app.include_router(router, responses=other_failures())
     app.include_router(reference.routes())
     if pages is not None:
-        app.include_router(pages)
+        app.include_router(pages.routes)
     return app

@@ -8,6 +8,7 @@ from typing import Annotated
 
 from fastapi import Path
 
+from service.access.caller import Caller
 from service.api.problems import MAX_ERRORS, ProblemError, invalid
 from service.catalogue import Exercise
 from service.submissions.lookup import UnknownExerciseError, find_exercise, nearest
@@ -16,6 +17,11 @@ Catalogue = Mapping[str, Exercise]
 ExerciseId = Annotated[str, Path(description="The id of an exercise.", examples=["stanford-arm"])]
 # The steps from the whole body to a place in it.
 Location = tuple[str | int, ...]
+
+
+def reached(catalogue: Catalogue, caller: Caller) -> Catalogue:
+    """The exercises that a caller's key is for."""
+    return {name: each for name, each in catalogue.items() if caller.reaches(name)}
 
 
 def exercise_or_404(catalogue: Catalogue, exercise_id: str) -> Exercise:

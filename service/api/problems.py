@@ -2,7 +2,7 @@
 
 import json
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from http import HTTPStatus
 from typing import Any, Final
@@ -26,7 +26,10 @@ Detail = Mapping[str, str | int]
 
 @dataclass(eq=False)
 class ProblemError(Exception):
-    """A request that cannot be answered. ``name`` makes the type; empty for the bare status."""
+    """A request that cannot be answered. ``name`` makes the type; empty for the bare status.
+
+    Each of ``challenges`` is a line ``WWW-Authenticate`` of its own.
+    """
 
     status: HTTPStatus
     detail: str
@@ -34,12 +37,20 @@ class ProblemError(Exception):
     title: str = ""
     errors: Sequence[Detail] = ()
     headers: Mapping[str, str] | None = None
+    challenges: Sequence[str] = ()
 
     def response(self, instance: str) -> Response:
         """The problem as an answer to a request for the path ``instance``."""
         request = current_request()
         content = self.content(instance, "" if request is None else request.id)
-        return Response(content, self.status, self.headers, MEDIA_TYPE)
+        return self.answer(content, MEDIA_TYPE)
+
+    def answer(self, content: bytes, media_type: str = "text/html") -> Response:
+        """The answer with this content, and with the status and headers of the problem."""
+        response = Response(content, self.status, self.headers, media_type)
+        for challenge in self.challenges:
+            response.headers.append("WWW-Authenticate", challenge)
+        return response
 
     def content(self, instance: str, request_id: str = "") -> bytes:
         """The problem as JSON; ``instance`` is what was asked for."""
@@ -56,6 +67,10 @@ class ProblemError(Exception):
             document["errors"] = list(self.errors)
         # Escaped to ASCII: whatever the request held can be written out.
         return json.dumps(document).encode("ascii")
+
+
+# A problem as a page; None for a request that a program has made.
+ProblemPage = Callable[[Request, ProblemError], Response | None]
 
 
 def too_large() -> ProblemError:
@@ -130,8 +145,21 @@ def _message(detail: Mapping[str, Any], fields: Sequence[str]) -> str:
     return message if message.endswith((".", "?")) else f"{message}."
 
 
-def install(app: FastAPI) -> None:
-    """Have the app answer every failure, its framework's own included, with a problem."""
+def install(app: FastAPI, page: ProblemPage | None = None) -> None:
+    """Have the app answer every failure, its framework's own included, with a problem.
+
+    Whoever reads in a browser gets its ``page``.
+    """
+
+    async def answer(request: Request, error: Exception) -> Response:
+        problem = _problem(request, error)
+        if problem.name == STORE_DOWN:
+            _log.warning("The database fails: %s", error.__cause__)
+        if request.method == "OPTIONS" and problem.status is HTTPStatus.METHOD_NOT_ALLOWED:
+            return Response(status_code=HTTPStatus.NO_CONTENT, headers=problem.headers)
+        shown = None if page is None else page(request, problem)
+        return problem.response(request.url.path) if shown is None else shown
+
     for failure in (
         ProblemError,
         HTTPException,
@@ -139,16 +167,7 @@ def install(app: FastAPI) -> None:
         ClientDisconnect,
         Exception,
     ):
-        app.add_exception_handler(failure, _answer)
-
-
-async def _answer(request: Request, error: Exception) -> Response:
-    problem = _problem(request, error)
-    if problem.name == STORE_DOWN:
-        _log.warning("The database fails: %s", error.__cause__)
-    if request.method == "OPTIONS" and problem.status is HTTPStatus.METHOD_NOT_ALLOWED:
-        return Response(status_code=HTTPStatus.NO_CONTENT, headers=problem.headers)
-    return problem.response(request.url.path)
+        app.add_exception_handler(failure, answer)
 
 
 def _problem(request: Request, error: Exception) -> ProblemError:

@@ -16,9 +16,13 @@ _COUNTED: Final = (
 )  # fmt: skip
 
 
-def attempts_page(catalogue: Catalogue, assets: Assets) -> bytes:
-    """The list of attempts with its filters, the export, and what forgets a learner."""
-    exercises = [("", "All exercises"), *((each.id, each.title) for each in catalogue.values())]
+def attempts_page(catalogue: Catalogue, assets: Assets, *, of_all: bool = True) -> bytes:
+    """The list of attempts with its filters, the export, and what forgets a learner.
+
+    ``of_all`` where it may be of all exercises at once, as what forgets always is.
+    """
+    all_of_them = [("", "All exercises")] if of_all else []
+    exercises = [*all_of_them, *((each.id, each.title) for each in catalogue.values())]
     main = element(
         "main",
         element("h1", "Recorded attempts"),
@@ -48,30 +52,33 @@ def attempts_page(catalogue: Catalogue, assets: Assets) -> bytes:
             id="export",
             class_="card",
         ),
-        element(
-            "section",
-            element("h2", "Forget a learner"),
-            element(
-                "p",
-                "Deletes answers, reports and given points of one learner in all exercises, for "
-                "ever.",
-                class_="quiet",
-            ),
-            element(
-                "form",
-                *_field("Learner", _input("forgotten", "text", maxlength="200", required="")),
-                element("button", "Look up", type="submit"),
-                id="forget",
-                class_="line-form",
-            ),
-            element("p", id="forget-state", role="status", class_="state-line"),
-            class_="card",
-        ),
+        *([_forgetting()] if of_all else []),
         _noscript(),
         id="main",
         class_="records",
     )
     return _page("Recorded attempts", main, assets, "../", "attempts.js")
+
+
+def _forgetting() -> Element:
+    return element(
+        "section",
+        element("h2", "Forget a learner"),
+        element(
+            "p",
+            "Deletes answers, reports and given points of one learner in all exercises, for ever.",
+            class_="quiet",
+        ),
+        element(
+            "form",
+            *_field("Learner", _input("forgotten", "text", maxlength="200", required="")),
+            element("button", "Look up", type="submit"),
+            id="forget",
+            class_="line-form",
+        ),
+        element("p", id="forget-state", role="status", class_="state-line"),
+        class_="card",
+    )
 
 
 def attempt_page(attempt_id: str, assets: Assets) -> bytes:

@@ -3,7 +3,7 @@
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, Response
 
-from service.api.lookup import Catalogue, exercise_or_404
+from service.api.lookup import Catalogue, exercise_or_404, reached
 from service.web.assets import Assets
 from service.web.attempt_pages import (
     attempt_page,
@@ -26,9 +26,12 @@ def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
 
     @router.get("/attempts")
     async def attempts(request: Request, exercise: str | None = None) -> Response:
-        """The list of attempts."""
-        access.require_tutor(request, exercise or None)
-        return answer(attempts_page(catalogue, assets), "../")
+        """The list of attempts; with a key for certain exercises, of one of them."""
+        caller = access.require_tutor_of_one(request)
+        if exercise:
+            access.require_tutor(request, exercise)
+        shown = reached(catalogue, caller)
+        return answer(attempts_page(shown, assets, of_all=caller.exercises is None), "../")
 
     @router.get("/attempts/{attempt_id}")
     async def attempt(request: Request, attempt_id: str) -> Response:

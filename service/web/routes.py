@@ -10,10 +10,12 @@ from service.api.access import Access
 from service.api.lookup import Catalogue, exercise_or_404
 from service.api.piecewise import PiecewiseResponse
 from service.api.problems import ProblemError
+from service.api.web_pages import WebPages
 from service.web.assets import Asset, load_assets
 from service.web.attempt_routes import attempt_routes
 from service.web.page_headers import PAGE_HEADERS
 from service.web.pages import catalogue_page, exercise_page, play_page
+from service.web.problem_pages import problem_page
 from service.web.tutor_routes import Tutoring, tutor_routes
 
 # Any page may load the element; what it may then ask the service is said by DH_GRADER_CORS_ORIGINS.
@@ -25,8 +27,8 @@ _FOR_EVER: Final = "public, max-age=31536000, immutable"
 _ENTRY: Final = "embed.js"
 
 
-def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> APIRouter:
-    """The pages, ``/embed.js`` for other sites, and the static files.
+def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPages:
+    """The pages, ``/embed.js`` for other sites, the static files, and the pages of problems.
 
     ``tutoring`` says who sees a tutor's pages, too; without it nobody does.
     """
@@ -76,7 +78,7 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> APIRou
             raise ProblemError(HTTPStatus.NOT_FOUND, "The page has no such file.")
         return _file(files[name], files[name].content, _FOR_EVER)
 
-    return router
+    return WebPages(router, problem_page(assets))
 
 
 def _file(asset: Asset, content: bytes, caching: str) -> Response:

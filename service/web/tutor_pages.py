@@ -17,45 +17,19 @@ from service.web.pages import page
 _SCRIPTS: Final = ("page.js",)
 
 
-def tutor_page(catalogue: Catalogue, assets: Assets) -> bytes:
-    """The way to all that there is for tutors."""
-    rows = [
-        element(
-            "tr",
-            element("th", element("a", each.title, href=f"exercises/{each.id}"), scope="row"),
-            element("td", element("code", each.id)),
-            element("td", element("a", "Solution", *_of(each), href=f"tutor/solutions/{each.id}")),
-            element(
-                "td", element("a", "Statistics", *_of(each), href=f"tutor/statistics/{each.id}")
-            ),
-            element(
-                "td", element("a", "Edit", *_of(each), href=f"tutor/editor?exercise={each.id}")
-            ),
-        )
-        for each in catalogue.values()
-    ]
-    head = element("tr", *(element("th", name, scope="col") for name in _COLUMNS))
+def tutor_page(catalogue: Catalogue, assets: Assets, *, of_all: bool = True) -> bytes:
+    """The way to all that there is for tutors.
+
+    Without what is ``of_all`` exercises: the editor and the report on a class.
+    """
+    columns = [*_COLUMNS, _FILE] if of_all else _COLUMNS
+    head = element("tr", *(element("th", name, scope="col") for name in columns))
+    rows = (_row(each, can_edit=of_all) for each in catalogue.values())
     table = element("table", element("thead", head), element("tbody", *rows), class_="plain")
     main = element(
         "main",
         element("h1", "For tutors"),
-        element(
-            "ul",
-            _way("Write an exercise", "tutor/editor", "A file to start from, checked as you type."),
-            _way(
-                "Report on a class",
-                "tutor/class",
-                "Choose the folder that your platform gave you: scores, slips, a page for each "
-                "student.",
-            ),
-            _way(
-                "Recorded attempts",
-                "tutor/attempts",
-                "What students handed in, where the service has a database: read, export, give "
-                "other points, regrade, forget.",
-            ),
-            class_="exercises ways",
-        ),
+        element("ul", *_ways(of_all=of_all), class_="exercises ways"),
         element("h2", "Exercises", id="exercises"),
         element(
             "div", table, class_="wide", tabindex="0", role="region", aria_labelledby="exercises"
@@ -65,7 +39,43 @@ def tutor_page(catalogue: Catalogue, assets: Assets) -> bytes:
     return _page("For tutors · DH Grader", main, assets, "", _SCRIPTS)
 
 
-_COLUMNS: Final = ("Exercise", "Id", "Solution", "Attempts", "File")
+_COLUMNS: Final = ("Exercise", "Id", "Solution", "Attempts")
+_FILE: Final = "File"
+
+
+def _row(exercise: Exercise, *, can_edit: bool) -> Element:
+    name, of = exercise.id, _of(exercise)
+    links = [
+        element("a", "Solution", *of, href=f"tutor/solutions/{name}"),
+        element("a", "Statistics", *of, href=f"tutor/statistics/{name}"),
+    ]
+    if can_edit:
+        links.append(element("a", "Edit", *of, href=f"tutor/editor?exercise={name}"))
+    return element(
+        "tr",
+        element("th", element("a", exercise.title, href=f"exercises/{name}"), scope="row"),
+        element("td", element("code", name)),
+        *(element("td", link) for link in links),
+    )
+
+
+def _ways(*, of_all: bool) -> Iterable[Element]:
+    if of_all:
+        yield _way(
+            "Write an exercise", "tutor/editor", "A file to start from, checked as you type."
+        )
+        yield _way(
+            "Report on a class",
+            "tutor/class",
+            "Choose the folder that your platform gave you: scores, slips, a page for each "
+            "student.",
+        )
+    yield _way(
+        "Recorded attempts",
+        "tutor/attempts",
+        "What students handed in, where the service has a database: read, export, give "
+        "other points, regrade" + (", forget." if of_all else "."),
+    )
 
 
 def _page(title: str, main: Element, assets: Assets, root: str, scripts: Iterable[str]) -> bytes:
@@ -82,13 +92,17 @@ def _way(title: str, address: str, text: str) -> Element:
     return element("li", heading, element("p", text), class_="card")
 
 
-def solution_page(exercise: Exercise, assets: Assets) -> bytes:
-    """The right answer to each part, with the steps that lead to it."""
+def solution_page(exercise: Exercise, assets: Assets, *, of_all: bool = True) -> bytes:
+    """The right answer to each part, with the steps that lead to it.
+
+    The way to the editor is for who may see what is ``of_all`` exercises.
+    """
     root = "../../"
     solution = solve(exercise)
     links = element("p", class_="ways-on")
     links.append(element("a", "The exercise", href=f"{root}exercises/{exercise.id}"))
-    links.append(element("a", "Edit its file", href=f"../editor?exercise={exercise.id}"))
+    if of_all:
+        links.append(element("a", "Edit its file", href=f"../editor?exercise={exercise.id}"))
     main = element(
         "main",
         element("p", "Model solution", class_="kicker"),

@@ -12,7 +12,7 @@ from starlette.responses import HTMLResponse, Response
 from service.api.access import Access
 from service.api.bounded_work import BoundedWork
 from service.api.kept import Kept
-from service.api.lookup import Catalogue, exercise_or_404
+from service.api.lookup import Catalogue, exercise_or_404, reached
 from service.api.piecewise import PiecewiseResponse
 from service.api.problems import ProblemError
 from service.catalogue import Exercise, Robot
@@ -39,37 +39,44 @@ class Tutoring:
 
 def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
     """The pages and the routes that they ask; each asks for the tutor's right first."""
+    access = tutoring.access
 
     async def require(request: Request) -> None:
-        tutoring.access.require_solutions(request, request.path_params.get("exercise_id"))
+        access.require_solutions(request, request.path_params.get("exercise_id"))
 
-    router = APIRouter(
-        prefix="/tutor", include_in_schema=False, dependencies=[Depends(require, scope="function")]
-    )
+    router = APIRouter(prefix="/tutor", include_in_schema=False)
     work = BoundedWork()
     folder = ExerciseFolder(tutoring.folders, tutoring.editor_dir)
-    router.include_router(_solution_routes(catalogue, assets))
-    router.include_router(editor_routes(catalogue, assets, folder, work))
-    router.include_router(class_routes(catalogue, assets, work))
+    for routes in (
+        _solution_routes(catalogue, assets, access),
+        editor_routes(catalogue, assets, folder, work),
+        class_routes(catalogue, assets, work),
+    ):
+        router.include_router(routes, dependencies=[Depends(require, scope="function")])
 
     @router.get("")
-    async def home() -> Response:
-        """What there is for tutors."""
-        return HTMLResponse(tutor_page(catalogue, assets), headers=PRIVATE_HEADERS)
+    async def home(request: Request) -> Response:
+        """What there is for tutors; with a key for certain exercises, for tutors of these."""
+        caller = access.require_solutions_of_some(request)
+        shown = reached(catalogue, caller)
+        content = tutor_page(shown, assets, of_all=caller.exercises is None)
+        return HTMLResponse(content, headers=PRIVATE_HEADERS)
 
     return router
 
 
-def _solution_routes(catalogue: Catalogue, assets: Assets) -> APIRouter:
+def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> APIRouter:
     router = APIRouter()
     solutions, figures = Kept(), Kept()
 
     @router.get("/solutions/{exercise_id}")
-    async def solution(exercise_id: str) -> Response:
+    async def solution(request: Request, exercise_id: str) -> Response:
         """The model solution of an exercise."""
         exercise = exercise_or_404(catalogue, exercise_id)
-        key = (exercise.id, exercise.version, exercise.title)
-        content = await solutions.of(key, partial(solution_page, exercise, assets))
+        of_all = access.require_solutions_of_some(request).exercises is None
+        key = (exercise.id, exercise.version, exercise.title, of_all)
+        drawn = partial(solution_page, exercise, assets, of_all=of_all)
+        content = await solutions.of(key, drawn)
         return PiecewiseResponse(content, headers=PRIVATE_HEADERS, media_type="text/html")
 
     @router.get("/solutions/{exercise_id}/frames.svg")

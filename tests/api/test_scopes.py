@@ -3,12 +3,14 @@
 import asyncio
 import gzip
 import json
+import re
 from collections.abc import AsyncIterator, Iterator, Mapping
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
+from urllib.parse import urljoin, urlsplit
 
 import httpx
 import pytest
@@ -142,7 +144,8 @@ def guarded(
     access = Access(OPEN_HERE, solutions=None, read_attempts=None, keys=ring)
     editor_dir = folder / "exercises"
     editor_dir.mkdir()
-    pages = web_routes(catalogue, Tutoring(access, (shipped_folder(),), editor_dir))
+    tutoring = Tutoring(access, (shipped_folder(),), editor_dir, records=True)
+    pages = web_routes(catalogue, tutoring)
     app = application(
         catalogue, ("https://course.example.edu",), access=access, store=store, pages=pages
     )
@@ -287,11 +290,72 @@ def test_each_of_many_submissions_is_held_to_the_exercises_of_the_key(guarded: G
     assert guarded.ask("GET", f"/v1/attempts?exercise={EXERCISE}", elsewhere).status_code == 403
 
 
+def test_a_tutor_of_one_exercise_finds_the_pages_of_it(guarded: Guarded) -> None:
+    [elsewhere], [tutor] = guarded.credentials["other exercise"], guarded.credentials["`tutor`"]
+
+    def links(path: str, key: str) -> set[str]:
+        page = guarded.ask("GET", path, key)
+        assert page.status_code == 200
+        found = re.findall(r'<a href="([^"]*)', page.text.partition("<main")[2])
+        return {urlsplit(urljoin(f"http://host{path}", each)).path for each in found}
+
+    pages = links("/tutor", elsewhere) | links(f"/tutor/solutions/{OTHER}", elsewhere)
+    assert {f"/tutor/{each}/{OTHER}" for each in ("solutions", "statistics")} <= pages
+    assert "/tutor/attempts" in pages
+    # Whatever they lead to is open to the key.
+    assert {path: guarded.ask("GET", path, elsewhere).status_code for path in pages} == (
+        dict.fromkeys(pages, 200)
+    )
+    assert {"/tutor/editor", "/tutor/class"} <= links("/tutor", tutor)
+    assert "/tutor/editor" in links(f"/tutor/solutions/{OTHER}", tutor)
+    # The list is of its exercise, and deletes nobody in all of them.
+    attempts = guarded.ask("GET", "/tutor/attempts", elsewhere).text
+    everything = guarded.ask("GET", "/tutor/attempts", tutor).text
+    for text in ("All exercises", EXERCISE, "Forget a learner"):
+        assert (text in attempts, text in everything) == (False, True)
+    assert guarded.ask("GET", f"/tutor/attempts?exercise={EXERCISE}", elsewhere).status_code == 403
+    assert 'href="tutor"' in guarded.ask("GET", "/", elsewhere).text
+
+
+def test_whoever_reads_in_a_browser_gets_a_page_that_says_what_to_do(guarded: Guarded) -> None:
+    reader = {"Accept": "text/html,application/xhtml+xml,*/*;q=0.8"}
+    [record], [elsewhere] = guarded.credentials["`record`"], guarded.credentials["other exercise"]
+    [tutor], expired = guarded.credentials["`tutor`"], guarded.credentials["not valid"][0]
+    create = 'dh-grader keys create "Your name" --scope tutor'
+    for key, path, status, said in [
+        ("", "/tutor", 401, create),
+        ("", f"/tutor/solutions/{EXERCISE}", 401, "as the password"),
+        (expired, "/tutor/attempts", 401, "The key has expired."),
+        (record, "/tutor/class", 403, create),
+        (elsewhere, f"/tutor/statistics/{EXERCISE}", 403, 'href="../../tutor"'),
+        (tutor, "/tutor/statistics/nothing", 404, 'href="../../"'),
+        (tutor, "/tutor/nothing", 404, 'href="../"'),
+        ("", "/exercises/<b>", 404, 'href="../"'),
+    ]:
+        page = guarded.ask("GET", path, key, headers=reader)
+        assert (path, page.status_code) == (path, status)
+        assert page.headers["Content-Type"] == "text/html; charset=utf-8"
+        assert "script-src 'self'" in page.headers["Content-Security-Policy"]
+        assert said in page.text.partition("<main")[2].partition("</main")[0]
+        assert "<b>" not in page.text
+        # Its style is found from wherever it stands.
+        [style] = re.findall(r'href="([^"]*static/page-[^"]*css)', page.text)
+        assert guarded.ask("GET", urljoin(path, style)).status_code == 200
+        program = guarded.ask("GET", path, key)
+        assert program.headers["Content-Type"] == "application/problem+json"
+        for each in (page, program):
+            lines = each.headers.get_list("WWW-Authenticate")
+            assert [line.split()[0] for line in lines] == ["Basic", "Bearer"][: 2 * (status == 401)]
+    interface = guarded.ask("GET", "/v1/attempts", headers=reader)
+    assert interface.headers["Content-Type"] == "application/problem+json"
+
+
 def test_a_browser_sends_the_key_as_a_password(guarded: Guarded) -> None:
     [tutor] = guarded.credentials["`tutor`"]
     asked = guarded.ask("GET", "/tutor")
-    # First, and all that follows in the form of its parameters: else Chromium does not ask.
-    assert asked.headers["WWW-Authenticate"].startswith("Basic realm=")
+    # A line for each: of several in one line a browser may know none.
+    password, bearer = asked.headers.get_list("WWW-Authenticate")
+    assert (password[:12], "Bearer" in password, bearer) == ("Basic realm=", False, "Bearer")
     graded = guarded.ask("POST", f"/v1/exercises/{EXERCISE}/grade", json=ANSWERS)
     assert graded.headers["WWW-Authenticate"] == "Bearer"
     assert guarded.ask("GET", "/tutor", auth=("anybody", tutor)).status_code == 200

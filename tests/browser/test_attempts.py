@@ -26,6 +26,7 @@ from service.catalogue import shipped_folder
 from tests.api.serving import ROOT, announced_port
 from tests.browser.conftest import Visit
 from tests.browser.hostile import PICTURE
+from tests.browser.steps import cells
 from tests.browser.test_pages import violations
 from tests.browser.test_tutor import NARROW, wide
 from tests.guards import ANSWER
@@ -40,16 +41,24 @@ ANSWERS: list[tuple[str, Any]] = [("ada", RIGHT), ("grace", WRONG), (PICTURE, WR
 
 @dataclass
 class Recording:
-    """A service that records for whoever has the key, and the folder of its exercises."""
+    """A service that records for whoever has the key, and the folder of its exercises.
+
+    ``narrow_key`` is for one exercise.
+    """
 
     address: str
     exercises: Path
     key: str
+    narrow_key: str
 
     @property
     def visitor(self) -> dict[str, Any]:
         """A browser in which the key is given when it asks for a password."""
-        password = {"username": "tutor", "password": self.key, "origin": self.address}
+        return self.visitor_with(self.key)
+
+    def visitor_with(self, key: str) -> dict[str, Any]:
+        """The same with another key."""
+        password = {"username": "tutor", "password": key, "origin": self.address}
         return {"viewport": NARROW, "http_credentials": password}
 
     def record(self, learner: str, table: Any) -> str:
@@ -74,15 +83,21 @@ def recording(tmp_path: Path) -> Iterator[Recording]:
     folder.mkdir()
     text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
     (folder / "scara.toml").write_text(text, encoding="utf-8")
-    secret, key, now = "0123456789abcdef" * 4, new_key_text(), datetime.now(UTC)
+    secret, now = "0123456789abcdef" * 4, datetime.now(UTC)
     database = str(tmp_path / "attempts.db")
     store = AttemptStore.open(database)
-    digest = Secret(secret).key_digest(key)
-    scopes = (Scope.RECORD, Scope.TUTOR)
     until = now + timedelta(days=1)
-    in_transaction(
-        store.engine, lambda connection: add_key(connection, "", digest, scopes, None, now, until)
-    )
+
+    def key(*scopes: Scope, exercises: list[str] | None = None) -> str:
+        text = new_key_text()
+        digest = Secret(secret).key_digest(text)
+        in_transaction(
+            store.engine,
+            lambda connection: add_key(connection, "", digest, scopes, exercises, now, until),
+        )
+        return text
+
+    keys = key(Scope.RECORD, Scope.TUTOR), key(Scope.TUTOR, exercises=["scara"])
     store.close()
     log = tmp_path / "log"
     command = [sys.executable, "-m", "service", "serve", "--port", "0"]
@@ -100,7 +115,7 @@ def recording(tmp_path: Path) -> Iterator[Recording]:
         ) as process,
     ):
         try:
-            yield Recording(f"http://127.0.0.1:{announced_port(process, log)}", folder, key)
+            yield Recording(f"http://127.0.0.1:{announced_port(process, log)}", folder, *keys)
         finally:
             process.terminate()
             process.wait(timeout=ANSWER)
@@ -122,6 +137,26 @@ def test_a_tutor_works_with_recorded_attempts(
     expect(page.get_by_text("Nobody has handed in yet")).to_be_visible()
     for learner, table in ANSWERS:
         recording.record(learner, table)
+
+    # Who has a key for this exercise alone sees the same of it at once.
+    other = visit(**recording.visitor_with(recording.narrow_key)).page
+    other.goto(f"{recording.address}/tutor")
+    other.get_by_role("link", name="Recorded attempts").click()
+    expect(rows(other)).to_have_count(3)
+    other.close()
+
+    # A student, who has none, is told where to go, and nothing of headers.
+    student = visit()
+    student.page.goto(f"{recording.address}/exercises/scara")
+    cells(student.page).first.fill("a1")
+    student.page.get_by_role("button", name="Check").click()
+    sentence = "Open this exercise from your course's site: here it needs a key."
+    expect(student.page.get_by_text(sentence).first).to_be_visible()
+    expect(student.page.get_by_text("Authorization")).to_have_count(0)
+    student.page.close()
+    assert student.complaints
+    assert all("401" in each for each in student.complaints)
+    student.complaints.clear()
 
     # Filters, and an address that keeps them.
     page.get_by_label("Exercise").select_option("scara")

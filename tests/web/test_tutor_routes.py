@@ -53,12 +53,19 @@ class Tutor:
         return asyncio.run(self.asked(method, path, host, **more))
 
     async def asked(
-        self, method: str, path: str, host: str = "127.0.0.1:8000", **more: Any
+        self,
+        method: str,
+        path: str,
+        host: str = "127.0.0.1:8000",
+        accept: str = "*/*",
+        **more: Any,
     ) -> httpx.Response:
         transport = httpx.ASGITransport(self.app)
         address = "http://127.0.0.1:8000"
         async with httpx.AsyncClient(transport=transport, base_url=address) as client:
-            return await client.request(method, path, headers={"host": host}, **more)
+            return await client.request(
+                method, path, headers={"host": host, "accept": accept}, **more
+            )
 
     def check(self, text: str, exercise: str = "scara") -> dict[str, Any]:
         answer = self.ask("POST", "/tutor/check", json={"id": exercise, "text": text})
@@ -81,6 +88,11 @@ def test_no_page_or_file_of_a_tutor_s_is_for_anybody_else(tutor: Tutor) -> None:
         answer = tutor.ask(method, filled, "grader.example.edu")
         assert (answer.status_code, filled) == (403, filled)
         assert "theta" not in answer.text
+    # A person is told of keys, not of the setting that gives solutions to everybody.
+    page = tutor.ask("GET", "/tutor", "grader.example.edu", accept="text/html")
+    assert (page.status_code, "<main" in page.text) == (403, True)
+    assert "keys create" in page.text
+    assert "DH_GRADER_SOLUTIONS=true" not in page.text
     assert 'href="tutor"' not in tutor.ask("GET", "/", "grader.example.edu").text
     assert 'href="tutor"' in tutor.ask("GET", "/").text
 

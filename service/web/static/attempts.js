@@ -138,5 +138,6 @@ const asked = new URLSearchParams(location.search);
 for (const name of FIELDS) if (asked.has(name)) byId(name).value = asked.get(name);
 form.addEventListener("submit", changed);
 form.addEventListener("change", changed);
-byId("forget").addEventListener("submit", lookUp);
+// Not there for a key that is for certain exercises.
+byId("forget")?.addEventListener("submit", lookUp);
 show();

@@ -2,6 +2,8 @@
 
 // Longer than any grading: whoever waits so long has no connection.
 const PATIENCE = 20_000;
+// A student has no key: that is the course's site's.
+const KEY_NEEDED = "Open this exercise from your course's site: here it needs a key.";
 
 /** A request that failed. `kind` is "offline", "busy", "refused" or "failed". */
 export class ServiceError extends Error {
@@ -72,5 +74,6 @@ function failure(status, problem) {
     return new ServiceError("busy", "The service has a lot to do. Try again in a few seconds.", status);
   }
   const kind = status >= 500 ? "failed" : "refused";
+  if (problem.type?.endsWith("key-needed")) return new ServiceError(kind, KEY_NEEDED, status);
   return new ServiceError(kind, problem.detail ?? `The service answered with the status ${status}.`, status);
 }
