@@ -151,6 +151,10 @@ def test_a_regrade_is_tried_before_it_is_done(run: Run, course: list[str]) -> No
     assert "grace, attempt 1:" in tried
     assert "table partial, other points" in tried
     assert run("attempts", "export").output == before
+    run("attempts", "override", course[2], "7.5", "--reason", "r")
+    tried = " ".join(run("attempts", "regrade", "scara").output.split())
+    assert "table partial, other points; a tutor's 7.5 stays)" in tried
+    assert "2 would change, of which 1 would keep the points of a tutor." in tried
     assert "Regraded: 3." in run("attempts", "regrade", "scara", "--apply").output
     assert "0 attempts were graded by another" in run("attempts", "regrade", "scara").output
     lines = [
