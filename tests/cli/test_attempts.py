@@ -96,6 +96,18 @@ def test_the_newest_attempts_are_listed(run: Run, course: list[str]) -> None:
     assert "links: nobody answered" in told
 
 
+def test_shares_are_rounded(
+    run: Run, course: list[str], tmp_path: Path, catalogue: Mapping[str, Exercise]
+) -> None:
+    store = AttemptStore.open(str(tmp_path / "attempts.db"))
+    recorded_all(store, [new_attempt(catalogue["scara"], each, RIGHT) for each in "bcd"])
+    store.close()
+    # Four of six tables and twists.
+    told = run("attempts", "statistics", "scara").output
+    assert "table: 67 % right of 6" in told
+    assert "alpha 67 %" in told
+
+
 def test_every_attempt_is_exported_and_the_one_that_counts_for_gradebooks(
     run: Run, course: list[str], tmp_path: Path
 ) -> None:
