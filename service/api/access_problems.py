@@ -69,8 +69,8 @@ def other_exercise() -> ProblemError:
     """The key is for other exercises."""
     return ProblemError(
         HTTPStatus.FORBIDDEN,
-        "This key is for certain exercises. Name one of them; others, and all at once, are not "
-        "for it.",
+        "This key or token is for certain exercises. Name one of them; others, and all at once, "
+        "are not for it.",
         "other-exercise",
         "The key is for other exercises",
     )
@@ -136,7 +136,7 @@ def too_often(seconds: int) -> ProblemError:
     """More requests than the limit of a key or of an address."""
     return ProblemError(
         HTTPStatus.TOO_MANY_REQUESTS,
-        f"That are more requests than are allowed. Come again in {seconds} seconds.",
+        f"These are more requests than are allowed. Come again in {seconds} seconds.",
         "too-often",
         "Too many requests",
         headers={"Retry-After": str(seconds)},

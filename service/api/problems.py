@@ -104,6 +104,10 @@ def invalid(details: Sequence[Mapping[str, Any]], fields: Sequence[str] = ()) ->
     )
 
 
+# A longer pattern says nothing to a reader: it is that of a line that can be told from all others.
+_LONGEST_PATTERN: Final = 200
+
+
 def _pointer(location: Sequence[str | int]) -> str:
     """A JSON pointer as a URI fragment, as RFC 9457 writes it; overlong keys are cut."""
     steps = (str(step)[:60].replace("~", "~0").replace("/", "~1") for step in location)
@@ -120,7 +124,9 @@ def _message(detail: Mapping[str, Any], fields: Sequence[str]) -> str:
     if detail["type"] == "too_long" and "ctx" in detail and detail["loc"]:
         most, here = detail["ctx"]["max_length"], detail["ctx"]["actual_length"]
         return f"At most {most} {detail['loc'][-1]} may be sent at once; these are {here}."
-    message: str = detail["msg"]
+    if detail["type"] == "string_pattern_mismatch" and len(detail["msg"]) > _LONGEST_PATTERN:
+        return "Write one line of visible characters, with single blanks between words."
+    message: str = detail["msg"].removeprefix("Value error, ")
     return message if message.endswith((".", "?")) else f"{message}."
 
 

@@ -94,6 +94,8 @@ def list_attempts(
     with database() as engine, engine.connect() as connection:
         shown, following = page(connection, wanted, None, limit)
     screen = stdout()
+    if not shown:
+        screen.print(_nothing(exercise))
     for each in shown:
         told = (
             each.id,
@@ -116,6 +118,9 @@ def show_statistics(exercise: ExerciseArgument) -> None:
     with database() as engine, engine.connect() as connection:
         told = exercise_statistics(connection, AttemptFilter(exercise))
     screen = stdout()
+    if not told.attempts:
+        screen.print(_nothing(exercise))
+        return
     screen.print(f"{exercise}: {told.attempts} attempts of {told.learners} learners")
     for part in told.parts:
         right = "nobody answered"
@@ -130,6 +135,14 @@ def show_statistics(exercise: ExerciseArgument) -> None:
     for group in told.identical[:_MOST_SLIPS]:
         among = ", ".join(visible(each) for each in group.among)
         screen.print(f"{group.learners} learners sent the same wrong answers: {among}")
+
+
+def _nothing(exercise: str | None) -> str:
+    """That no attempts are recorded; with the exercises there are, if none has this name."""
+    found = "No attempts are recorded."
+    if exercise is None or exercise in (known := installed()):
+        return found
+    return f"{found} No exercise is called {visible(exercise)}; there are {', '.join(known)}."
 
 
 def _share(share: float | None) -> str:
@@ -186,9 +199,11 @@ def regrade(
 def override_points(
     attempt: Annotated[str, typer.Argument(help="The id of an attempt.", callback=encodable)],
     points: Annotated[
-        float | None, typer.Argument(help="Its points; leave them out to withdraw earlier ones.")
+        float | None, typer.Argument(help="Its points; without them earlier ones are withdrawn.")
     ] = None,
-    reason_given: Annotated[str, typer.Option("--reason", help="Why.", callback=encodable)] = "",
+    reason_given: Annotated[
+        str, typer.Option("--reason", help="Why; always needed.", callback=encodable)
+    ] = "",
     author: Annotated[
         str | None, typer.Option("--by", help="Who. [your user name]", callback=encodable)
     ] = None,
@@ -225,7 +240,8 @@ def forget_learner(
         if not found.attempts:
             give_up("Nothing is recorded of this learner.")
         if not yes:
-            typer.confirm(f"Delete {_told(found)} for ever?", abort=True)
+            question = f"Forget {visible(learner)}? For ever deleted are {_told(found)}."
+            typer.confirm(question, abort=True)
         deleted = in_transaction(engine, lambda connection: forget(connection, learner))
         overwrite_deleted(engine)
     typer.echo(f"Deleted: {_told(deleted)}.")

@@ -15,7 +15,7 @@ from service.authoring import UnusableIdError, template
 from service.catalogue import Exercise
 from service.catalogue.robot import Robot
 from service.cli import check
-from service.cli.terminal import give_up, installed, installed_exercise, stdout
+from service.cli.terminal import give_up, installed, installed_exercise, installed_file, stdout
 from service.figures.figure import exercise_figure, reference_figure
 from service.figures.style import Theme
 from service.solutions import ModelSolution, Shown, solve
@@ -108,10 +108,14 @@ def new_exercise(
     output: Annotated[
         Path, typer.Option(metavar="FOLDER", help="Where to write it; made if need be.")
     ] = Path(),
+    like: Annotated[
+        str | None,
+        typer.Option(metavar="ID", help="Copy this exercise of the catalogue, to change it."),
+    ] = None,
 ) -> None:
     """Write a commented exercise file to start from. It passes `exercises check` as it is."""
     try:
-        text = template(exercise_id)
+        text = template(exercise_id, None if like is None else installed_file(like))
     except UnusableIdError as error:
         give_up(str(error))
     file = output / f"{exercise_id}.toml"

@@ -3,6 +3,7 @@
 import os
 import sys
 from collections.abc import Mapping
+from pathlib import Path
 from typing import NoReturn
 
 from rich.console import Console
@@ -54,5 +55,10 @@ def installed_exercise(exercise_id: str) -> Exercise:
 
     Raises SettingsError, CatalogueError or UnknownExerciseError.
     """
+    return load_exercise(installed_file(exercise_id))
+
+
+def installed_file(exercise_id: str) -> Path:
+    """The file of the exercise of this installation with this id. Raises the same errors."""
     files = {file.stem: file for file in exercise_files(*load_settings().exercises_dir)}
-    return load_exercise(find_exercise(files, exercise_id))
+    return find_exercise(files, exercise_id)

@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 from typer.testing import Result
 
+from service.catalogue import shipped_folder
+
 Run = Callable[..., Result]
 
 
@@ -39,6 +41,16 @@ def test_a_new_file_passes_as_it_is(run: Run, tmp_path: Path) -> None:
     assert (result.exit_code, result.stderr) == (0, "")
     lazy = "a lazy answer earns 16 % of table, 7 % of pose"
     assert result.stdout == f"elbow-arm: ok, 2 parts, 4 checks; {lazy}\n"
+
+
+def test_a_copy_of_an_exercise_is_graded_like_it(run: Run, tmp_path: Path) -> None:
+    run("exercises", "new", "scara-2026", "--like", "scara", "--output", tmp_path)
+    copy = tmp_path / "scara-2026.toml"
+    assert copy.read_bytes() == (shipped_folder() / "scara.toml").read_bytes()
+    assert run("exercises", "check", "--strict", copy).exit_code == 0
+    unknown = run("exercises", "new", "scara-2027", "--like", "scra", "--output", tmp_path)
+    assert (unknown.exit_code, "Known are: " in unknown.stderr) == (2, True)
+    assert list(tmp_path.iterdir()) == [copy]
 
 
 def test_a_file_that_is_there_stays(run: Run, arm: Path) -> None:
