@@ -14,7 +14,7 @@ from sqlalchemy import Connection, Engine
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.access.caller import Caller, Scope
-from service.access.key_table import any_key, key_with, note_use
+from service.access.key_table import any_key, fits, key_with, note_use
 from service.access.key_text import PREFIX, is_spelt_right
 from service.access.keys import CredentialError, Key, KeysUnreachableError, Secret
 from service.attempts.database import in_transaction
@@ -55,6 +55,7 @@ class KeyRing:
         self._asking: dict[tuple[str, str], asyncio.Task[Key | None]] = {}
         self._noted: dict[str, datetime] = {}
         self.has_keys = self._read(any_key)
+        self.has_their_secret = secret is None or self._read(lambda each: fits(each, secret))
         self._look_again = monotonic() + seconds
         # No connection may be carried into processes that are started later.
         engine.dispose()

@@ -7,16 +7,32 @@ from dataclasses import asdict
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Connection, Row, exists, or_, select
+from sqlalchemy import Connection, Row, delete, exists, or_, select
 
 from service.access.caller import Scope
-from service.access.keys import Key
-from service.attempts.tables import keys
+from service.access.keys import Key, Secret
+from service.attempts.recording import insert_or_ignore
+from service.attempts.tables import key_secrets, keys
 
 
 def any_key(connection: Connection) -> bool:
     """Whether a key has ever been made."""
     return bool(connection.scalar(select(exists(select(keys.c.id)))))
+
+
+def fits(connection: Connection, secret: Secret) -> bool:
+    """Whether the keys were made with this secret; so it is where the database does not tell."""
+    return connection.scalar(select(key_secrets.c.digest)) in (None, secret.check)
+
+
+def settle(connection: Connection, secret: Secret, now: datetime) -> bool:
+    """Have keys be made with this secret; False where some are valid that another one has made."""
+    valid = exists(select(keys.c.id).where(keys.c.revoked_at.is_(None), keys.c.expires_at > now))
+    if not connection.scalar(select(valid)):
+        connection.execute(delete(key_secrets))
+    new = insert_or_ignore(key_secrets)[connection.dialect.name]
+    connection.execute(new.values(id=1, digest=secret.check))
+    return fits(connection, secret)
 
 
 def add_key(

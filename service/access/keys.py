@@ -41,6 +41,13 @@ class Key:
         return Caller(self.scopes | {Scope.GRADE}, self.exercises, key_id=self.id)
 
 
+WRONG_SECRET: Final = (
+    "This is not the secret with which the keys in the database were made. Set DH_GRADER_SECRET, "
+    "or DH_GRADER_SECRET_FILE, to that one. If it is lost, revoke every key (dh-grader keys list "
+    "shows them), and create new ones."
+)
+
+
 class Keys(Protocol):
     """The keys of an installation."""
 
@@ -66,6 +73,11 @@ class Secret:
     def key_digest(self, key: str) -> str:
         """What is kept of a key: without the secret nobody finds a key that has it."""
         return hmac.digest(self._derived("keys"), key.encode(), "sha256").hex()
+
+    @property
+    def check(self) -> str:
+        """By what another secret is known; it tells nothing of the keys."""
+        return self._derived("check").hex()
 
     @property
     def token_secret(self) -> bytes:

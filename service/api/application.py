@@ -6,6 +6,7 @@ from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING, Any
 
 from fastapi import FastAPI
+from fastapi.routing import APIRoute
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp
 
@@ -29,6 +30,7 @@ from service.api.boundary import (
     EXPOSED_HEADERS,
     BoundaryMiddleware,
     NamingMiddleware,
+    RefusalNoting,
     RouteNoting,
 )
 from service.api.compression import PackedGets
@@ -77,6 +79,8 @@ class _Api(FastAPI):
         self._access = access
         self._rates = rates
         self._monitor = monitor
+        # The routes for programs, by which refusals are counted.
+        self.interface: list[APIRoute] = []
         super().__init__(
             **HEADING,
             version=VERSION,
@@ -123,7 +127,7 @@ class _Api(FastAPI):
                 expose_headers=EXPOSED_HEADERS,
             )
         if self._monitor is not None:
-            app = self._monitor.watched(app)
+            app = self._monitor.watched(RefusalNoting(app, self.interface))
         return NamingMiddleware(app)
 
     def openapi(self) -> dict[str, Any]:
@@ -171,6 +175,7 @@ def application(
         tokens.routes(catalogue, access),
     ):
         app.include_router(router, responses=other_failures())
+        app.interface += (route for route in router.routes if isinstance(route, APIRoute))
     app.include_router(reference.routes())
     if pages is not None:
         app.include_router(pages.routes)

@@ -1,8 +1,10 @@
 """The outermost layers, which every request and answer passes."""
 
+from collections.abc import Sequence
 from typing import Final
 
 from fastapi import Request
+from fastapi.routing import APIRoute
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -49,6 +51,31 @@ class RouteNoting:
             request = current_request()
             if request is not None:
                 request.route = getattr(scope.get("route"), "path", "")
+
+
+class RefusalNoting:
+    """Notes which of these routes a request was for that a layer before the routes refused."""
+
+    def __init__(self, app: ASGIApp, routes: Sequence[APIRoute]) -> None:
+        self.app = app
+        self._routes = routes
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one ASGI connection."""
+        try:
+            await self.app(scope, receive, send)
+        finally:
+            request = current_request()
+            if request is not None and not request.route:
+                request.route = self._route(scope["method"], scope["path"])
+
+    def _route(self, method: str, path: str) -> str:
+        found = (
+            route.path
+            for route in self._routes
+            if method in (route.methods or ()) and route.path_regex.match(path)
+        )
+        return next(found, "")
 
 
 class BoundaryMiddleware:

@@ -10,7 +10,7 @@ from alembic.util import CommandError
 from sqlalchemy import Connection, Engine, create_engine, event, make_url, text
 from sqlalchemy.exc import ArgumentError, SQLAlchemyError
 
-from service.attempts.database_file import DatabaseFile
+from service.attempts.database_file import DatabaseFile, make_private
 from service.attempts.errors import UnusableDatabaseError
 
 R = TypeVar("R")
@@ -37,8 +37,10 @@ def open_database(url: str, *, create: bool = True) -> Engine:
         # The URL may hold a password: it is not repeated.
         raise UnusableDatabaseError("is no URL of a database and no path of a file") from error
     is_sqlite = engine.dialect.name == "sqlite"
-    if is_sqlite and not create and not _is_there(engine.url.database or ""):
-        raise UnusableDatabaseError(f"{safe_url(engine)}: there is no such file")
+    if is_sqlite and not _is_there(path := engine.url.database or ""):
+        if not create:
+            raise UnusableDatabaseError(f"{safe_url(engine)}: there is no such file")
+        make_private(path)
     try:
         file = DatabaseFile(engine) if is_sqlite else None
         with engine.connect() as connection:

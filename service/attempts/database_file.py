@@ -1,10 +1,15 @@
 """The file of an SQLite database, which must stay in its place while it is open."""
 
+import os
+from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from sqlalchemy import Connection, Engine, event
 from sqlalchemy.exc import SQLAlchemyError
+
+# Read and written by its owner alone: it holds what learners have answered.
+_OWN: Final = 0o600
 
 
 class MisplacedFileError(SQLAlchemyError):
@@ -39,6 +44,16 @@ class DatabaseFile:
     def _check(self, *_: Any) -> None:
         if self._identity is not None and _identity(self._path) != self._identity:
             raise MisplacedFileError("the file of the database was deleted or replaced")
+
+
+def make_private(path: str) -> None:
+    """Make an empty file that only its owner reads, where there is none.
+
+    An empty file is an empty database, and SQLite gives the files beside it the same mode. A file
+    that is there keeps its own; where none can be made, SQLite says why.
+    """
+    with suppress(OSError):
+        os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, _OWN))
 
 
 def _identity(path: Path) -> tuple[int, int] | None:

@@ -47,7 +47,10 @@ _LONGEST: Final = 0.5
 
 @dataclass(frozen=True, slots=True)
 class RegradedAttempt:
-    """An attempt before and after; ``reasons`` names the parts that are judged otherwise."""
+    """An attempt before and after; ``reasons`` names the parts that are judged otherwise.
+
+    Where a tutor has ``awarded`` points, these stay and count.
+    """
 
     id: str
     learner: str
@@ -55,11 +58,12 @@ class RegradedAttempt:
     before: float
     after: float
     max_points: float
+    awarded: float | None
     reasons: tuple[str, ...]
 
     @property
     def is_changed(self) -> bool:
-        """Whether the learner gets another result."""
+        """Whether the learner gets another report, or other points by it."""
         return self.before != self.after or bool(self.reasons)
 
 
@@ -189,7 +193,14 @@ class Regrading:
         after = round(report.points * row.worth, 6)
         reasons = tuple(_reasons(_results(before), report.parts))
         change = RegradedAttempt(
-            row.id, row.learner, row.ordinal, row.points, after, report.max_points, reasons
+            row.id,
+            row.learner,
+            row.ordinal,
+            row.points,
+            after,
+            report.max_points,
+            row.awarded,
+            reasons,
         )
         return change, report
 

@@ -156,3 +156,12 @@ keys = Table(
     Column("revoked_at", UtcTime),
     Column("last_used_at", UtcTime),
 )
+
+# One row, from the first key on: what a secret makes of a constant. A database of an earlier
+# version has keys and no row until the next key is made.
+key_secrets = Table(
+    "key_secrets",
+    metadata,
+    Column("id", Integer, primary_key=True, autoincrement=False),
+    Column("digest", String(64), nullable=False),
+)

@@ -30,7 +30,7 @@ from service.attempts.tutoring import (
 )
 from service.cli.output import write
 from service.cli.terminal import give_up, installed, installed_exercise, stdout
-from service.formats.shared.plain_text import number, percent, visible
+from service.formats.shared.plain_text import number, visible, whole_percent
 from service.settings import load_settings
 
 commands = typer.Typer(
@@ -125,7 +125,7 @@ def show_statistics(exercise: ExerciseArgument) -> None:
     for part in told.parts:
         right = "nobody answered"
         if part.share is not None:
-            right = f"{percent(part.share)} right of {part.answered}"
+            right = f"{whole_percent(part.share)} right of {part.answered}"
         screen.print(f"{part.part}: {right}")
         for row in part.rows:
             cells = "  ".join(f"{cell.label} {_share(cell.share)}" for cell in row.cells)
@@ -146,7 +146,7 @@ def _nothing(exercise: str | None) -> str:
 
 
 def _share(share: float | None) -> str:
-    return "-" if share is None else percent(share)
+    return "-" if share is None else whole_percent(share)
 
 
 @commands.command("export")

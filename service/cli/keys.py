@@ -4,11 +4,12 @@ from datetime import UTC, datetime, timedelta
 from typing import Annotated
 
 import typer
+from sqlalchemy import Connection
 
 from service.access.caller import Scope
-from service.access.key_table import add_key, all_keys, revoke_key
+from service.access.key_table import add_key, all_keys, fits, revoke_key, settle
 from service.access.key_text import new_key_text
-from service.access.keys import Key
+from service.access.keys import WRONG_SECRET, Key
 from service.attempts.database import in_transaction
 from service.cli.attempts import database, encodable
 from service.cli.terminal import give_up, installed_exercise, stdout
@@ -51,19 +52,18 @@ def create(
     text = new_key_text()
     digest = secret.key_digest(text)
     now = datetime.now(UTC)
+    until = now + timedelta(days=days)
+    scopes = {Scope.GRADE, *(scope or ())}
+
+    def added(connection: Connection) -> Key | None:
+        if not settle(connection, secret, now):
+            return None
+        return add_key(connection, name[:200], digest, scopes, bound, now, until)
+
     with database(create=True) as engine:
-        key = in_transaction(
-            engine,
-            lambda connection: add_key(
-                connection,
-                name[:200],
-                digest,
-                {Scope.GRADE, *(scope or ())},
-                bound,
-                now,
-                now + timedelta(days=days),
-            ),
-        )
+        key = in_transaction(engine, added)
+    if key is None:
+        give_up(WRONG_SECRET)
     # Alone on standard output, for a script that puts it where it belongs.
     typer.echo(text)
     typer.echo(
@@ -75,8 +75,10 @@ def create(
 @commands.command("list")
 def list_keys() -> None:
     """List the keys, without their texts."""
+    secret = load_settings().known_secret()
     with database() as engine, engine.connect() as connection:
         found = all_keys(connection)
+        has_their_secret = secret is None or fits(connection, secret)
     now = datetime.now(UTC)
     screen = stdout()
     for key in found:
@@ -84,6 +86,9 @@ def list_keys() -> None:
         used = f"used {key.last_used_at:%Y-%m-%d %H:%M}" if key.last_used_at else "never used"
         told = (key.id, visible(key.name), " ".join(sorted(key.scopes)), bound, _state(key, now))
         screen.print("  ".join((*told, used)), soft_wrap=True)
+    # After the list: whoever has lost the secret finds there what to revoke.
+    if not has_their_secret:
+        give_up(WRONG_SECRET)
 
 
 @commands.command("revoke")

@@ -37,11 +37,16 @@ def show_what_would_change(engine: Engine, exercise: Exercise) -> None:
     for each in changes[:_MOST_SHOWN]:
         points = f"{number(each.before)} → {number(each.after)} of {number(each.max_points)}"
         why = "; ".join(each.reasons) or "what a late attempt earns"
+        if each.awarded is not None:
+            why += f"; a tutor's {number(each.awarded)} stays"
         screen.print(f"{visible(each.learner)}, attempt {each.ordinal or '-'}: {points} ({why})")
     if len(changes) > _MOST_SHOWN:
         screen.print(f"… and {len(changes) - _MOST_SHOWN} more")
+    kept = sum(each.awarded is not None for each in changes)
+    of_which = f", of which {kept} would keep the points of a tutor" if kept else ""
     screen.print(
-        f"{len(numbers)} attempts were graded by another version; {len(changes)} would change."
+        f"{len(numbers)} attempts were graded by another version; {len(changes)} would change"
+        f"{of_which}."
     )
     if numbers:
         screen.print("Nothing is written yet: --apply does that, and keeps the old reports.")

@@ -63,7 +63,7 @@ class RegradeRequest(BaseModel):
 
 
 class AttemptChange(BaseModel):
-    """An attempt whose learner gets another result."""
+    """An attempt whose learner gets another report, or other points by it."""
 
     id: str
     learner: str
@@ -71,6 +71,9 @@ class AttemptChange(BaseModel):
     before: float = Field(description="The points so far.")
     after: float
     max_points: float
+    awarded: float | None = Field(
+        None, description="The points that a tutor gave instead, if any: they stay and count."
+    )
     reasons: list[str] = Field(
         description="The parts that are judged otherwise. None where only the worth of a late "
         "attempt is another."

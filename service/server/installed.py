@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from fastapi import FastAPI
 
-from service.access.keys import Keys, KeysUnreachableError
+from service.access.keys import WRONG_SECRET, Keys, KeysUnreachableError
 from service.api.access import Access, is_loopback
 from service.api.application import application
 from service.api.door import RequestRates
@@ -87,6 +87,8 @@ def _keys(settings: Settings, store: "AttemptStore | None", host: str | None) ->
                 "DH_GRADER_SECRET: is needed, for there are keys; set it, or "
                 "DH_GRADER_SECRET_FILE, to the secret that they were made with"
             )
+        if not ring.has_their_secret:
+            raise SettingsError(f"DH_GRADER_SECRET: {WRONG_SECRET}")
     has_keys = ring is not None and ring.has_keys
     if host is not None and not (_is_here(host) or has_keys or settings.open is not None):
         raise SettingsError(

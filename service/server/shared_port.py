@@ -38,6 +38,11 @@ class Seats:
         """Seats of so many processes, none of which listens yet."""
         return cls(multiprocessing.get_context("spawn").RawArray("i", [_AWAY] * number))
 
+    @property
+    def any_taken(self) -> bool:
+        """Whether a process listens."""
+        return any(count != _AWAY for count in self.counts)
+
     def leave(self, place: int) -> None:
         """Note that the process of this place does not listen."""
         self.counts[place] = _AWAY

@@ -1,7 +1,11 @@
 """`dh-grader serve`: the settings put into effect, in one process or several."""
 
+import logging
 import signal
 import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import partial
 
 import uvicorn
@@ -16,6 +20,8 @@ from service.server.protocol import GuardedProtocol
 from service.server.shared_port import SharedPort
 from service.server.workers import Supervisor
 from service.settings import Settings
+
+_log = logging.getLogger("uvicorn.error")
 
 
 def serve(settings: Settings) -> bool:
@@ -33,10 +39,37 @@ def serve(settings: Settings) -> bool:
         # The workers read the exercises themselves: here they were read to see that they can be
         # used.
         try:
-            listener = config.bind_socket()
+            with _held_back() as announcement:
+                listener = config.bind_socket()
         except SystemExit:
             return False
-        return Supervisor(partial(_work, settings), listener, settings.workers, forget).run()
+        return Supervisor(
+            partial(_work, settings), listener, settings.workers, announcement, forget
+        ).run()
+
+
+@contextmanager
+def _held_back() -> Iterator[Callable[[], None]]:
+    """Hold back that the service is running, which uvicorn says when it has the port.
+
+    Nobody listens there until a worker does. Yields what says it.
+    """
+    held: list[logging.LogRecord] = []
+
+    def hold(record: logging.LogRecord) -> bool:
+        if record.levelno == logging.INFO:
+            held.append(record)
+        return record.levelno != logging.INFO
+
+    def announce() -> None:
+        for record in held:
+            _log.handle(logging.makeLogRecord(vars(record) | {"created": time.time()}))
+
+    _log.addFilter(hold)
+    try:
+        yield announce
+    finally:
+        _log.removeFilter(hold)
 
 
 def _server(settings: Settings, app: FastAPI, port: SharedPort | None = None) -> Server:

@@ -19,6 +19,8 @@ from service.server.shared_port import Seats, SharedPort
 _MARGIN: Final = 1.5
 # Seconds until a worker that has ended is started anew.
 _PAUSE: Final = 1.0
+# Seconds between two looks whether the first worker listens.
+_LOOK: Final = 0.05
 
 _log = logging.getLogger("uvicorn.error")
 
@@ -31,8 +33,11 @@ class Supervisor:
         work: Callable[[SharedPort], None],
         listener: socket.socket,
         number: int,
+        announce: Callable[[], None],
         lost: Callable[[int], None] = lambda _: None,
     ) -> None:
+        # It says that the port answers, as soon as a worker listens.
+        self._announce = announce
         # It is told the number of a process that has ended.
         self._lost = lost
         self._work = work
@@ -76,13 +81,22 @@ class Supervisor:
 
     def _watch(self, awake: socket.socket) -> bool:
         """Start anew whoever ends, until a signal comes; false where all end at their start."""
+        announced = False
         while True:
-            wait([awake, *(worker.sentinel for worker in self._workers)])
+            wait(
+                [awake, *(worker.sentinel for worker in self._workers)],
+                None if announced else _LOOK,
+            )
             if self._stopped():
                 return True
+            if not announced and self._seats.any_taken:
+                announced = True
+                self._announce()
             gone = [worker for worker in self._workers if not worker.is_alive()]
             if len(gone) == len(self._workers) and all(worker.exitcode == 1 for worker in gone):
                 return False
+            if not gone:
+                continue
             for worker in gone:
                 _log.error("Worker %s has ended (exit code %s)", worker.pid, worker.exitcode)
                 self._seats.leave(self._workers.index(worker))

@@ -159,6 +159,8 @@ def test_a_regrade_goes_step_by_step(
         recorded(store, scara, f"wrong-{number}", NO_TWIST, hours=-number)
         recorded(store, scara, f"lazy-{number}", LAZY)
     path = "/v1/exercises/scara/regrade"
+    [given] = Tutor(catalogue, store).ask("GET", "/v1/attempts?learner=wrong-1").json()["attempts"]
+    Tutor(catalogue, store).post(f"/v1/attempts/{given['id']}/override", points=7.5, reason="r")
     # By the same version and program nothing is outdated.
     same = Tutor(catalogue, store)
     assert same.post(path) == {"applied": False, "regraded": 0, "left": 0, "changes": []}
@@ -180,6 +182,7 @@ def test_a_regrade_goes_step_by_step(
     assert {name for name in changes if name[:5] == "wrong"} == {f"wrong-{i}" for i in range(7)}
     assert (changes["wrong-0"]["after"], changes["wrong-0"]["max_points"]) == (8, 24)
     assert changes["wrong-0"]["reasons"][0].startswith("table ")
+    assert [changes[f"wrong-{i}"].get("awarded") for i in range(2)] == [None, 7.5]
     [before] = tutor.ask("GET", "/v1/attempts?learner=wrong-0").json()["attempts"]
     assert before["points"] == changes["wrong-0"]["before"]
 

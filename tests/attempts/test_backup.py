@@ -3,6 +3,7 @@
 import os
 import re
 import sqlite3
+import stat
 import subprocess
 import sys
 import threading
@@ -110,6 +111,28 @@ def test_a_file_that_is_copied_while_attempts_are_recorded(
     folder = Path(sqlite_url).parent
     line = command("python3 -c", "backup").replace("attempts.db", Path(sqlite_url).name)
     check(sqlite_url, str(folder / "copy.db"), catalogue["scara"], lambda: run(line, folder))
+    assert mode(folder / "copy.db") == 0o600
+
+
+def mode(path: Path) -> int:
+    return stat.S_IMODE(path.stat().st_mode)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such modes")
+def test_only_the_owner_reads_a_new_file_and_an_earlier_one_keeps_its_mode(tmp_path: Path) -> None:
+    path = tmp_path / "attempts.db"
+    before = os.umask(0o022)
+    try:
+        for chosen in (0o600, 0o640):
+            engine = open_database(str(path))
+            with engine.connect():
+                beside = sorted(tmp_path.iterdir())
+                assert [each.name[len(path.name) :] for each in beside] == ["", "-shm", "-wal"]
+                assert {mode(each) for each in beside} == {chosen}
+            engine.dispose()
+            path.chmod(0o640)
+    finally:
+        os.umask(before)
 
 
 def test_a_dump_that_is_made_while_attempts_are_recorded(

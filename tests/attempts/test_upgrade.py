@@ -4,14 +4,18 @@ import asyncio
 import csv
 import json
 from collections.abc import Iterator, Mapping
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 import pytest
 from alembic import command
 from alembic.config import Config
 from sqlalchemy import create_engine, inspect, make_url, text
 
+from service.access.key_table import add_key, fits, revoke_key, settle
+from service.access.keys import Secret
 from service.attempts import database
 from service.attempts.attempt import AttemptFilter, GradesFormat
 from service.attempts.database import in_transaction
@@ -50,7 +54,7 @@ def oldest(request: pytest.FixtureRequest, tmp_path: Path) -> str:
         url, zone = f"sqlite:///{path}", ""
     else:
         server = request.getfixturevalue("server")
-        url, zone = new_database(server, "of_the_first_version"), "+00"
+        url, zone = new_database(server, f"first_{uuid4().hex}"), "+00"
     parsed = make_url(url)
     if parsed.get_backend_name() == "postgresql":
         parsed = parsed.set(drivername="postgresql+psycopg")
@@ -89,6 +93,21 @@ def store(oldest: str) -> Iterator[AttemptStore]:
     store.start()
     yield store
     store.close()
+
+
+def test_keys_without_a_known_secret_take_that_of_the_next_one(store: AttemptStore) -> None:
+    right, other, now = Secret("right" * 8), Secret("other" * 8), datetime.now(UTC)
+    with store.engine.begin() as connection:
+        key = add_key(connection, "a", "d", (), None, now, now + timedelta(days=1))
+        assert fits(connection, right)
+        assert fits(connection, other)
+        assert settle(connection, right, now)
+        assert fits(connection, right)
+        assert not fits(connection, other)
+        assert not settle(connection, other, now)
+        assert revoke_key(connection, key.id, now)
+        assert settle(connection, other, now)
+        assert not fits(connection, right)
 
 
 def exported(store: AttemptStore) -> list[dict[str, str]]:

@@ -227,8 +227,10 @@ def test_a_tutor_works_with_recorded_attempts(
     while not changes.is_visible():  # until the service has seen the new file
         page.wait_for_timeout(100)
         looked()
-    expect(page.get_by_text("3 attempts by another version; 3 would change.")).to_be_visible()
+    told = "3 would change, of which 1 would keep the points of a tutor. Nothing is written yet."
+    expect(page.get_by_text(told)).to_be_visible()
     expect(changes).to_contain_text("table correct → partial")
+    expect(changes).to_contain_text("; a tutor's 7.5 stays")
     write.click()
     expect(page.get_by_text("Regraded: 3 attempts. The reports before are kept.")).to_be_visible()
     expect(write).to_be_hidden()

@@ -96,6 +96,18 @@ def test_the_newest_attempts_are_listed(run: Run, course: list[str]) -> None:
     assert "links: nobody answered" in told
 
 
+def test_shares_are_rounded(
+    run: Run, course: list[str], tmp_path: Path, catalogue: Mapping[str, Exercise]
+) -> None:
+    store = AttemptStore.open(str(tmp_path / "attempts.db"))
+    recorded_all(store, [new_attempt(catalogue["scara"], each, RIGHT) for each in "bcd"])
+    store.close()
+    # Four of six tables and twists.
+    told = run("attempts", "statistics", "scara").output
+    assert "table: 67 % right of 6" in told
+    assert "alpha 67 %" in told
+
+
 def test_every_attempt_is_exported_and_the_one_that_counts_for_gradebooks(
     run: Run, course: list[str], tmp_path: Path
 ) -> None:
@@ -151,6 +163,10 @@ def test_a_regrade_is_tried_before_it_is_done(run: Run, course: list[str]) -> No
     assert "grace, attempt 1:" in tried
     assert "table partial, other points" in tried
     assert run("attempts", "export").output == before
+    run("attempts", "override", course[2], "7.5", "--reason", "r")
+    tried = " ".join(run("attempts", "regrade", "scara").output.split())
+    assert "table partial, other points; a tutor's 7.5 stays)" in tried
+    assert "2 would change, of which 1 would keep the points of a tutor." in tried
     assert "Regraded: 3." in run("attempts", "regrade", "scara", "--apply").output
     assert "0 attempts were graded by another" in run("attempts", "regrade", "scara").output
     lines = [

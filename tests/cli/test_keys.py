@@ -1,6 +1,7 @@
 """`dh-grader keys`, and a start that is refused for want of them."""
 
 import re
+import sqlite3
 from pathlib import Path
 from typing import Any
 
@@ -69,6 +70,35 @@ def test_who_lets_others_in_has_keys_or_says_that_it_needs_none(
     assert not refused()
     monkeypatch.delenv("DH_GRADER_SECRET")
     assert "DH_GRADER_SECRET" in refused("127.0.0.1")
+
+
+def test_another_secret_than_that_of_the_keys_is_refused_until_they_are_revoked(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("DH_GRADER_SECRET", SECRET)
+    [key] = re.findall(r"Key (\w{8}), valid until", run("create", "a course").stderr)
+    told = "This is not the secret with which the keys in the database were made."
+    monkeypatch.setenv("DH_GRADER_SECRET", SECRET[::-1])
+    assert refused("127.0.0.1").startswith(f"DH_GRADER_SECRET: {told}")
+    for arguments in (("create", "another"), ("list",)):
+        result = run(*arguments)
+        assert (result.exit_code, told in result.stderr.replace("\n", " ")) == (2, True)
+        assert "another" not in result.output
+    assert key in run("list").stdout
+    # A database of the version before tells no secret, and keeps that of the next key.
+    with sqlite3.connect(tmp_path / "attempts.db") as connection:
+        connection.execute("DELETE FROM key_secrets")
+    assert not refused()
+    monkeypatch.setenv("DH_GRADER_SECRET", SECRET)
+    [other] = re.findall(r"Key (\w{8}), valid until", run("create", "a course").stderr)
+    # Whoever has lost the secret begins anew.
+    monkeypatch.setenv("DH_GRADER_SECRET", SECRET[::-1])
+    assert told in refused()
+    for each in (key, other):
+        assert run("create", "a course").exit_code == 2
+        assert run("revoke", each).exit_code == 0
+    assert run("create", "a course").exit_code == 0
+    assert not refused()
 
 
 def test_what_cannot_be_used_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from prometheus_client.parser import text_string_to_metric_families
 
 from service.server.installed import installed_app
 from service.settings import Settings
+from service.submissions.strict_json import MAX_BODY_SIZE
 from tests.attempts.databases import new_file
 from tests.attempts.recorded import NO_TWIST, RIGHT
 from tests.server.raw import Service, service
@@ -95,6 +96,27 @@ def told(client: tuple[str, int], **settings: Any) -> httpx.Response:
             return await http.get("/metrics")
 
     return asyncio.run(ask())
+
+
+def test_what_is_refused_is_counted_under_its_route() -> None:
+    app = installed_app(Settings(metrics="local", address_rate="2/hour"))
+    path = "/v1/exercises/scara/grade"
+    large = {"Content-Length": str(10 * MAX_BODY_SIZE)}
+
+    async def ask() -> str:
+        transport = httpx.ASGITransport(app, client=("127.0.0.1", 1))
+        async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1") as http:
+            assert (await http.post(path, content=b"", headers=large)).status_code == 413
+            asked = [await http.post(path, json={"answers": {}}) for _ in range(3)]
+            assert [each.status_code for each in asked] == [200, 200, 429]
+            assert (await http.get("/v1/nowhere")).status_code == 429
+            return (await http.get("/metrics")).text
+
+    own = asyncio.run(ask())
+    counted = [("POST", ROUTE.replace("attempts", "grade"), status) for status in (200, 413, 429)]
+    for method, route, status in (*counted, ("GET", "other", 429)):
+        labels = f'{{method="{method}",route="{route}",status="{status}"}}'
+        assert f"dh_grader_requests_total{labels} {2.0 if status == 200 else 1.0}" in own
 
 
 def test_one_process_tells_its_own_memory_too_and_strangers_only_where_it_may() -> None:

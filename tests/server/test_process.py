@@ -167,7 +167,10 @@ def test_workers_share_connections_out_a_lost_one_is_replaced_and_all_end_in_goo
     tmp_path: Path,
 ) -> None:
     with service(tmp_path, "--workers", "2") as running:
+        # It has said that it is running: nobody is refused any more.
+        assert not refuses(running)
         until(lambda: running.log.count("startup complete") == 2)
+        assert running.log.count("running on") == 1
         before = workers(running)
         assert len(before) == 2
         check_shares(running, before)

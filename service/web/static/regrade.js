@@ -1,6 +1,6 @@
 // The regrade of an exercise: first who would change and why, then the same for good.
 
-import { h, message, points } from "./dom.js";
+import { h, message, number, points } from "./dom.js";
 import { count, failed, learnerName, table, tell } from "./records.js";
 import { address, pause, sendPatiently } from "./tutor_service.js";
 
@@ -56,19 +56,21 @@ export function regradeForm(exercise, done) {
   }
 
   function told(apply, graded, changed, left) {
+    const kept = changed.filter(({ awarded }) => awarded !== undefined).length;
+    const ofWhich = kept ? `, of which ${kept} would keep the points of a tutor` : "";
     const stopped = left ? ` Stopped: ${count(left, "attempt")} left.` : "";
     if (apply) tell(state, `Regraded: ${count(graded, "attempt")}. The reports before are kept.${stopped}`);
     else if (!graded) tell(state, "All attempts were graded by this version of the exercise and of the program.");
-    else tell(state, `${count(graded, "attempt")} by another version; ${changed.length} would change. Nothing is written yet.${stopped}`);
+    else tell(state, `${count(graded, "attempt")} by another version; ${changed.length} would change${ofWhich}. Nothing is written yet.${stopped}`);
     changes.replaceChildren(...(changed.length ? [list(changed)] : []));
   }
 
   function list(changed) {
-    const rows = changed.slice(0, MOST_SHOWN).map(({ id, learner, ordinal, before, after, max_points: most, reasons }) => [
+    const rows = changed.slice(0, MOST_SHOWN).map(({ id, learner, ordinal, before, after, max_points: most, awarded, reasons }) => [
       h("a", { href: address(`tutor/attempts/${encodeURIComponent(id)}`) }, learnerName(learner), h("span", { class: "aloud" }, `, attempt ${ordinal ?? "that does not count"}`)),
       String(ordinal ?? "–"),
       `${points(before, most).split(" / ")[0]} → ${points(after, most)}`,
-      h("span", {}, ...message(reasons.join("; ") || "what a late attempt earns")),
+      h("span", {}, ...message(reasons.join("; ") || "what a late attempt earns"), awarded === undefined ? "" : `; a tutor's ${number(awarded)} stays`),
     ]);
     const more = changed.length - rows.length;
     const all = table("Changes", ["Learner", "No.", "Points", "Why"], rows);
