@@ -2,9 +2,9 @@
 
 import json
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 from sqlalchemy import ColumnElement, Connection, String, cast, func, select, type_coerce
 
@@ -30,6 +30,9 @@ MOST_GROUPS: Final = 50
 MOST_LEARNERS: Final = 50
 _WRONG: Final = (Verdict.INCORRECT, Verdict.PARTIAL)
 
+# A part and a code of a message in it.
+_Slip: TypeAlias = tuple[str, str]
+
 
 def exercise_statistics(connection: Connection, wanted: AttemptFilter) -> ExerciseStatistics:
     """The statistics of the attempts at ``wanted.exercise`` in a span of time."""
@@ -38,20 +41,22 @@ def exercise_statistics(connection: Connection, wanted: AttemptFilter) -> Exerci
     counts = _counts(connection, chosen)
     contents = _contents(connection, wanted.exercise, counts)
     parts: dict[str, _PartCount] = defaultdict(_PartCount)
-    slips: dict[tuple[str, str], Counter[str]] = defaultdict(Counter)
+    slips: dict[_Slip, Counter[str]] = defaultdict(Counter)
+    outcome_with: dict[_Slip, int] = {}
     for outcome, content in contents.items():
         times = counts[outcome].total()
         for part, told in content.items():
             parts[part].add(told, times)
             for code in told["codes"]:
                 slips[part, code].update(counts[outcome])
+                outcome_with.setdefault((part, code), outcome)
     return ExerciseStatistics(
         exercise=wanted.exercise,
         attempts=sum(each.total() for each in counts.values()),
         learners=connection.scalar(select(func.count(attempts.c.learner.distinct())).where(chosen))
         or 0,
         parts=[part.figures(name) for name, part in parts.items()],
-        misconceptions=_commonest(slips),
+        misconceptions=_commonest(connection, chosen, slips, outcome_with),
         identical=list(_identical(connection, chosen, contents)),
     )
 
@@ -139,14 +144,51 @@ def _share(share: Share) -> dict[str, Any]:
     return told.model_dump()
 
 
-def _commonest(slips: Mapping[tuple[str, str], Counter[str]]) -> list[MisconceptionFigures]:
+def _commonest(
+    connection: Connection,
+    chosen: ColumnElement[bool],
+    slips: Mapping[_Slip, Counter[str]],
+    outcome_with: Mapping[_Slip, int],
+) -> list[MisconceptionFigures]:
     ordered = sorted(slips.items(), key=lambda slip: (-slip[1].total(), slip[0]))
+    told = ordered[:MOST_MISCONCEPTIONS]
+    reports = _newest_reports(connection, chosen, {outcome_with[slip] for slip, _ in told})
     return [
         MisconceptionFigures(
-            part=part, code=code, attempts=days.total(), by_day=dict(sorted(days.items()))
+            part=part,
+            code=code,
+            sentence=_sentence(reports[outcome_with[part, code]], part, code),
+            attempts=days.total(),
+            by_day=dict(sorted(days.items())),
         )
-        for (part, code), days in ordered[:MOST_MISCONCEPTIONS]
+        for (part, code), days in told
     ]
+
+
+def _newest_reports(
+    connection: Connection, chosen: ColumnElement[bool], among: Set[int]
+) -> dict[int, Any]:
+    """One report of each outcome: of its newest attempt, since later ones are told more."""
+    newest = (
+        select(func.max(attempts.c.number))
+        .where(chosen, attempts.c.outcome.in_(among))
+        .group_by(attempts.c.outcome)
+    )
+    found = select(attempts.c.outcome, attempts.c.report).where(attempts.c.number.in_(newest))
+    return {outcome: json.loads(report) for outcome, report in connection.execute(found).all()}
+
+
+def _sentence(report: Mapping[str, Any], part: str, code: str) -> str | None:
+    """The first message of a code in a part; None where the report was to tell no more."""
+    told = (each for each in report["parts"] if each["part"] == part)
+    return next((each["message"] for each in _messages(told) if each["code"] == code), None)
+
+
+def _messages(places: Iterable[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]]:
+    """The messages of parts, rows or cells, and of all that is in them."""
+    for place in places:
+        yield from place["feedback"]
+        yield from _messages([*place.get("rows", ()), *place.get("cells", ())])
 
 
 def _identical(

@@ -36,6 +36,10 @@ class MisconceptionFigures(BaseModel):
 
     part: str
     code: str
+    sentence: str | None = Field(
+        None,
+        description="What one of them was told; left out where the report told no more than marks.",
+    )
     attempts: int = Field(description="The attempts that have it.")
     by_day: dict[str, int] = Field(description="The same by day, in UTC.")
 

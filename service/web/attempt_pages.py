@@ -8,7 +8,7 @@ from service.api.lookup import Catalogue
 from service.catalogue import Exercise
 from service.formats.shared.markup import Child, element
 from service.web.assets import Assets
-from service.web.pages import page
+from service.web.pages import TUTORS_NOTE, page
 
 _FORMATS: Final = {"csv": "CSV", "jsonl": "JSON lines", "canvas": "Canvas", "moodle": "Moodle"}
 _COUNTED: Final = (
@@ -83,11 +83,12 @@ def _forgetting() -> Element:
 
 def attempt_page(attempt_id: str, assets: Assets) -> bytes:
     """One attempt: what was handed in, its report, and the points that a tutor gives."""
+    back = element("a", "List of attempts", href="../attempts", id="back-to-list")
     main = element(
         "main",
         element("p", "Recorded attempt", class_="kicker"),
         element("h1", "Attempt", id="title"),
-        element("p", element("a", "List of attempts", href="../attempts"), class_="ways-on"),
+        element("p", back, class_="ways-on"),
         element("p", "Loading …", id="state", role="status", class_="state-line"),
         element("div", id="attempt", class_="attempt"),
         _noscript(),
@@ -171,7 +172,7 @@ def _page(title: str, main: Element, assets: Assets, root: str, *scripts: str) -
         ["page.js", *scripts],
         styles=["tutor.css", "records.css"],
         tutor=True,
-        note="What is recorded of students is for tutors alone.",
+        note=TUTORS_NOTE,
     )
 
 

@@ -15,6 +15,7 @@ from service.web.assets import Assets
 _MENU: Final = (("Exercises", ""), ("Free play", "play"), ("API", "docs"))
 
 _NOTE: Final = "Nothing that you write here is recorded. Answers stay in this browser."
+TUTORS_NOTE: Final = "What is recorded of students is for tutors alone."
 _TUTOR: Final = (("For tutors", "tutor"),)
 
 _KIND_NAMES: Final = {

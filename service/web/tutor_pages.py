@@ -12,7 +12,7 @@ from service.formats.shared.plain_text import visible
 from service.solutions import solve
 from service.solutions.model_solution import Shown
 from service.web.assets import Assets
-from service.web.pages import page
+from service.web.pages import TUTORS_NOTE, page
 
 _SCRIPTS: Final = ("page.js",)
 
@@ -79,7 +79,8 @@ def _ways(*, of_all: bool) -> Iterable[Element]:
 
 
 def _page(title: str, main: Element, assets: Assets, root: str, scripts: Iterable[str]) -> bytes:
-    return page(title, main, assets, root, scripts, styles=["tutor.css"], tutor=True)
+    styles = ["tutor.css"]
+    return page(title, main, assets, root, scripts, styles=styles, tutor=True, note=TUTORS_NOTE)
 
 
 def _of(exercise: Exercise) -> list[Child]:

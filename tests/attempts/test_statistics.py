@@ -38,6 +38,9 @@ def test_a_class_is_counted(store: AttemptStore, catalogue: Mapping[str, Exercis
     days = {slip.code: slip.by_day for slip in told.misconceptions}
     assert days["half_turn"] == {"2026-11-22": 3, "2026-11-23": 1}
     assert all(slip.attempts == sum(slip.by_day.values()) for slip in told.misconceptions)
+    sentences = {slip.code: slip.sentence for slip in told.misconceptions}
+    # As docs/sentences.md has it.
+    assert sentences["half_turn"] == "α is not right: compare the two z axes."
     (group,) = told.identical
     assert (group.learners, group.attempts, group.among) == (3, 3, ["ada", "grace", "linus"])
     assert group.wrong == ["table/2/alpha"]

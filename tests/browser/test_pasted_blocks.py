@@ -42,6 +42,11 @@ def test_a_block_fills_the_cells_from_the_cursor_on(visit: Opening, service: str
     paste(page, "1\t2")
     expect(page.locator(".reading").first).to_contain_text("Not read")
     assert "2" in table.nth(11).input_value()
+    # A script that is refused leaves the cell as it was.
+    table.nth(11).fill("q2")
+    paste(page, "for i = 1:2, L(i) = Link([0 0 a1 0]); end")
+    expect(page.locator(".reading").first).to_contain_text("Not read as a table or matrix")
+    expect(table.nth(11)).to_have_value("q2")
 
 
 @pytest.mark.campaign

@@ -2,7 +2,7 @@
 
 import { h, number, points, visible } from "./dom.js";
 import { RecordedReport } from "./recorded_report.js";
-import { byId, earned, failed, learnerName, moment, tell } from "./records.js";
+import { byId, earned, failed, learnerName, moment, percent, tell } from "./records.js";
 import { address, get, send } from "./tutor_service.js";
 
 const id = byId("main").dataset.attempt;
@@ -44,13 +44,13 @@ function show(found, exercise, attempts) {
 }
 
 /** The choice between the report that counts and those that a regrade has replaced. */
-function reports({ attempt, report, earlier_reports: earlier }, drawn) {
+function reports({ report, earlier_reports: earlier }, drawn) {
   if (!earlier.length) return null;
   const all = [
-    { report, text: `The one that counts: ${points(attempt.points, attempt.max_points)}` },
+    { report, text: `Newest report: ${points(report.points, report.max_points)}` },
     ...earlier.toReversed().map((each) => ({
       report: each.report,
-      text: `Until ${moment(each.replaced_at).textContent}: ${points(each.points, each.max_points)}, version ${each.version}`,
+      text: `Until ${moment(each.replaced_at).textContent}: ${points(each.report.points, each.max_points)}, version ${each.version}`,
     })),
   ];
   const options = all.map(({ text }, i) => h("option", { value: i }, visible(text)));
@@ -58,7 +58,7 @@ function reports({ attempt, report, earlier_reports: earlier }, drawn) {
   return h("p", { class: "field" }, h("label", { for: "which-report" }, "Report"), choice);
 }
 
-function facts({ attempt, submission }, exercise, attempts) {
+function facts({ attempt, submission, report }, exercise, attempts) {
   const { learner, ordinal, at, is_late: late, version, grader } = attempt;
   const list = (query, ...text) => h("a", { href: address(`tutor/attempts?${new URLSearchParams(query)}`) }, ...text);
   const isOld = exercise && exercise.version !== version;
@@ -66,14 +66,27 @@ function facts({ attempt, submission }, exercise, attempts) {
     ["Learner", list({ learner }, learnerName(learner))],
     ["Exercise", list({ exercise: attempt.exercise }, h("code", {}, attempt.exercise))],
     ["Handed in", h("span", {}, moment(at), late ? ", late" : "")],
-    ["Attempt", ordinal === undefined ? "does not count: nothing could be read" : `no. ${ordinal}`],
+    ["Attempt", ordinal === undefined ? `does not count: ${isEmpty(submission.answers) ? "it is empty" : "nothing could be read"}` : `no. ${ordinal}`],
     attempts.length > 1 && ["All attempts", h("ul", { class: "all-attempts" }, ...attempts.toReversed().map(ofLearner))],
     ["Points", h("strong", {}, earned(attempt))],
-    attempt.awarded !== undefined && ["by its report", points(attempt.points, attempt.max_points)],
+    attempt.awarded !== undefined && ["instead of", points(attempt.points, attempt.max_points)],
+    late && report.points > 0 && ["by its report", `${points(report.points, report.max_points)}, ${lateShare(attempt.points / report.points)}`],
     ["Plain angles in", submission.angle_unit ?? "radians"],
     ["Graded by", h("span", {}, `exercise ${version}${isOld ? " (not the one of today)" : ""}, program ${grader}`)],
   ].filter(Boolean);
   return h("dl", {}, ...pairs.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
+}
+
+/** How much of its report's points a late attempt earns. */
+function lateShare(share) {
+  if (share > 0.999) return "all of it although late";
+  return `${Math.abs(share - 0.5) < 0.001 ? "half" : percent(share)} of it for being late`;
+}
+
+/** Whether an answer, or what an answer is made of, holds no letter at all. */
+function isEmpty(answer) {
+  if (answer && typeof answer === "object") return Object.values(answer).every(isEmpty);
+  return String(answer ?? "").trim() === "";
 }
 
 /** One of the learner's attempts at the exercise: a link, but for the one that is shown. */
@@ -81,7 +94,7 @@ function ofLearner({ id: other, ordinal }) {
   const name = ordinal === undefined ? "–" : String(ordinal);
   const spoken = ordinal === undefined ? "one that does not count" : `no. ${ordinal}`;
   if (other === id) return h("li", {}, h("strong", { "aria-current": "true", "aria-label": `${spoken}, shown` }, name));
-  return h("li", {}, h("a", { href: address(`tutor/attempts/${encodeURIComponent(other)}`), "aria-label": spoken }, name));
+  return h("li", {}, h("a", { href: address(`tutor/attempts/${encodeURIComponent(other)}${location.search}`), "aria-label": spoken }, name));
 }
 
 /** The form for other points than the report's, and those that were given. */
@@ -113,7 +126,8 @@ class PointsGiven {
   }
 
   show({ attempt, overrides }) {
-    this.points.value = number(attempt.awarded ?? attempt.points);
+    // Those of the report would stand here rounded.
+    this.points.value = attempt.awarded ?? "";
     this.withdrawal.hidden = attempt.awarded === undefined;
     this.list.replaceChildren(...overrides.toReversed().map(override));
     this.list.hidden = !overrides.length;
@@ -153,4 +167,6 @@ function override({ points: given, reason, author, at }) {
   );
 }
 
+// The list as it was left: its filters and its page.
+byId("back-to-list").search = location.search;
 load();

@@ -9,7 +9,7 @@ const form = byId("filters");
 const state = byId("state");
 const list = byId("list");
 
-// The cursors of the pages up to the one that is shown; the first page has none.
+// The cursors of the pages up to the one that is shown; the first page has none. They stand in the address.
 let cursors = [""];
 let turn = 0;
 
@@ -55,8 +55,9 @@ function draw({ attempts, next }, wanted) {
 
 function row(attempt) {
   const { id, exercise, learner, ordinal, at, is_late: late, awarded } = attempt;
-  const remarks = [ordinal === undefined && "not readable", late && "late", awarded !== undefined && "points by a tutor"];
-  const open = h("a", { href: address(`tutor/attempts/${encodeURIComponent(id)}`) }, moment(at), h("span", { class: "aloud" }, " by ", learnerName(learner)));
+  const remarks = [ordinal === undefined && "nothing readable", late && "late", awarded !== undefined && "points by a tutor"];
+  // The attempt's page leads back to the list as it is now.
+  const open = h("a", { href: address(`tutor/attempts/${encodeURIComponent(id)}`) + location.search }, moment(at), h("span", { class: "aloud" }, " by ", learnerName(learner)));
   return [open, learnerName(learner), earned(attempt), String(ordinal ?? "–"), h("code", {}, exercise), remarks.filter(Boolean).join(", ")];
 }
 
@@ -64,6 +65,7 @@ function pages(next) {
   if (!next && cursors.length === 1) return "";
   const turnTo = (changed) => async () => {
     cursors = changed;
+    keepAddress();
     await show();
     list.querySelector(".wide")?.focus();
   };
@@ -75,12 +77,19 @@ function pages(next) {
   );
 }
 
-/** The filters have changed: the first page, at an address that can be kept. */
+/** The filters have changed: the first page. */
 function changed(event) {
   event?.preventDefault();
   cursors = [""];
-  history.replaceState(null, "", location.pathname + query(Object.fromEntries(FIELDS.map((name) => [name, byId(name).value]))));
+  keepAddress();
   return show();
+}
+
+/** Put filters and page into the address, which can be kept, and which the browser comes back to. */
+function keepAddress() {
+  const pairs = [...FIELDS.map((name) => [name, byId(name).value]), ...cursors.map((cursor) => ["cursor", cursor])];
+  const given = new URLSearchParams(pairs.filter(([, value]) => value));
+  history.replaceState(null, "", location.pathname + (given.size ? `?${given}` : ""));
 }
 
 // All of a learner deleted.
@@ -136,6 +145,7 @@ async function forget(learner) {
 
 const asked = new URLSearchParams(location.search);
 for (const name of FIELDS) if (asked.has(name)) byId(name).value = asked.get(name);
+cursors.push(...asked.getAll("cursor"));
 form.addEventListener("submit", changed);
 form.addEventListener("change", changed);
 // Not there for a key that is for certain exercises.

@@ -13,13 +13,23 @@ const MOST_SAID = 10;
 
 const at = (day) => Date.parse(`${day}T00:00:00Z`);
 
-/** The chart of `counts` (by day, as 2026-11-22) from a first to a last day. */
-export function daysChart(counts, first, last) {
-  const days = Math.round((at(last) - at(first)) / DAY) + 1;
-  const width = Math.ceil(days / MOST_BARS);
-  const bars = Array(Math.ceil(days / width)).fill(0);
-  for (const [day, times] of Object.entries(counts)) bars[Math.floor((at(day) - at(first)) / DAY / width)] += times;
-  const most = Math.max(...bars);
+/** The charts of `all` counts (by day, as 2026-11-22), by these counts: over the same days, and by one measure. */
+export function daysCharts(all) {
+  const days = all.flatMap(Object.keys).sort();
+  const first = at(days[0]);
+  const span = Math.round((at(days.at(-1)) - first) / DAY) + 1;
+  const width = Math.ceil(span / MOST_BARS);
+  const bars = all.map((counts) => {
+    const found = Array(Math.ceil(span / width)).fill(0);
+    for (const [day, times] of Object.entries(counts)) found[Math.floor((at(day) - first) / DAY / width)] += times;
+    return found;
+  });
+  const most = Math.max(...bars.flat());
+  return new Map(all.map((counts, i) => [counts, chart(counts, bars[i], most)]));
+}
+
+/** One chart, in which a bar of `most` has the full height. */
+function chart(counts, bars, most) {
   const step = Math.min(WIDTH / bars.length, 16);
   const drawn = make("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, width: WIDTH, height: HEIGHT, role: "img", "aria-label": inWords(counts), class: "days" });
   drawn.append(make("path", { d: `M0 ${HEIGHT - 0.5}H${bars.length * step}`, class: "ground" }));

@@ -10,6 +10,7 @@ import { target, undoKey } from "./keyboard.js";
 
 // A text with one of these may hold several cells; the service says whether it does.
 const BETWEEN_CELLS = /[\n\t;|&,[]|\\\\/;
+const SCRIPT = "unread_script";
 const HELP = "Arrow keys and Enter move between cells. A table, a matrix or a block of cells can be pasted into one.";
 
 export class PartView {
@@ -192,14 +193,16 @@ export class PartView {
       this.#say(`The pasted text filled ${pairs.length} cells. Ctrl+Z takes it back.`, grid?.notes);
       return;
     }
+    const misfit = grid?.rows ? `The pasted text has ${grid.rows.length} rows, which do not fit here.` : grid?.error?.message;
+    const told = misfit && !grid.ok ? `Not read as a table or matrix: ${misfit}` : misfit;
+    // Glued together, a script or several lines would only hide what stood in the cell.
+    if (told && (grid.error?.code === SCRIPT || text.trim().includes("\n"))) return this.#say(told);
     const before = cell.text;
     cell.input.setRangeText(text.replace(/\s*\n\s*/g, " ").trim(), cell.input.selectionStart, cell.input.selectionEnd, "end");
     const after = cell.text;
     cell.put(after);
     this.host.history.note([{ target: cell, before, after }]);
-    const misfit = grid?.rows ? `The pasted text has ${grid.rows.length} rows, which do not fit here.` : grid?.error?.message;
-    if (misfit && !grid.ok) this.#say(`Not read as a table or matrix: ${misfit}`);
-    else if (misfit) this.#say(misfit);
+    if (told) this.#say(told);
   }
 
   /** The cells that a pasted grid goes to, with their texts; null where it does not fit. */

@@ -35,7 +35,7 @@ export class DhPlay extends HTMLElement {
       service: this.service,
       body: () => this.#body(),
       announce: (text) => this.announce(text),
-      answered: (answer) => this.#answered(answer),
+      answered: (answer, isKept) => this.#answered(answer, isKept),
       moved: (picture) => this.#showPose(picture),
     });
     this.#build();
@@ -229,8 +229,11 @@ export class DhPlay extends HTMLElement {
 
   // What the service says.
 
-  #answered({ table }) {
+  #answered({ table }, isKept) {
     this.table.showReadings(table);
+    for (const each of [this.freedoms, this.pose, this.formula, this.converted]) each.classList.toggle("stale", isKept);
+    this.use.disabled = this.latex.disabled = isKept;
+    if (isKept) return;
     const { degrees_of_freedom: freedoms, formulas } = table;
     this.freedoms.textContent = freedoms === undefined ? "" : `${freedoms} degree${freedoms === 1 ? "" : "s"} of freedom`;
     const { pose, converted } = formulas ?? {};

@@ -25,7 +25,7 @@ export class RobotView {
 
   /**
    * `host`: `service`; `body()`, what every request says, or null; `descriptions`, of symbols by name; `announce`;
-   * `answered`, which hears of each answer; `moved`, of each picture.
+   * `answered`, which hears of each answer, and whether the picture of the one before stays; `moved`, of each picture.
    */
   constructor(host) {
     this.host = host;
@@ -125,6 +125,8 @@ export class RobotView {
       const values = this.#answer && this.#current;
       const answer = await this.#request(values && this.#isSame(body) ? [values] : null);
       if (turn !== this.#turn || this.#closed) return undefined;
+      // While a cell is typed, its table cannot be read: the robot of before is better than none.
+      if (!answer.mechanism && isUnread(answer) && this.picture && this.#isSame(body)) return this.#keep(answer);
       const missing = answer.joints.some(({ variable }) => !(variable in this.#values));
       this.#remember(answer, body);
       // Joint values that were moved before the joints changed are asked for once more.
@@ -138,6 +140,18 @@ export class RobotView {
     return undefined;
   }
 
+  /** Tell what cannot be read, beside the picture of what could be. */
+  #keep(answer) {
+    this.#stale(true);
+    this.#showTold(answer);
+    this.host.answered?.(answer, true);
+  }
+
+  #stale(isStale) {
+    for (const each of [this.stage, this.numbers, this.sliders]) each.element.classList.toggle("stale", isStale);
+    this.sliders.element.inert = this.home.disabled = isStale;
+  }
+
   #isSame(body) {
     return this.structure === (body.table?.structure ?? body.exercise);
   }
@@ -146,7 +160,7 @@ export class RobotView {
     this.structure = body.table?.structure ?? body.exercise;
     this.#answer = answer;
     for (const { variable, home } of answer.joints) this.#values[variable] ??= home;
-    this.host.answered?.(answer);
+    this.host.answered?.(answer, false);
   }
 
   #moved(answer) {
@@ -167,11 +181,12 @@ export class RobotView {
   #show(answer) {
     this.#answer = answer;
     this.element.classList.toggle("empty", !answer);
+    this.#stale(false);
     if (!answer) return;
     this.picture = pictureOf(answer);
     this.sliders.show(answer.joints, this.#values);
     this.symbols.show(answer.symbols);
-    this.#showTold();
+    this.#showTold(answer);
     // A drawing shows all that there is, as one.
     this.over.hidden = this.stage.isFlat || !(answer.mechanism && answer.table);
     if (!this.stage.isFlat) this.frames.show(this.picture.frames?.length ?? 0);
@@ -260,13 +275,13 @@ export class RobotView {
     this.changed();
   }
 
-  #showTold() {
-    const { table } = this.#answer;
+  #showTold({ table }) {
     const [cell] = table?.unread ?? [];
     const place = cell ? `Row ${cell.row}, ${cell.column}: ` : "";
     const reason = table?.error?.message ?? (cell && `${place}${cell.error.message}`);
     const lost = table?.lost_freedoms.map((each) => each.message) ?? [];
-    const ends = reason && table.frames[0]?.length ? " The frames end before it." : "";
+    const isKept = this.stage.element.classList.contains("stale");
+    const ends = reason && isKept ? " The picture is the one of before." : reason && table.frames[0]?.length ? " The frames end before it." : "";
     this.told.replaceChildren(...message([reason && reason + ends, ...lost].filter(Boolean).join(" ")));
     this.told.hidden = !this.told.textContent;
   }
@@ -276,6 +291,8 @@ export class RobotView {
     this.host.moved?.(this.picture, this.#values);
   }
 }
+
+const isUnread = ({ table }) => Boolean(table?.error || table?.unread.length);
 
 /** A sweep and a drawing need no formulas. */
 function withoutFormulas({ table, ...body }) {

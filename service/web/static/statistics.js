@@ -1,7 +1,8 @@
 // The attempts at an exercise in counts: parts, rows and cells, slips by count and day, identical wrong answers.
 
-import { h, visible } from "./dom.js";
-import { daysChart } from "./days_chart.js";
+import { h, message, visible } from "./dom.js";
+import { daysCharts } from "./days_chart.js";
+import { layoutOf } from "./kinds.js";
 import { cellName } from "./messages.js";
 import { byId, count, failed, learnerName, nothing, percent, query, showExports, span, table, tell } from "./records.js";
 import { regradeForm } from "./regrade.js";
@@ -16,14 +17,14 @@ const BANDS = [0.25, 0.5, 0.75, 0.9];
 const SHOWN = 12;
 
 let turn = 0;
-let titles = null;
+let names = null;
 
 async function show() {
   const mine = ++turn;
   showExports({ exercise, ...span() });
   place.setAttribute("aria-busy", "true");
   try {
-    titles ??= await titlesOf(exercise);
+    names ??= await namesOf(exercise);
     const told = await get(`v1/exercises/${encodeURIComponent(exercise)}/statistics${query(span())}`);
     if (mine === turn) draw(told);
   } catch (error) {
@@ -34,12 +35,23 @@ async function show() {
   place.removeAttribute("aria-busy");
 }
 
-async function titlesOf(id) {
+/** What parts, their rows and their cells are called where students fill them in, by the labels of reports. */
+async function namesOf(id) {
   const { parts } = await get(`v1/exercises/${encodeURIComponent(id)}`);
-  return new Map(parts.map((part) => [part.id, part.title]));
+  return new Map(parts.map((part) => [part.id, { title: part.title, ...cellNames(layoutOf(part).grids) }]));
 }
 
-const titleOf = (part) => visible(titles.get(part) ?? part);
+function cellNames(grids) {
+  const [{ look, columns }] = grids;
+  const rows = grids.flatMap((grid) => grid.rows.map(({ label, spoken, head }) => [label, grids.length > 1 ? spoken : head]));
+  // A list has one column, which says nothing; those of a matrix have numbers.
+  const heads = look === "matrix" ? [] : columns.map(({ label, head }) => [label, head]);
+  return { isList: look === "list", rows: new Map(rows), columns: new Map(heads) };
+}
+
+const titleOf = (part) => visible(names.get(part)?.title ?? part);
+const rowName = (part, label) => visible(names.get(part)?.rows.get(label) || label);
+const columnName = (part, label) => visible(names.get(part)?.columns.get(label) ?? cellName(label));
 
 function draw({ attempts, learners, parts, misconceptions, identical }) {
   if (!attempts) {
@@ -50,8 +62,12 @@ function draw({ attempts, learners, parts, misconceptions, identical }) {
   }
   tell(state, `${count(attempts, "attempt")} of ${count(learners, "learner")}. Who was wrong three times counts three times.`);
   place.replaceChildren(
-    section("Right answers", "Of those who answered; what could not be read is an answer that is not right.", parts.map(partShares)),
-    section("Misconceptions", "The attempts that have each, the commonest first, and on which days (UTC).", [
+    section(
+      "Right answers",
+      "Of the answers, one of each attempt. A part or a cell that could not be read is an answer that is not right; of a table that could not be read as a whole, no row is counted.",
+      parts.map(partShares),
+    ),
+    section("Misconceptions", "The attempts that have each, the commonest first, and on which days (UTC). The sentence is what one of them was told.", [
       misconceptions.length ? folded(misconceptions, slipsOf(misconceptions)) : h("p", {}, "None was found."),
     ]),
     section("Identical wrong answers", "Sent by several learners letter by letter. This is no proof that anybody copied.", [
@@ -64,20 +80,23 @@ const section = (title, note, content) => h("section", {}, h("h2", {}, title), h
 
 function partShares({ part, rows, ...share }) {
   const told = share.share === undefined ? "nobody answered" : `${percent(share.share)} right of ${count(share.answered, "answer")}`;
-  const body = rows.length ? shares(titleOf(part), rows) : null;
+  const body = rows.length ? shares(part, rows) : null;
   return h("section", { class: "card" }, h("header", {}, h("h3", {}, titleOf(part)), h("span", { class: "badge", "data-share": band(share) }, told)), body);
 }
 
 /** The rows of a part with the share of each cell. */
-function shares(title, rows) {
+function shares(part, rows) {
   const labels = rows.reduce((most, { cells }) => (cells.length > most.length ? cells : most), []).map(({ label }) => label);
-  const heads = ["Row", ...labels.map((label) => visible(cellName(label))), "Whole row"];
+  // In a list, the one cell is the whole row.
+  const shown = names.get(part)?.isList ? [] : labels;
+  const heads = ["Row", ...shown.map((label) => columnName(part, label)), shown.length ? "Whole row" : "Right", "Answers"];
   const body = rows.map(({ label, cells, ...whole }) => [
-    visible(label),
-    ...labels.map((each) => shareCell(cells.find((cell) => cell.label === each))),
+    rowName(part, label),
+    ...shown.map((each) => shareCell(cells.find((cell) => cell.label === each))),
     shareCell(whole),
+    h("td", { class: "answers" }, whole.answered.toLocaleString("en-GB")),
   ]);
-  return table(`Shares: ${title}`, heads, body);
+  return table(`Shares: ${titleOf(part)}`, heads, body);
 }
 
 function shareCell(figures) {
@@ -90,13 +109,13 @@ const band = ({ share }) => (share === undefined ? "none" : BANDS.filter((edge) 
 
 /** What draws some of all slips, by the same measures. */
 function slipsOf(misconceptions) {
-  const days = misconceptions.flatMap(({ by_day: counts }) => Object.keys(counts)).sort();
+  const charts = daysCharts(misconceptions.map(({ by_day: counts }) => counts));
   const most = misconceptions[0].attempts;
-  const row = ({ part, code, attempts, by_day: counts }) => [
-    h("code", {}, visible(code)),
+  const row = ({ part, code, sentence, attempts, by_day: counts }) => [
+    sentence ? h("span", { class: "slip" }, h("span", {}, ...message(sentence)), h("code", {}, visible(code))) : h("code", {}, visible(code)),
     titleOf(part),
     h("span", { class: "counted" }, String(attempts), h("meter", { min: 0, max: most, value: attempts, "aria-hidden": "true" })),
-    daysChart(counts, days[0], days.at(-1)),
+    charts.get(counts),
   ];
   return (shown) => table("Misconceptions", ["Misconception", "Part", "Attempts", "Over days"], shown.map(row));
 }
@@ -121,11 +140,14 @@ function placesInWords(places) {
   for (const each of places) {
     const [part, row, cell] = each.split("/");
     const rows = parts.get(part) ?? parts.set(part, new Map()).get(part);
-    rows.set(row, [...(rows.get(row) ?? []), cellName(cell)]);
+    rows.set(row, [...(rows.get(row) ?? []), columnName(part, cell)]);
   }
-  const ofPart = ([part, rows]) => `${titleOf(part)}: ${[...rows].map(([row, cells]) => `row ${row} ${cells.join(", ")}`).join("; ")}`;
+  const ofRow = (part, [row, cells]) => (names.get(part)?.isList ? rowName(part, row) : `${inWords(rowName(part, row))} ${cells.join(", ")}`);
+  const ofPart = ([part, rows]) => `${titleOf(part)}: ${[...rows].map((row) => ofRow(part, row)).join("; ")}`;
   return visible([...parts].map(ofPart).join(". "));
 }
+
+const inWords = (row) => (row.includes(" ") ? row : `row ${row}`);
 
 /** The first of many, and the others folded below. */
 function folded(all, draw) {
