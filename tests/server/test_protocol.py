@@ -177,7 +177,7 @@ def test_refusals_are_counted_which_the_application_never_sees(impatient: Servic
 
     counted = [more("refusals_total", str(status)) for status in (408, 400, 414, 431, 413)]
     assert counted == [1, 1, 2, 1, 0]
-    assert more("requests_total", "POST", "other", "413") == 1
+    assert more("requests_total", "POST", "/v1/preview", "413") == 1
 
 
 def test_a_body_that_drips_is_given_up_all_the_same(impatient: Service) -> None:
