@@ -24,8 +24,8 @@ FIGURE = "figure"
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
-    """Two more than there are cores: many a test waits for a process or a page."""
-    return (os.cpu_count() or 1) + 2
+    """One more than there are cores: many a test waits for a process or a page."""
+    return (os.cpu_count() or 1) + 1
 
 
 @pytest.hookimpl(wrapper=True)
