@@ -27,7 +27,9 @@ _FRACTION: Final = re.compile("[¼-¾⅐-⅞↉]")
 _EXTRA_OF_FRACTION: Final = 5
 # c12 is the cosine of a sum.
 _SHORTHAND: Final = re.compile(r"(?<![A-Za-z\\])[cs]\d{2}")
-_EXTRA_OF_DEGREES, _EXTRA_OF_SHORT_NAME, _EXTRA_OF_SHORTHAND = 10, 4, 3
+# Of a number it may be meant in degrees, which is looked into.
+_FUNCTION: Final = re.compile(r"(?:sin|cos|tan)(?![A-Za-z])")
+_EXTRA_OF_DEGREES, _EXTRA_OF_SHORT_NAME, _EXTRA_OF_SHORTHAND, _EXTRA_OF_FUNCTION = 10, 4, 5, 2
 # Shorter texts are not worth the extra: the largest answers have 300 of them.
 _WORTH_IT: Final = 40
 
@@ -85,6 +87,7 @@ def _scanned(text: str) -> _Count:
     extra += len(_NAME_OR_NUMBER.findall(text))
     extra += _EXTRA_OF_DEGREES * len(_OF_DEGREES.findall(text))
     extra += _EXTRA_OF_SHORTHAND * len(_SHORTHAND.findall(text))
+    extra += _EXTRA_OF_FUNCTION * len(_FUNCTION.findall(text))
     extra += _EXTRA_OF_SHORT_NAME * len(_SHORT_NAME.findall(text))
     if not text.isascii():
         symbols += _SYMBOLS_IN_COMPOSED * len(_COMPOSED.findall(text))

@@ -35,9 +35,9 @@ def test_names_numbers_and_signs_are_counted(text: str, symbols: int) -> None:
         ("√2 ", 7),
         ("sind(30)", 17),
         ("sin(q1)", 10),
-        ("c12 ", 7),
+        ("c12 ", 9),
         ("½", 10),
-        (r"\cos\left(\theta_{1}\right)", 12),
+        (r"\cos\left(\theta_{1}\right)", 14),
     ],
 )
 def test_costly_symbols_of_long_texts_count_several_times(text: str, cost: int) -> None:

@@ -19,6 +19,10 @@ from tests.worst.seeds import (
 ARM: Final = "stanford-arm"
 
 
+# Names that are not typed as the symbols that they stand for.
+_SUMS = [["c12 " * 33 + f"+{4 * i + j}" for j in range(4)] for i in range(12)]
+
+
 def _graded(**answers: object) -> Attack:
     return Attack(GRADE, ARM, {"answers": answers})
 
@@ -72,6 +76,9 @@ KNOWN: Final[Mapping[str, Attack]] = {
         FILE,
         f"{ARM}-either",
         {"answers": {"table": _DECIMALS[:6], "links": [_DECIMALS[:4]] * 6, "pose": _HALVES}},
+    ),
+    "sums by their shorthand, told in a file": Attack(
+        FILE, ARM, {"answers": {"table": _SUMS[:12], "links": [_SUMS[i : i + 4] for i in range(6)]}}
     ),
     "long rows of names": Attack(
         GRADE, ARM, {"answers": {"table": [{f"k{i}": 0 for i in range(1500)}] * 12}}
