@@ -27,13 +27,13 @@ _FRACTION: Final = re.compile("[¼-¾⅐-⅞↉]")
 _EXTRA_OF_FRACTION: Final = 5
 # c12 is the cosine of a sum.
 _SHORTHAND: Final = re.compile(r"(?<![A-Za-z\\])[cs]\d{2}")
-# Of a number it may be meant in degrees, which is looked into.
-_FUNCTION: Final = re.compile(r"(?:sin|cos|tan)(?![A-Za-z])")
-_EXTRA_OF_DEGREES, _EXTRA_OF_SHORT_NAME, _EXTRA_OF_SHORTHAND, _EXTRA_OF_FUNCTION = 10, 4, 5, 2
+# That of a number may be meant in degrees, which is looked into.
+_OF_NUMBER: Final = re.compile(r"(?:sin|cos|tan)\(\d")
+_EXTRA_OF_DEGREES, _EXTRA_OF_SHORT_NAME, _EXTRA_OF_SHORTHAND, _EXTRA_OF_NUMBER = 10, 4, 5, 2
 # Shorter texts are not worth the extra: the largest answers have 300 of them.
 _WORTH_IT: Final = 40
 
-# What is counted together: none of the patterns above looks beyond it.
+# What is counted together: but for the last one, none of the patterns above looks beyond it.
 _WORD: Final = re.compile(r"\\?[A-Za-z0-9_.]+|[^ ]")
 # A formula has few words, which come again and again. Other texts are counted in one piece.
 _MOST_WORDS: Final = 100
@@ -77,7 +77,7 @@ def _by_words(text: str) -> _Count:
         symbols_of_word, extra_of_word = _of_word(word)
         symbols += times * symbols_of_word
         extra += times * extra_of_word
-    return _Count(symbols, extra)
+    return _Count(symbols, extra + _EXTRA_OF_NUMBER * len(_OF_NUMBER.findall(text)))
 
 
 def _scanned(text: str) -> _Count:
@@ -87,8 +87,8 @@ def _scanned(text: str) -> _Count:
     extra += len(_NAME_OR_NUMBER.findall(text))
     extra += _EXTRA_OF_DEGREES * len(_OF_DEGREES.findall(text))
     extra += _EXTRA_OF_SHORTHAND * len(_SHORTHAND.findall(text))
-    extra += _EXTRA_OF_FUNCTION * len(_FUNCTION.findall(text))
     extra += _EXTRA_OF_SHORT_NAME * len(_SHORT_NAME.findall(text))
+    extra += _EXTRA_OF_NUMBER * len(_OF_NUMBER.findall(text))
     if not text.isascii():
         symbols += _SYMBOLS_IN_COMPOSED * len(_COMPOSED.findall(text))
         extra += _EXTRA_OF_FRACTION * len(_FRACTION.findall(text))
