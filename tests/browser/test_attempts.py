@@ -127,7 +127,7 @@ def rows(page: Page) -> Any:
 
 
 def test_a_tutor_works_with_recorded_attempts(
-    visit: Opening, recording: Recording, tmp_path: Path
+    recording: Recording, visit: Opening, tmp_path: Path
 ) -> None:
     # Under the page's own policy, by keyboard where it matters, on a narrow screen.
     page = visit(**recording.visitor).page
@@ -269,7 +269,7 @@ def test_a_tutor_works_with_recorded_attempts(
 
 @pytest.mark.campaign
 def test_nobody_is_kept_out_of_the_views_of_attempts(
-    visit: Opening, service: str, recording: Recording, axe: str
+    recording: Recording, visit: Opening, service: str, axe: str
 ) -> None:
     [*_, attempt] = [recording.record(learner, table) for learner, table in ANSWERS]
     page = visit(bypass_csp=True, **recording.visitor).page
@@ -302,3 +302,18 @@ def test_nobody_is_kept_out_of_the_views_of_attempts(
     page.goto(f"{service}/tutor/attempts")
     expect(page.get_by_text("DH_GRADER_DATABASE=attempts.db")).to_be_visible()
     check()
+
+
+@pytest.mark.campaign
+def test_the_page_of_the_interface_shows_what_students_wrote_as_text(
+    recording: Recording, visit: Opening
+) -> None:
+    """Whoever tries an operation out at /docs sees recorded answers there."""
+    attempt = recording.record(PICTURE, WRONG)
+    page = visit(**recording.visitor, bypass_csp=True).page
+    page.goto(f"{recording.address}/docs#/attempts/getAttempt")
+    page.get_by_placeholder("attempt_id").fill(attempt)
+    page.get_by_role("button", name="Execute").click()
+    answer = page.locator(".live-responses-table")
+    expect(answer).to_contain_text(PICTURE.replace('"', '\\"'))
+    assert answer.locator("img, script").count() == 0

@@ -42,8 +42,9 @@ def writing(folder: Path) -> Iterator[str]:
             process.wait(timeout=ANSWER)
 
 
+# The service is named first, so that it ends last: the page asks it to the end.
 @pytest.mark.campaign
-def test_a_tutor_saves_an_exercise(visit: Opening, writing: str, folder: Path) -> None:
+def test_a_tutor_saves_an_exercise(writing: str, visit: Opening, folder: Path) -> None:
     opened = visit()
     page = opened.page
     page.goto(f"{writing}/tutor/editor?exercise=scara")
