@@ -83,6 +83,7 @@ attack: $(dev) ## attack a real process; look for misread formulas; watch the me
 load: $(dev) ## 200 clients for SECONDS= (60), graded and recorded, on SQLite and on two replicas over PostgreSQL
 	$(python) -m tests.load --seconds "$(SECONDS)"
 	$(python) -m tests.load --seconds "$(SECONDS)" --database postgresql --replicas 2 --workers 1
+	$(python) -m tests.load.wrong_answers
 	$(python) -m pytest -m campaign tests/load
 
 worst: $(dev) ## search for the costliest request for MINUTES= (10), and say where its time goes (SEED=)

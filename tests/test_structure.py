@@ -19,9 +19,9 @@ TESTS = ROOT / "tests"
 
 # Each package, or file of service/ itself, may import those that stand before it.
 PACKAGES = (
-    "version", "expressions", "grids", "kinematics", "catalogue", "grading", "solutions", "figures",
-    "authoring", "submissions", "contract", "statistics", "formats", "local_grading", "bundles",
-    "attempts", "access", "client", "settings",
+    "version", "time_slices", "expressions", "grids", "kinematics", "catalogue", "grading",
+    "solutions", "figures", "authoring", "submissions", "contract", "statistics", "formats",
+    "local_grading", "bundles", "attempts", "access", "client", "settings",
     "kinds_check", "api", "web", "server", "cli", "app", "__main__",
 )  # fmt: skip
 

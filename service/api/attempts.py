@@ -4,8 +4,8 @@ import hashlib
 import json
 from collections.abc import Collection
 from datetime import UTC, datetime
+from functools import partial
 from http import HTTPStatus
-from time import perf_counter
 from typing import TYPE_CHECKING, Annotated
 
 from fastapi import APIRouter, Header, Request, Response
@@ -17,7 +17,7 @@ from service.api.lookup import Catalogue, ExerciseId, exercise_or_404, require_p
 from service.api.monitor import Monitor
 from service.api.openapi import posting
 from service.api.problems import ProblemError, store_down
-from service.api.turns import give_way
+from service.api.turns import giving_way
 from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
 from service.attempts.errors import StoreDownError
 from service.attempts.graded import AttemptGrading, AttemptReport
@@ -25,6 +25,7 @@ from service.attempts.outcome import Outcome
 from service.attempts.policy import AttemptRefusedError, Ruling, ruling
 from service.catalogue import Exercise, FeedbackLevel, least
 from service.contract.attempts import Attempt, AttemptRequest, AttemptResponse
+from service.time_slices import working_time
 
 if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
@@ -152,9 +153,7 @@ class _Attempting:
                 return self._same(standing.earlier)
             most = self._most(self._ruling(standing))
             if not self._grading.has(most):
-                if self._grading.has_begun:
-                    await give_way(request)
-                self._grade(most)
+                await giving_way(request, partial(self._grade, most))
             written = await self._store.record(standing, self._after)
             if isinstance(written, RecordedAttempt):
                 return written
@@ -168,10 +167,10 @@ class _Attempting:
         return least(self._exercise.feedback_at(taken.ordinal), self._ceiling)
 
     def _grade(self, most: FeedbackLevel) -> None:
-        began = perf_counter()
+        began = working_time()
         report = self._grading.at(most).report
         if self._monitor is not None:
-            self._monitor.graded(report, perf_counter() - began)
+            self._monitor.graded(report, working_time() - began)
 
     def _same(self, earlier: RecordedAttempt) -> RecordedAttempt:
         if earlier.request_digest != self._request_digest:

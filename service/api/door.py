@@ -2,12 +2,13 @@
 
 from typing import Final, Protocol
 
-from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.types import ASGIApp, Receive, Send
+from starlette.types import Scope as Asked
 
-from service.access.caller import Caller
+from service.access.caller import Caller, Scope
 from service.api.access import IDENTITY, Access
 from service.api.access_problems import too_often
-from service.api.turns import CLIENT
+from service.api.turns import CLIENT, COURSE_SITE, ONE_ADDRESS, ONE_STUDENT, Client
 
 # What counts towards limits, below whatever prefix the service stands; pages and files do not.
 _COUNTED: Final = ("/v1/", "/tutor")
@@ -33,7 +34,7 @@ class DoorMiddleware:
         self._access = access
         self._rates = rates
 
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+    async def __call__(self, scope: Asked, receive: Receive, send: Send) -> None:
         """Serve one ASGI connection."""
         if scope["type"] != "http" or scope["path"].endswith(_HEALTH):
             await self.app(scope, receive, send)
@@ -47,5 +48,15 @@ class DoorMiddleware:
                 return
         inner = {**scope, IDENTITY: identity}
         if identity.caller.owner:
-            inner[CLIENT] = identity.caller.owner
+            inner[CLIENT] = Client(identity.caller.owner, _most_shares(identity.caller))
         await self.app(inner, receive, send)
+
+
+def _most_shares(caller: Caller) -> float:
+    """Return how many shares of the processor the holder of a key or token has at most.
+
+    A key that may record is that of a course site, which speaks for all students of the course.
+    """
+    if caller.learner is not None:
+        return ONE_STUDENT
+    return COURSE_SITE if Scope.RECORD in caller.scopes else ONE_ADDRESS

@@ -2,7 +2,7 @@
 
 from collections import OrderedDict
 from collections.abc import Hashable, Iterator, Mapping, Sequence, Set
-from functools import cache
+from functools import cache, partial
 from typing import Any, Final
 
 import numpy as np
@@ -14,6 +14,7 @@ from service.api.bodies import body_as
 from service.api.lookup import Catalogue, Location, require_exercise
 from service.api.openapi import posting
 from service.api.problems import ProblemError, invalid
+from service.api.turns import giving_way
 from service.catalogue import Exercise
 from service.contract.frames import (
     ConvertedRow,
@@ -85,7 +86,7 @@ def routes(catalogue: Catalogue, access: Access) -> APIRouter:
         caller = access.require(request, Scope.GRADE)
         body = await body_as(FramesRequest, request)
         require_reach(caller, body.exercise)
-        answer = _answered(catalogue, body, mechanisms)
+        answer = await giving_way(request, partial(_answered, catalogue, body, mechanisms))
         content = answer.model_dump_json(exclude_none=True)
         return Response(content, media_type="application/json")
 

@@ -1,8 +1,8 @@
 """The routes that grade."""
 
 import logging
+from functools import partial
 from http import HTTPStatus
-from time import perf_counter
 
 from fastapi import APIRouter, Request, Response
 
@@ -13,12 +13,13 @@ from service.api.lookup import Catalogue, ExerciseId, Location, exercise_or_404,
 from service.api.monitor import Monitor
 from service.api.openapi import posting
 from service.api.problems import ProblemError, failed
-from service.api.turns import give_way
+from service.api.turns import give_way, giving_way
 from service.catalogue import Exercise, FeedbackLevel, least
 from service.contract.grading import GradeManyResponse
 from service.formats.json import rendered
 from service.grading import Report, grade
 from service.submissions.body import ExerciseSubmission, GradeManyRequest, GradeRequest
+from service.time_slices import working_time
 
 _log = logging.getLogger(__name__)
 
@@ -48,7 +49,8 @@ def routes(
         access.require(request, Scope.GRADE, exercise_id)
         exercise = exercise_or_404(catalogue, exercise_id)
         body = await body_as(GradeRequest, request)
-        return Response(_report(exercise, body, ()), media_type="application/json")
+        report = await giving_way(request, lambda: _report(exercise, body, ()))
+        return Response(report, media_type="application/json")
 
     @router.post(
         "/grade",
@@ -68,9 +70,9 @@ def routes(
         results = []
         for i, submission in enumerate(body.submissions):
             if i:
-                # Others wait for one grading at most, and not for all of them.
                 await give_way(request)
-            results.append(_result(submission, i, request.url.path, caller))
+            graded = partial(_result, submission, i, request.url.path, caller)
+            results.append(await giving_way(request, graded))
         content = b'{"results":[%b]}' % b",".join(results)
         return Response(content, media_type="application/json")
 
@@ -92,10 +94,10 @@ def routes(
         """The report as JSON. Raises ProblemError for an unknown part of the submission."""
         require_parts(exercise, ((part, (*at, "answers", part)) for part in body.answers))
         submission = body.submission(least(exercise.feedback, feedback))
-        began = perf_counter()
+        began = working_time()
         report = grade(exercise, submission)
         if monitor is not None:
-            monitor.graded(report, perf_counter() - began)
+            monitor.graded(report, working_time() - began)
         return rendered(report)
 
     return router

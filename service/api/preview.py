@@ -1,5 +1,6 @@
 """The route that shows how a text is read, while the student still types."""
 
+from functools import partial
 from typing import Final
 
 from fastapi import APIRouter, Request, Response
@@ -10,6 +11,7 @@ from service.api.bodies import body_as
 from service.api.lookup import Catalogue, require_exercise, require_parts
 from service.api.openapi import posting
 from service.api.problems import invalid
+from service.api.turns import giving_way
 from service.catalogue import Exercise
 from service.contract.preview import (
     PreviewAnswer,
@@ -84,6 +86,17 @@ def preview_grid(body: PreviewRequest, exercise: Exercise, part: str) -> Preview
     )
 
 
+def _shown(body: PreviewRequest, exercise: Exercise | None) -> str:
+    """The reading of the text, as JSON: as one entry, or as a grid if it is none."""
+    shown = preview(body, exercise.vocabulary if exercise else GENERIC)
+    if not shown.ok and exercise and body.part and _BETWEEN_CELLS & set(body.text):
+        grid = preview_grid(body, exercise, body.part)
+        # A text that is no grid either is better explained as the one entry that it may be.
+        is_script = grid.error is not None and grid.error.code == "unread_script"
+        shown = grid if grid.rows or is_script or "\n" in body.text else shown
+    return shown.model_dump_json(exclude_none=True)
+
+
 def routes(catalogue: Catalogue, access: Access) -> APIRouter:
     """The route that previews."""
     router = APIRouter(prefix="/v1", tags=["preview"])
@@ -104,13 +117,7 @@ def routes(catalogue: Catalogue, access: Access) -> APIRouter:
         body = await body_as(PreviewRequest, request)
         require_reach(caller, body.exercise)
         exercise = _exercise(catalogue, body)
-        shown = preview(body, exercise.vocabulary if exercise else GENERIC)
-        if not shown.ok and exercise and body.part and _BETWEEN_CELLS & set(body.text):
-            grid = preview_grid(body, exercise, body.part)
-            # A text that is no grid either is better explained as the one entry that it may be.
-            is_script = grid.error is not None and grid.error.code == "unread_script"
-            shown = grid if grid.rows or is_script or "\n" in body.text else shown
-        content = shown.model_dump_json(exclude_none=True)
+        content = await giving_way(request, partial(_shown, body, exercise))
         return Response(content, media_type="application/json")
 
     @router.post(
@@ -131,8 +138,8 @@ def routes(catalogue: Catalogue, access: Access) -> APIRouter:
         require_reach(caller, body.exercise)
         exercise = require_exercise(catalogue, body.exercise)
         require_parts(exercise, [(body.part, ("part",))])
-        content = preview_many(body, exercise).model_dump_json(exclude_none=True)
-        return Response(content, media_type="application/json")
+        shown = await giving_way(request, partial(preview_many, body, exercise))
+        return Response(shown.model_dump_json(exclude_none=True), media_type="application/json")
 
     return router
 

@@ -27,11 +27,6 @@ class AttemptGrading:
         self._graded: dict[FeedbackLevel, GradedAnswers] = {}
         self._reports: dict[FeedbackLevel, AttemptReport] = {}
 
-    @property
-    def has_begun(self) -> bool:
-        """Whether the body was graded at all."""
-        return bool(self._graded)
-
     def has(self, most: FeedbackLevel) -> bool:
         """Whether the report at this level needs no further grading."""
         return _graded_for(self._told(most)) in self._graded

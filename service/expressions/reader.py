@@ -25,6 +25,7 @@ from service.expressions.reading_work import symbols_in
 from service.expressions.repairs import Failure, explain
 from service.expressions.tree import Binary, Node, Number, SymbolNode, children
 from service.expressions.vocabulary.symbols import Kind, Vocabulary
+from service.time_slices import checkpoint
 
 AngleUnit = Literal["radians", "degrees"]
 
@@ -225,6 +226,7 @@ class _Reading:
         self.tried = 0
 
     def read(self, text: str) -> Expression | ExpressionError:
+        checkpoint()
         try:
             parsed = _parsed(text, *self.options)
         except UnreadableError as error:

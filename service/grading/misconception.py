@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.grading.feedback import Finding
+from service.time_slices import checkpoint
 
 Answer = TypeVar("Answer")
 Source = TypeVar("Source")
@@ -94,8 +95,11 @@ def explanation(
     matrix is the product of, for example. Each is tried only if those before it explain nothing.
     """
     start = case if source is None else source
-    explains = (case.explained_by(misconception(start)) for misconception in misconceptions)
-    return next(chain.from_iterable(explains), None)
+    for misconception in misconceptions:
+        checkpoint()
+        for hypothesis in case.explained_by(misconception(start)):
+            return hypothesis
+    return None
 
 
 def diagnosed(

@@ -10,6 +10,7 @@ from typing import Self
 
 from service.expressions.reading_work import reading_cost
 from service.grids.limits import GRID_LIMITS
+from service.time_slices import checkpoint
 
 # The pose of a seven-joint arm, multiplied out, not simplified and printed as LaTeX or JavaScript,
 # has up to 13,900, each symbol counted by what it costs.
@@ -89,6 +90,7 @@ class WorkBudget:
 
     def affords(self, work: float) -> bool:
         """Whether there is so much left for explanations. It is taken, and what is gone is gone."""
+        checkpoint()
         self.explanations -= work
         left = min(self.explanations, self.left - (MAX_EXPLANATIONS - self.explanations))
         self.has_left_out |= left < 0
@@ -106,10 +108,12 @@ class WorkBudget:
 
     def charge_search(self, work: float) -> None:
         """Count a search that has to be made, whatever it costs."""
+        checkpoint()
         self.searches -= work
 
     def charge_reading(self, symbols: int) -> bool:
         """Count a text that is to be read; whether it may be."""
+        checkpoint()
         self.symbols -= symbols
         return self.symbols >= 0
 

@@ -1,165 +1,160 @@
-"""Who is next, of the requests that wait.
+"""The queue of the requests that wait, in which all connections have equal shares.
 
-Start-time fair queueing (Goyal, Vin and Cheng, 1996) between clients, and below each client between
-its connections: always the one that has had the least processor time.
+Start-time fair queueing (Goyal, Vin and Cheng, 1996) between connections: the next one is always
+the one that has used the least processor time. An address may be that of a whole class, so each of
+its connections has a share of its own; but together they have a limited number of shares.
 """
 
 import heapq
 from collections import deque
-from collections.abc import Hashable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Final
 
-# What any request counts at least, in seconds of processor time: so clients of small ones come in
-# turn, too.
+from service.api.turns import Client
+from service.time_slices import SLICE
+
+# Seconds that a step of a request counts at least, so that connections with tiny ones take turns.
 LEAST: Final = 0.0001
-# How many accounts are kept of those who do not wait.
+# Seconds that a connection may have used less than others and still make up for it: an answer that
+# takes long to explain need not wait for clients that send one request after the other.
+CREDIT: Final = 0.1
+# The number of accounts that are kept of connections without a request.
 _ACCOUNTS: Final = 1000
 
 
 @dataclass(eq=False, slots=True)
 class Ticket:
-    """One request that waits, or is being answered."""
+    """One request that waits, or is being answered, and the future that it waits for.
 
-    client: str
-    connection: Hashable
+    ``connection`` is 0 if the connections of the client are not told apart.
+    """
+
+    client: Client
+    connection: int
     size: int
-    # What the waiting request waits for.
     turn: Any = None
 
+    @property
+    def key(self) -> tuple[str, int]:
+        """The account that is charged."""
+        return self.client.name, self.connection
 
-class _Accounts:
-    """What each has had, on a scale that runs on with what everybody has, and who waits."""
 
-    def __init__(self) -> None:
-        self.spent: dict[Hashable, float] = {}
-        self._now = 0.0
-        # What those had who wait, when last looked at, in the order of their coming.
-        self._tags: list[tuple[float, int, Any]] = []
-        self._came = 0
+@dataclass(slots=True)
+class _Requests:
+    """The requests of one client: all that are here, and those that wait, with their bytes."""
 
-    def _start(self, key: Hashable) -> float:
-        return max(self._now, self.spent.get(key, 0.0))
+    present: int = 0
+    waiting: int = 0
+    size: int = 0
 
-    def wait(self, key: Hashable) -> None:
-        """Let somebody wait who does not yet."""
-        self._came += 1
-        heapq.heappush(self._tags, (self._start(key), self._came, key))
 
-    def least(self) -> Any:
-        """Of those who wait, the one that has had the least. Raises IndexError where none waits."""
-        while True:
-            tag, came, key = self._tags[0]
-            spent = self.spent.get(key, 0.0)
-            if spent <= tag:
-                return key
-            # Something was charged meanwhile.
-            heapq.heapreplace(self._tags, (spent, came, key))
+@dataclass(slots=True)
+class _Account:
+    """The time that a connection has used, its requests, and those of them that wait."""
 
-    def leave(self) -> None:
-        """Let the one that has had the least wait no more."""
-        heapq.heappop(self._tags)
-
-    def begin(self, key: Hashable) -> None:
-        """Note that somebody's request is begun: nobody who waits has had less."""
-        self._now = self._start(key)
-
-    def charge(self, key: Hashable, seconds: float) -> None:
-        """Add to what somebody has had."""
-        self.spent[key] = self._start(key) + max(LEAST, seconds)
-        if len(self.spent) > _ACCOUNTS:
-            # Those who have had no more than everybody need no account.
-            most = sorted(self.spent.items(), key=lambda item: item[1])[_ACCOUNTS // 2 :]
-            self.spent = dict(most)
+    used: float
+    present: int = 0
+    queue: deque[Ticket] = field(default_factory=deque)
 
 
 class FairQueue:
-    """The requests that wait."""
+    """The requests that are here, and the order of those that wait.
+
+    Times are on a scale that goes on with the time that all have used: a connection that was away
+    has a small credit, and a new one has none.
+    """
 
     def __init__(self) -> None:
-        self._waiting: dict[str, dict[Hashable, deque[Ticket]]] = {}
-        self._clients = _Accounts()
-        self._connections: dict[str, _Accounts] = {}
-        self._count: dict[str, int] = {}
-        self._bytes: dict[str, int] = {}
-        self._length = 0
-        # How many bytes the requests have that wait.
+        self._now = 0.0
+        self._accounts: dict[tuple[str, int], _Account] = {}
+        self._clients: dict[str, _Requests] = {}
+        # The connections that wait: the time used when last looked at, and the order of coming.
+        self._order: list[tuple[float, int, _Account]] = []
+        self._came = 0
+        # The number of requests that wait, and their bytes.
+        self.length = 0
         self.size = 0
 
-    def __len__(self) -> int:
-        """How many requests wait."""
-        return self._length
+    def waiting(self, client: Client) -> tuple[int, int]:
+        """Return the number of requests of a client that wait, and their bytes."""
+        requests = self._clients.get(client.name)
+        return (requests.waiting, requests.size) if requests else (0, 0)
 
-    def of(self, client: str) -> tuple[int, int]:
-        """How many requests of a client wait, and how many bytes they have."""
-        return self._count.get(client, 0), self._bytes.get(client, 0)
+    def enter(self, ticket: Ticket) -> None:
+        """Note that a request has come."""
+        account = self._accounts.pop(ticket.key, None) or _Account(self._now)
+        # The latest at the end.
+        self._accounts[ticket.key] = account
+        account.used = max(account.used, self._now - CREDIT)
+        account.present += 1
+        self._clients.setdefault(ticket.client.name, _Requests()).present += 1
+        if len(self._accounts) > 2 * _ACCOUNTS:
+            idle = [key for key, each in self._accounts.items() if not each.present]
+            for key in idle[:-_ACCOUNTS]:
+                del self._accounts[key]
 
-    def push(self, ticket: Ticket, *, again: bool = False) -> None:
-        """Let a request wait; ``again`` where it had its turn and found no time."""
-        if ticket.client not in self._waiting:
-            self._waiting[ticket.client] = {}
-            self._clients.wait(ticket.client)
-        queues = self._waiting[ticket.client]
-        if ticket.connection not in queues:
-            queues[ticket.connection] = deque()
-            self._accounts(ticket.client).wait(ticket.connection)
-        if again:
-            queues[ticket.connection].appendleft(ticket)
-        else:
-            queues[ticket.connection].append(ticket)
-        self._note(ticket, 1)
+    def leave(self, ticket: Ticket) -> None:
+        """Note that a request has been answered, or given up."""
+        self._accounts[ticket.key].present -= 1
+        requests = self._clients[ticket.client.name]
+        requests.present -= 1
+        if not requests.present:
+            del self._clients[ticket.client.name]
 
-    def next(self) -> Ticket:
-        """The request whose turn it is. Raises IndexError where none waits."""
-        client = self._clients.least()
-        return self._waiting[client][self._accounts(client).least()][0]
+    def push(self, ticket: Ticket) -> None:
+        """Let a request wait that has come."""
+        account = self._accounts[ticket.key]
+        if not account.queue:
+            # Of many that come at once, one for each share of a client is first.
+            waiting = self._clients[ticket.client.name].waiting
+            self._wait(account, SLICE * waiting / ticket.client.most_shares)
+        account.queue.append(ticket)
+        self._count(ticket, 1)
 
     def pop(self) -> Ticket:
-        """Take the request whose turn it is. Raises IndexError where none waits.
-
-        It counts as the least that there is, so that several are taken in turn.
-        """
-        ticket = self.next()
-        client, connection = ticket.client, ticket.connection
-        queues, accounts = self._waiting[client], self._accounts(client)
-        queues[connection].popleft()
-        self._clients.leave()
-        accounts.leave()
-        self.charge(ticket, LEAST)
-        if queues[connection]:
-            accounts.wait(connection)
-        else:
-            del queues[connection]
-        if queues:
-            self._clients.wait(client)
-        else:
-            del self._waiting[client]
-        self._note(ticket, -1)
+        """Take the request whose turn it is. Raises IndexError if none waits."""
+        while True:
+            used, came, account = heapq.heappop(self._order)
+            if not account.queue:
+                continue
+            if account.used <= used:
+                break
+            # It was charged meanwhile.
+            heapq.heappush(self._order, (account.used, came, account))
+        ticket = account.queue.popleft()
+        if account.queue:
+            self._wait(account)
+        self._count(ticket, -1)
         return ticket
 
+    def remove(self, ticket: Ticket) -> None:
+        """Let a request wait no longer that is given up."""
+        queue = self._accounts[ticket.key].queue
+        if ticket in queue:
+            queue.remove(ticket)
+            self._count(ticket, -1)
+
     def begin(self, ticket: Ticket) -> None:
-        """Note that a request is begun: nobody who waits has had less."""
-        self._clients.begin(ticket.client)
-        self._accounts(ticket.client).begin(ticket.connection)
+        """Note that a request has its turn."""
+        self._now = max(self._now, self._accounts[ticket.key].used)
 
     def charge(self, ticket: Ticket, seconds: float) -> None:
-        """Charge the processor time that a request took."""
-        self._clients.charge(ticket.client, seconds)
-        self._accounts(ticket.client).charge(ticket.connection, seconds)
+        """Charge the processor time that a step of a request took."""
+        account = self._accounts[ticket.key]
+        # A client beyond its shares pays more; the requests of one account share the cost.
+        excess = max(1.0, self._clients[ticket.client.name].present / ticket.client.most_shares)
+        account.used += max(LEAST, seconds) * excess / account.present
+        # By half of a fair share: so no request waits for ever for connections that are all new.
+        self._now += seconds / (2 + 2 * len(self._order))
 
-    def _accounts(self, client: str) -> _Accounts:
-        found = self._connections.get(client)
-        if found is None:
-            if len(self._connections) > _ACCOUNTS:
-                kept = self._waiting.keys()
-                self._connections = {c: a for c, a in self._connections.items() if c in kept}
-            found = self._connections[client] = _Accounts()
-        return found
+    def _wait(self, account: _Account, later: float = 0.0) -> None:
+        self._came += 1
+        heapq.heappush(self._order, (account.used + later, self._came, account))
 
-    def _note(self, ticket: Ticket, sign: int) -> None:
-        self._length += sign
+    def _count(self, ticket: Ticket, sign: int) -> None:
+        requests = self._clients[ticket.client.name]
+        requests.waiting += sign
+        requests.size += sign * ticket.size
+        self.length += sign
         self.size += sign * ticket.size
-        self._count[ticket.client] = self._count.get(ticket.client, 0) + sign
-        self._bytes[ticket.client] = self._bytes.get(ticket.client, 0) + sign * ticket.size
-        if not self._count[ticket.client]:
-            del self._count[ticket.client], self._bytes[ticket.client]

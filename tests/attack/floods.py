@@ -7,11 +7,12 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
-from typing import Any
+from typing import Any, Final
 
 from tests.attack.honest import EXERCISE, GRADE
 from tests.benchmarks.server import request
 from tests.server.raw import Service
+from tests.worst.bodies import KNOWN
 from tests.worst.seeds import links_of
 
 HEAD = b"POST /v1/preview HTTP/1.1\r\nHost: x\r\n"
@@ -108,8 +109,57 @@ def many_costly(number: int) -> bytes:
     return request("/v1/grade", _written({"submissions": submissions}))
 
 
+def _spelled(value: Any, number: int) -> Any:
+    """The body with other spaces behind each text, so that none was read before."""
+    match value:
+        case dict():
+            return {key: _spelled(each, number) for key, each in value.items()}
+        case list():
+            return [_spelled(each, number) for each in value]
+        case str() if len(value) > 1 and "\n" not in value:
+            return value + "".join(" \t"[number >> i & 1] for i in range(12))
+    return value
+
+
+# The kinds of bodies that cost most, one of each sort of work.
+KINDS: Final = {
+    "sines in degrees": (GRADE, KNOWN["links of sines in degrees"]),
+    "roots": (GRADE, KNOWN["links of roots"]),
+    "unread cells": (GRADE, KNOWN["unread cells in another unit"]),
+    "many previews": ("/v1/previews", KNOWN["many previews of halves"]),
+    "frames": ("/v1/frames", KNOWN["a free table of long cells"]),
+}
+
+
+def of_kind(kind: str) -> Callable[[int], bytes]:
+    """The bodies of one of the kinds; no two are alike."""
+    path, known = KINDS[kind]
+    body: dict[str, Any] = {**known.body}
+    # The names of exercises and parts are no texts of students.
+    names = ("exercise", "part", "angle_unit")
+    fixed: dict[str, Any] = {name: body.pop(name) for name in names if name in body}
+
+    def numbered(number: int) -> bytes:
+        return request(path, _written({**fixed, **_spelled(body, number)}))
+
+    return numbered
+
+
+def from_one_address(_: int) -> str:
+    """The address of each attacking connection: the same for all."""
+    return SOURCE
+
+
+def from_addresses(number: int) -> str:
+    """The address of each attacking connection: one of its own."""
+    return f"127.0.3.{number + 1}"
+
+
 def costly(
-    body: Callable[[int], bytes] = one_costly, source: str = SOURCE, *, again: bool = True
+    body: Callable[[int], bytes] = one_costly,
+    source: Callable[[int], str] = from_one_address,
+    *,
+    again: bool = True,
 ) -> Flood:
     """Costly requests on 16 connections, each sent as soon as the last is answered.
 
@@ -119,9 +169,9 @@ def costly(
     def flood(running: Service, opened: ExitStack, until: float) -> str:
         numbers, lock, answered = itertools.count(), threading.Lock(), itertools.count()
 
-        def attack() -> None:
+        def attack(place: int) -> None:
             while time.monotonic() < until:
-                with suppress(OSError), running.connect(b"", source) as line:
+                with suppress(OSError), running.connect(b"", source(place)) as line:
                     line.settimeout(1.0)
                     while time.monotonic() < until:
                         with lock:
@@ -133,7 +183,7 @@ def costly(
                         if not again:
                             break
 
-        threads = [threading.Thread(target=attack) for _ in range(16)]
+        threads = [threading.Thread(target=attack, args=(place,)) for place in range(16)]
         for thread in threads:
             thread.start()
         for thread in threads:

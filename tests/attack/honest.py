@@ -1,15 +1,14 @@
 """Honest clients: what they wait for their answers while somebody else attacks."""
 
 import http.client
-import json
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
-from tests.benchmarks.answers import one_student_s_table, table
 from tests.guards import ANSWER
+from tests.load.wrong_answers import tables
 from tests.server.raw import Service
 
 CLIENTS = 6
@@ -36,11 +35,6 @@ class Waits:
         return (
             f"{len(self.seconds)} answers, p50 {p50:.0f} p99 {p99:.0f} max {longest:.0f} ms{failed}"
         )
-
-
-def submission(number: int) -> bytes:
-    """A table as a student writes it, spelled in a way of its own; one in three is wrong."""
-    return json.dumps({"answers": {"table": table(one_student_s_table(number))}}).encode()
 
 
 @contextmanager
@@ -74,13 +68,14 @@ def watched(
             over.wait(pause)
         connection.close()
 
-    numbers = iter(range(10**9))
+    # The same ones each time, half of them with one to four slips.
+    bodies = tables(seed=1, wrong=0.5)
     lock = threading.Lock()
 
     def grade(connection: http.client.HTTPConnection) -> None:
         with lock:
-            number = next(numbers)
-        connection.request("POST", GRADE, submission(number))
+            body = next(bodies)
+        connection.request("POST", f"/v1/exercises/{body.exercise}/grade", body.content)
 
     def alive(connection: http.client.HTTPConnection) -> None:
         connection.request("GET", "/healthz")

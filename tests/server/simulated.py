@@ -12,14 +12,13 @@ from typing import Any
 import pytest
 from starlette.requests import Request
 
-from service.api.turns import give_way
+from service.api.turns import CLIENT, COURSE_SITE, Client, give_way
 from service.server import admission
 from service.server.admission import FairAdmission
+from service.time_slices import SLICE
 
 # Seconds from an answer to the client's next request: the wire, and the client's own work.
 WIRE = 0.0003
-# Seconds of a unit of work.
-UNIT = 0.00027
 
 
 class _Clock(selectors.SelectSelector):
@@ -37,16 +36,16 @@ class _Clock(selectors.SelectSelector):
 class Process:
     """A process behind the admission, in which each request takes the time that it says.
 
-    ``slow`` says how many times as long as on a fast machine a unit of work takes.
+    A grading has checkpoints every ``step`` seconds, so it gives way after some of its steps.
     """
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch, slow: float = 1.0) -> None:
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, step: float = 0.001) -> None:
+        self._step = step
         self._clock = _Clock()
         self.loop = asyncio.SelectorEventLoop(self._clock)
         monkeypatch.setattr(self.loop, "time", lambda: self._clock.now)
-        for clock in ("thread_time", "monotonic"):
-            monkeypatch.setattr(admission, clock, lambda: self._clock.now)
-        self._app = FairAdmission(self._work, lambda: slow * UNIT)
+        monkeypatch.setattr(admission, "thread_time", lambda: self._clock.now)
+        self._app = FairAdmission(self._work)
 
     def run(self, seconds: float, *clients: Coroutine[Any, Any, None]) -> None:
         """Run the clients, as long as that."""
@@ -66,16 +65,23 @@ class Process:
         return self._clock.now
 
     async def _work(self, scope: Any, _receive: Any, _send: Any) -> None:
+        began = self.now
         for i, seconds in enumerate(scope["costs"]):
-            if i:
-                await give_way(Request(scope))
-            self._clock.now += seconds
+            left = seconds
+            while left > 0:
+                if self.now - began >= SLICE or (i and left == seconds):
+                    await give_way(Request(scope))
+                    began = self.now
+                self._clock.now += min(self._step, left)
+                left -= self._step
 
     async def pause(self, seconds: float) -> None:
         """Let so much time pass for one client."""
         await asyncio.sleep(seconds)
 
-    async def ask(self, address: str, port: int, size: int, *costs: float) -> float:
+    async def ask(
+        self, address: str, port: int, size: int, *costs: float, trusted: bool = False
+    ) -> float:
         """Send one request; how long its answer took."""
         asked = False
 
@@ -91,8 +97,10 @@ class Process:
 
         await asyncio.sleep(WIRE)
         began = self.now
-        scope = {
+        scope: dict[str, Any] = {
             "type": "http", "path": "/", "headers": [], "client": (address, port), "costs": costs,
         }  # fmt: skip
+        if trusted:
+            scope[CLIENT] = Client(address, COURSE_SITE)
         await self._app(scope, receive, send)
         return self.now - began

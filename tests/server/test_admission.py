@@ -10,10 +10,12 @@ from typing import Any
 import pytest
 from starlette.requests import ClientDisconnect, Request
 
-from service.api.turns import CLIENT, give_way
+from service.api import turns
+from service.api.turns import CLIENT, COURSE_SITE, ONE_STUDENT, give_way
 from service.server import admission
-from service.server.admission import OF_ALL, OF_ONE, SLICE, FairAdmission, Metered
+from service.server.admission import OF_ALL, OF_ONE, FairAdmission, Metered
 from service.submissions.strict_json import MAX_BODY_SIZE
+from service.time_slices import SLICE
 
 Messages = list[dict[str, Any]]
 
@@ -29,8 +31,13 @@ class Client:
             "client": (address, port),
         }  # fmt: skip
         self._body: list[bytes] = [body[i : i + 65536] for i in range(0, len(body), 65536)]
+        self._sent = list(self._body)
         self.gone = asyncio.Event()
         self.answer: Messages = []
+
+    def reset(self) -> None:
+        """Send the same request again."""
+        self._body = list(self._sent)
 
     async def receive(self) -> dict[str, Any]:
         if self._body:
@@ -95,38 +102,43 @@ async def passes(number: int) -> None:
 
 @pytest.fixture
 def alike(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Lets all requests take the same time: a slice each."""
+    """Let all requests take the same time: a slice each."""
     clock = itertools.count()
     monkeypatch.setattr(admission, "thread_time", lambda: next(clock) * 1.01 * SLICE)
 
 
 @pytest.mark.usefixtures("alike")
-def test_whoever_comes_last_of_many_connections_is_the_second_to_be_served() -> None:
+def test_a_client_that_comes_after_many_connections_of_another_is_served_soon() -> None:
     async def story() -> None:
         inner = Application()
         app = FairAdmission(inner)
         tasks = begin(app, *(Client("attacker", port) for port in range(16)), Client("honest"))
         await asyncio.gather(*tasks)
-        assert inner.served[:3] == ["attacker", "honest", "attacker"]
+        assert inner.served[:3] == ["attacker", "attacker", "honest"]
         assert len(inner.served) == 17
 
     run(story())
 
 
 @pytest.mark.usefixtures("alike")
-def test_requests_with_keys_take_turns_by_their_keys_whatever_their_addresses() -> None:
+def test_learners_take_turns_and_a_course_site_has_a_turn_for_each_request() -> None:
     async def story() -> None:
         inner = Application()
         app = FairAdmission(inner)
-        clients = [Client(f"10.0.0.{port}", port) for port in range(16)]
-        for client in clients:
-            client.scope[CLIENT] = "a key"
-        # The same address as one of these, without a key; and another key from there.
-        other = Client("10.0.0.3", 20)
-        other.scope[CLIENT] = "another key"
-        await asyncio.gather(*begin(app, *clients, Client("10.0.0.3", 21), other))
-        assert inner.served[:3] == ["10.0.0.0", "10.0.0.3", "10.0.0.3"]
-        assert len(inner.served) == 18
+        students = [Client("10.0.0.1", port) for port in range(8)]
+        for each in students:
+            each.scope[CLIENT] = turns.Client("a learner", ONE_STUDENT)
+        site = [Client("10.0.0.2", port) for port in range(8)]
+        for each in site:
+            each.scope[CLIENT] = turns.Client("a key that may record", COURSE_SITE)
+        for _ in range(20):
+            tasks = begin(app, *students, *site)
+            await asyncio.gather(*tasks)
+            for each in (*students, *site):
+                each.reset()
+        # The learner pays for eight connections as for one, the site for each of its own.
+        first = inner.served[-16:][:9]
+        assert first.count("10.0.0.2") >= 7
 
     run(story())
 
@@ -144,47 +156,9 @@ def test_what_arrives_while_another_is_answered_is_heard_before_the_next_is_begu
             client = Client("honest")
             await asyncio.gather(*begin(app, client))
             served_between.append(inner.served[before:].index("honest"))
-        # At most the one that was begun already comes before, and one of the next turn.
-        assert max(served_between) <= 2
+        # The attacker has eight shares, and one of its requests was begun already.
+        assert max(served_between) <= 9
         await asyncio.gather(*waiting)
-
-    run(story())
-
-
-def test_costly_requests_wait_for_many_small_ones() -> None:
-    async def story() -> None:
-        inner = Application(lambda scope: busy(0.02 if scope["client"][0] == "attacker" else 0.0))
-        app = FairAdmission(inner)
-        tasks = begin(app, *(Client("attacker", port) for port in range(4)))
-        await passes(3)
-        tasks += begin(app, *(Client("honest", port) for port in range(100)))
-        await asyncio.gather(*tasks)
-        # One was served at its arrival, and one before the others were heard.
-        assert inner.served.index("honest") <= 2
-        first = inner.served.index("honest")
-        assert set(inner.served[first : first + 100]) == {"honest"}
-
-    run(story())
-
-
-def test_whoever_owes_waits_until_others_are_heard_even_where_nobody_waits(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    now = 0.0
-    monkeypatch.setattr(admission, "thread_time", lambda: now)
-
-    def work(scope: Any) -> None:
-        nonlocal now
-        now += 0.02 if scope["client"][0] == "attacker" else 0.0
-
-    async def story() -> None:
-        inner = Application(work)
-        # So that 20 ms are costly, on whatever machine.
-        app = FairAdmission(inner, lambda: 0.0001)
-        await asyncio.gather(*begin(app, Client("attacker")))
-        await passes(5)
-        await asyncio.gather(*begin(app, Client("attacker"), Client("honest")))
-        assert inner.served == ["attacker", "honest", "attacker"]
 
     run(story())
 
@@ -201,7 +175,7 @@ class ManyGradings(Application):
         await super().__call__(scope, receive, send)
 
 
-def test_a_request_of_many_costly_gradings_waits_after_each_for_many_small_ones() -> None:
+def test_a_request_of_many_gradings_waits_after_each_for_many_small_ones() -> None:
     async def story() -> None:
         inner = ManyGradings()
         app = FairAdmission(inner)
@@ -209,9 +183,10 @@ def test_a_request_of_many_costly_gradings_waits_after_each_for_many_small_ones(
         await passes(3)
         tasks += begin(app, *(Client("honest", port) for port in range(100)))
         await asyncio.gather(*tasks)
+        # Each of the four has a step at its arrival; then all small ones come.
         first = inner.served.index("honest")
-        assert first <= 2
-        assert set(inner.served[first : first + 100]) == {"honest"}
+        assert first <= 4
+        assert inner.served[first : first + 108].count("honest") >= 95
         assert inner.served.count("part") == 40
         assert inner.served.count("attacker") == 4
 
@@ -256,12 +231,12 @@ def test_beyond_its_queue_a_client_is_told_to_come_again() -> None:
 
 
 @pytest.mark.parametrize(
-    ("gradings", "each", "seconds"), [(1, 0.003, 1), (10, 0.003, 4), (20, 0.015, 30)]
+    ("gradings", "each", "seconds"), [(1, 0.003, 2), (10, 0.003, 11), (20, 0.015, 30)]
 )
 def test_whoever_waits_for_more_work_is_told_to_come_again_later(
     monkeypatch: pytest.MonkeyPatch, gradings: int, each: float, seconds: int
 ) -> None:
-    """A grading takes ``each`` seconds, and 128 requests wait."""
+    """A grading takes ``each`` seconds, and 512 requests wait."""
     now = 0.0
     monkeypatch.setattr(admission, "thread_time", lambda: now)
 
@@ -274,9 +249,10 @@ def test_whoever_waits_for_more_work_is_told_to_come_again_later(
         await send({"type": "http.response.start", "status": 200, "headers": []})
 
     async def story() -> None:
-        fair = FairAdmission(app, lambda: 1.0)
+        fair = FairAdmission(app)
         for port in range(10):
             await asyncio.gather(*begin(fair, Client("many", port)))
+        await passes(3)
         many = [Client("many", port) for port in range(OF_ONE[0] + 11)]
         await asyncio.gather(*begin(fair, *many))
         refused = [client.answer[0]["headers"] for client in many if client.status == 429]
@@ -345,7 +321,7 @@ def test_small_answers_leave_room_for_others(monkeypatch: pytest.MonkeyPatch) ->
         # each: who asks for health does not wait for those who are refused.
         for clients in (many, asking):
             answered = sum(client.status is not None for client in clients)
-            assert 2 * 4 <= answered <= 4 * 4
+            assert 2 * 4 <= answered <= 5 * 4
         await asyncio.gather(*tasks)
         assert [client.status for client in many].count(429) == 38
         assert {client.status for client in asking} == {200}
@@ -445,6 +421,6 @@ def test_only_the_time_of_a_request_s_own_steps_is_measured() -> None:
         other = asyncio.ensure_future(others())
         await metered
         await other
-        return metered.spent.work
+        return metered.spent
 
     assert 0.04 <= asyncio.run(measured()) < 0.15

@@ -1,14 +1,23 @@
-"""Who is next, of the requests that wait."""
+"""The order of the requests that wait."""
 
+import math
 from collections import Counter
 
 import pytest
 
-from service.server.fair_queue import FairQueue, Ticket
+from service.api.turns import Client
+from service.server.fair_queue import CREDIT, FairQueue, Ticket
+
+SHARES = 8.0
+STEP = 0.004
 
 
-def wait(queue: FairQueue, client: str, connection: int = 0, size: int = 1) -> Ticket:
-    ticket = Ticket(client, connection, size)
+def come(
+    queue: FairQueue, client: str, connection: int = 1, size: int = 1, shares: float = SHARES
+) -> Ticket:
+    """A request that has come and waits."""
+    ticket = Ticket(Client(client, shares), connection, size)
+    queue.enter(ticket)
     queue.push(ticket)
     return ticket
 
@@ -20,12 +29,12 @@ def take(queue: FairQueue) -> Ticket:
 
 
 def serve(queue: FairQueue, costs: dict[str, float], turns: int) -> list[str]:
-    """Serve for so many turns clients that ask again at once, and say whose turns they were."""
+    """Serve clients that go on after each of so many steps; whose turns they were."""
     served = []
     for _ in range(turns):
         ticket = take(queue)
-        served.append(ticket.client)
-        queue.charge(ticket, costs[ticket.client])
+        served.append(ticket.client.name)
+        queue.charge(ticket, costs[ticket.client.name])
         queue.push(ticket)
     return served
 
@@ -33,82 +42,107 @@ def serve(queue: FairQueue, costs: dict[str, float], turns: int) -> list[str]:
 def test_clients_alike_come_in_turn() -> None:
     queue = FairQueue()
     for client in "abc":
-        wait(queue, client)
-    assert "".join(serve(queue, dict.fromkeys("abc", 0.001), 9)) == "abcabcabc"
-
-
-def test_sixteen_connections_have_one_turn() -> None:
-    queue = FairQueue()
-    for connection in range(16):
-        wait(queue, "many", connection)
-    queue.charge(take(queue), 0.002)
-    wait(queue, "one")
-    assert queue.pop().client == "one"
+        come(queue, client)
+    assert "".join(serve(queue, dict.fromkeys("abc", STEP), 9)) == "abcabcabc"
 
 
 def test_clients_have_the_same_time_and_not_the_same_number_of_turns() -> None:
     queue = FairQueue()
     for client in "ab":
-        wait(queue, client)
+        come(queue, client)
     served = Counter(serve(queue, {"a": 0.010, "b": 0.001}, 1100))
-    # What each weighs at least comes on top.
     assert served["a"] == pytest.approx(100, rel=0.1)
 
 
-def test_connections_of_one_address_are_told_apart() -> None:
+@pytest.mark.parametrize(
+    ("shares", "connections", "expected"),
+    [(8.0, 4, 4), (8.0, 16, 8), (1.0, 16, 1), (math.inf, 16, 16)],
+    ids=["a small class", "an address beyond its shares", "one student", "a course site"],
+)
+def test_a_client_has_a_share_for_each_connection_up_to_a_number(
+    shares: float, connections: int, expected: int
+) -> None:
     queue = FairQueue()
-    for connection in range(16):
-        wait(queue, "campus", connection)
-    for connection in range(100, 106):
-        wait(queue, "campus", connection)
-    costly = 0
-    for _ in range(3000):
+    for connection in range(1, connections + 1):
+        come(queue, "many", connection, shares=shares)
+    come(queue, "one")
+    served = Counter(serve(queue, {"many": STEP, "one": STEP}, 3000))
+    assert served["many"] / served["one"] == pytest.approx(expected, rel=0.1)
+
+
+def test_connections_that_are_not_told_apart_have_their_shares_together() -> None:
+    queue = FairQueue()
+    for _ in range(4):
+        come(queue, "behind a proxy", 0)
+    come(queue, "one")
+    served = Counter(serve(queue, {"behind a proxy": STEP, "one": STEP}, 3000))
+    assert served["behind a proxy"] / served["one"] == pytest.approx(4, rel=0.1)
+
+
+def test_a_connection_that_was_away_makes_up_for_its_credit_and_no_more() -> None:
+    queue = FairQueue()
+    away = come(queue, "away")
+    take(queue)
+    queue.charge(away, STEP)
+    queue.leave(away)
+    come(queue, "here")
+    serve(queue, {"here": STEP}, 1000)
+    come(queue, "away")
+    served = serve(queue, {"here": STEP, "away": STEP}, 100)
+    assert set(served[:20]) == {"away"}
+    first = served.index("here")
+    assert first * STEP == pytest.approx(CREDIT, rel=0.3)
+    assert Counter(served[first:])["away"] == pytest.approx((100 - first) / 2, abs=2)
+
+
+def test_no_request_waits_for_ever_for_new_connections() -> None:
+    queue = FairQueue()
+    long = come(queue, "long")
+    queue.charge(take(queue), 0.050)
+    queue.push(long)
+    for number in range(2, 1000):
+        come(queue, "crowd", number)
         ticket = take(queue)
-        attacks = isinstance(ticket.connection, int) and ticket.connection < 16
-        costly += attacks
-        queue.charge(ticket, 0.040 if attacks else 0.0015)
-        queue.push(ticket)
-    # Each of the six has 0.7 s, and each of the sixteen as much in the end.
-    assert costly == pytest.approx(16 * 0.0015 / 0.040 * 3000 / 6, rel=0.2)
+        if ticket is long:
+            break
+        queue.charge(ticket, STEP)
+        queue.leave(ticket)
+    assert number < 60
 
 
-def test_who_was_away_has_no_credit() -> None:
+def test_requests_of_one_connection_are_served_in_order() -> None:
     queue = FairQueue()
-    wait(queue, "here")
-    serve(queue, {"here": 0.004}, 100)
-    wait(queue, "new")
-    served = serve(queue, {"here": 0.004, "new": 0.004}, 10)
-    assert Counter(served) == {"here": 5, "new": 5}
-
-
-def test_one_connection_is_served_in_order() -> None:
-    queue = FairQueue()
-    tickets = [wait(queue, "a", 1) for _ in range(3)]
+    tickets = [come(queue, "a") for _ in range(3)]
     assert [queue.pop() for _ in range(3)] == tickets
     with pytest.raises(IndexError):
         queue.pop()
 
 
+def test_a_request_that_is_given_up_leaves_the_others() -> None:
+    queue = FairQueue()
+    tickets = [come(queue, client) for client in "abc"]
+    queue.remove(tickets[0])
+    queue.leave(tickets[0])
+    assert [queue.pop(), queue.pop()] == tickets[1:]
+    assert (queue.length, queue.size) == (0, 0)
+
+
 def test_requests_and_bytes_are_counted_by_client() -> None:
     queue = FairQueue()
-    wait(queue, "a", 1, 100)
-    wait(queue, "a", 2, 50)
-    wait(queue, "b", 1, 7)
-    assert (queue.of("a"), queue.of("b"), queue.of("c")) == ((2, 150), (1, 7), (0, 0))
-    assert (len(queue), queue.size) == (3, 157)
-    for _ in range(3):
-        queue.pop()
-    assert (len(queue), queue.size, queue.of("a")) == (0, 0, (0, 0))
+    tickets = [come(queue, "a", 1, 100), come(queue, "a", 2, 50), come(queue, "b", 1, 7)]
+    of = [queue.waiting(Client(name, SHARES)) for name in "abc"]
+    assert of == [(2, 150), (1, 7), (0, 0)]
+    assert (queue.length, queue.size) == (3, 157)
+    for _ in tickets:
+        queue.leave(queue.pop())
+    assert (queue.length, queue.size, queue.waiting(Client("a", SHARES))) == (0, 0, (0, 0))
 
 
-def test_accounts_of_many_clients_take_no_room() -> None:
+def test_accounts_of_many_clients_take_little_room() -> None:
     queue = FairQueue()
-    for number in range(3_000):
-        wait(queue, f"client {number}", number)
+    for number in range(5_000):
+        ticket = come(queue, f"client {number}", number)
         queue.charge(take(queue), 0.001)
-    for number in range(3_000):
-        wait(queue, "one", number)
-        queue.charge(take(queue), 0.001)
-    assert len(queue._clients.spent) <= 1001
-    assert len(queue._connections) <= 1001
-    assert all(len(accounts.spent) <= 1001 for accounts in queue._connections.values())
+        queue.leave(ticket)
+    assert len(queue._accounts) <= 2_001
+    assert not queue._clients
