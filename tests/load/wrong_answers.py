@@ -15,6 +15,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Iterator, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -54,15 +55,20 @@ def _with_slips(rows: Sequence[dict[str, str]], choose: random.Random, slips: in
     return {"rows": changed}
 
 
-def tables(seed: int, wrong: float) -> Iterator[Body]:
-    """Tables of the shipped exercises without end; a share has one to four slips."""
-    choose = random.Random(seed)
-    models: list[tuple[Exercise, str, Any]] = [
+@cache
+def _models() -> list[tuple[Exercise, str, Any]]:
+    """The tables of the shipped exercises that get full marks, each with its part."""
+    return [
         (exercise, part.id, dict[str, Any](solved(exercise).answers)[part.id]["rows"])
         for exercise in shipped_exercises().values()
         for part in exercise.parts
         if part.kind == "dh_table"
     ]
+
+
+def tables(seed: int, wrong: float) -> Iterator[Body]:
+    """Tables of the shipped exercises without end; a share has one to four slips."""
+    choose, models = random.Random(seed), _models()
     while True:
         exercise, part, rows = choose.choice(models)
         slips = choose.randint(1, 4) if choose.random() < wrong else 0
