@@ -31,94 +31,114 @@ class Settings(BaseSettings):
 
     model_config = SettingsConfigDict(env_prefix=PREFIX, frozen=True)
 
-    host: str = Field("127.0.0.1", description="The address that `serve` listens on.")
-    port: int = Field(8000, ge=0, le=65535, description="Its port; 0 takes a free one.")
-    workers: int = Field(1, ge=1, le=64, description="How many processes `serve` starts.")
+    host: str = Field(
+        "127.0.0.1",
+        description="The address that `serve` listens on: `127.0.0.1` for this machine only, "
+        "`0.0.0.0` for all addresses.",
+    )
+    port: int = Field(
+        8000, ge=0, le=65535, description="The port that `serve` listens on; 0 takes a free one."
+    )
+    workers: int = Field(
+        1, ge=1, le=64, description="The number of processes that `serve` starts, up to 64."
+    )
     exercises_dir: Annotated[tuple[Path, ...], NoDecode] = Field(
         default_factory=lambda: (shipped_folder(),),
-        description="The folder of exercise files, or several with the separator of PATH between "
-        "them; the word `shipped` means the exercises that come with the program.",
+        description="The folder of exercise files. Separate several folders as in `PATH`: by `:`, "
+        "or by `;` on Windows. The word `shipped` means the exercises that come with the program.",
     )
     reload_exercises: bool = Field(
         False,
-        description="Whether a change to an exercise file counts without a restart. A file that is "
-        "broken by it keeps its last good version, and the log says what is wrong.",
+        description="`true`: load a changed exercise file without a restart. If the new file "
+        "cannot be used, the last good version stays, and the log says what is wrong.",
     )
     database: SecretStr | None = Field(
         None,
-        description="Where attempts are recorded: the path of an SQLite file, or the URL of a "
-        "PostgreSQL database (postgresql://user:password@host/name). Without it nothing is.",
+        description="The database that records attempts and keys: the path of an SQLite file, or "
+        "the URL of a PostgreSQL database (`postgresql://user:password@host/name`). By default "
+        "nothing is recorded.",
     )
     secret: SecretStr | None = Field(
         None,
-        description="The secret that keys are hashed and tokens signed with: at least "
-        f"{SHORTEST_SECRET} characters that nobody can guess, the same for all processes.",
+        description="The secret that hashes keys and signs tokens: at least "
+        f"{SHORTEST_SECRET} characters that nobody can guess, the same for all processes. By "
+        "default there are no keys.",
     )
     secret_file: Path | None = Field(
-        None, description="The file that holds this secret, instead of the variable."
+        None, description="The file that contains the secret, instead of `DH_GRADER_SECRET`."
     )
     open: str | None = Field(
         None,
-        description="What needs no key: `until-keys` for grading and recording until there is a "
-        "key, `grade` or `grade,record` for these even then, `none`. By default `until-keys`, but "
-        "only if the service listens to this machine alone.",
+        description="The operations that work without a key: `until-keys` (grading and recording, "
+        "until the first key is created), `grade`, `grade,record` or `none`. By default "
+        "`until-keys`, but only as long as the service listens on this machine alone.",
     )
     key_rate: str | None = Field(
         None,
-        description="How often each key, or each learner with a token, may ask: 600/minute, or "
-        "several with semicolons between them. By default as often as they like.",
+        description="How many requests one key, or one learner with a token, may send, such as "
+        "`600/minute`. Separate several limits by semicolons. By default there is no limit.",
     )
     address_rate: str | None = Field(
-        None, description="The same for each address of clients without a key."
+        None,
+        description="How many requests one address may send without a valid key, in the same form. "
+        "By default there is no limit.",
     )
     rates_store: SecretStr | None = Field(
         None,
-        description="The Redis in which several processes count together, "
-        "redis://:password@host:6379/0. By default each counts for itself.",
+        description="The Redis in which several processes count requests together: "
+        "`redis://:password@host:6379/0`. By default each process counts for itself.",
     )
     read_attempts: bool | None = Field(
         None,
-        description="Whether recorded attempts and their statistics are shown to whoever can reach "
-        "the service; by default to whoever asks from this machine itself, without a proxy.",
+        description="Who may read recorded attempts and statistics. By default: tutors with a "
+        "key, or, as long as there are no keys, users on the machine itself (not through a "
+        "proxy). `false`: nobody. `true`: as long as there are no keys, everybody who can reach "
+        "the service.",
     )
     solutions: bool | None = Field(
         None,
-        description="Whether model solutions and the tutor's pages are shown, to whoever can reach "
-        "the service; by default to whoever asks from this machine itself, without a proxy.",
+        description="Who may see model solutions and the tutor's pages; the values mean the same "
+        "as for `DH_GRADER_READ_ATTEMPTS`.",
     )
     editor_dir: Path | None = Field(
         None,
-        description="The folder that the editor of the page writes exercise files to, for whoever "
-        "asks from this machine itself; by default it writes none.",
+        description="The folder to which the editor of the tutor's pages saves exercise files, "
+        "for users on the machine itself. By default the editor saves nothing.",
     )
     feedback: FeedbackLevel = Field(
         FeedbackLevel.FULL,
-        description="The most that a report over HTTP tells: full, hints, verdicts or score. An "
-        "exercise may allow less, and a caller may ask for less.",
+        description="The most that a report over HTTP says: `full`, `hints`, `verdicts` or "
+        "`score`. An exercise may allow less, and a request may ask for less.",
     )
     cors_origins: Annotated[tuple[str, ...], NoDecode] = Field(
         (),
-        description="Web pages that may call from a browser, as origins with commas between them "
-        "(https://course.example.edu); * for all, and by default none.",
+        description="The origins whose web pages may call the service from a browser, separated "
+        "by commas (`https://course.example.edu`); `*` for all. By default none.",
     )
     server: str | None = Field(
-        None, description="The service that `grade` has submissions graded by; none grades here."
+        None,
+        description="The service to which `dh-grader grade` sends submissions. By default `grade` "
+        "grades them itself.",
     )
-    key: SecretStr | None = Field(None, description="The key that `grade` shows this service.")
+    key: SecretStr | None = Field(
+        None, description="The key that `dh-grader grade` sends to this service."
+    )
     metrics: Literal["off", "local", "all"] = Field(
         "off",
-        description="Whether the service counts what it does, and to whom GET /metrics tells it "
-        "for Prometheus: nobody (off), whoever asks from this machine itself, without a proxy "
-        "(local), or whoever can reach the service (all).",
+        description="Who may read `GET /metrics` (for Prometheus): nobody (`off`; then nothing is "
+        "counted), users on the machine itself, not through a proxy (`local`), or everybody who "
+        "can reach the service (`all`).",
     )
     log_format: Literal["text", "json"] = Field(
-        "text", description="Whether a line of the log is text or a JSON object."
+        "text", description="The form of a line of the log: `text`, or a `json` object."
     )
     log_level: Literal["critical", "error", "warning", "info", "debug"] = Field(
-        "info", description="What is logged."
+        "info",
+        description="The least severe messages that are logged: `critical`, `error`, `warning`, "
+        "`info` or `debug`.",
     )
     log_addresses: bool = Field(
-        True, description="Whether the lines on requests name the addresses of clients."
+        True, description="`false`: leave the addresses of clients out of the log."
     )
 
     @field_validator("host")

@@ -122,9 +122,3 @@ def test_solutions_are_not_for_all_and_reloading_is_off(
     monkeypatch.setenv("DH_GRADER_SOLUTIONS", "true")
     monkeypatch.setenv("DH_GRADER_RELOAD_EXERCISES", "1")
     assert (load_settings().solutions, load_settings().reload_exercises) == (True, True)
-
-
-def test_the_readme_names_every_setting() -> None:
-    readme = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
-    missing = [name for name in Settings.model_fields if f"DH_GRADER_{name.upper()}" not in readme]
-    assert not missing

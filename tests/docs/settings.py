@@ -1,0 +1,92 @@
+"""Write the page of all environment variables from the settings: docs/settings.md.
+
+``python -m tests.docs.settings > docs/settings.md`` writes it again after a change.
+"""
+
+import sys
+from enum import StrEnum
+from typing import Final
+
+from pydantic.fields import FieldInfo
+
+from service.settings import PREFIX, SHIPPED, Settings
+
+_INTRODUCTION: Final = f"""\
+# Settings
+
+Every setting is an environment variable. An option of the command line (`--port`) counts more than
+its variable. A value that cannot be used prevents startup, and so does an unknown `{PREFIX}…`
+variable, for example a typo: the program ends with exit code 2 and names the variable.
+
+Behind a proxy on another machine you may need one more variable, `FORWARDED_ALLOW_IPS`
+([Behind nginx](deployment.md#behind-nginx)).
+
+This page is generated: `python -m tests.docs.settings`."""
+
+# The sections: a heading, an introduction, and the settings in order.
+SECTIONS: Final = (
+    ("The service", "[Run it for a course](deployment.md).", ("host", "port", "workers")),
+    (
+        "Exercises",
+        "[Write an exercise](write-an-exercise.md).",
+        ("exercises_dir", "reload_exercises", "editor_dir"),
+    ),
+    (
+        "What students and tutors see",
+        "[How much is told](messages.md#how-much-is-told).",
+        ("feedback", "solutions", "read_attempts", "cors_origins"),
+    ),
+    (
+        "Attempts and keys",
+        "[Recorded attempts](attempts.md), [Keys](keys.md).",
+        (
+            "database",
+            "secret",
+            "secret_file",
+            "open",
+            "key_rate",
+            "address_rate",
+            "rates_store",
+        ),
+    ),
+    (
+        "Log and metrics",
+        "[Operations](operations.md).",
+        ("log_format", "log_level", "log_addresses", "metrics"),
+    ),
+    (
+        "The command line",
+        "`dh-grader grade` reads these two; the service does not. [Client](client.md).",
+        ("server", "key"),
+    ),
+)
+
+
+def page() -> str:
+    """Return the whole page, in Markdown."""
+    sections = [_INTRODUCTION]
+    for heading, introduction, names in SECTIONS:
+        rows = ["| Variable | Default | Meaning |", "|---|---|---|"]
+        rows += [_row(name, Settings.model_fields[name]) for name in names]
+        sections += [f"## {heading}", introduction, "\n".join(rows)]
+    return "\n\n".join(sections) + "\n"
+
+
+def _row(name: str, field: FieldInfo) -> str:
+    return f"| `{PREFIX}{name.upper()}` | {_default(name, field)} | {field.description} |"
+
+
+def _default(name: str, field: FieldInfo) -> str:
+    if name == "exercises_dir":
+        return f"`{SHIPPED}`"
+    match field.default:
+        case None | ():
+            return "not set"
+        case bool(value):
+            return f"`{str(value).lower()}`"
+        case StrEnum(value=value) | value:
+            return f"`{value}`"
+
+
+if __name__ == "__main__":
+    sys.stdout.write(page())
