@@ -1,4 +1,4 @@
-"""What the README and the page on frame choice show is what a newcomer gets."""
+"""The pages on HTTP and on frame choice print what the service answers."""
 
 import json
 import re
@@ -10,6 +10,7 @@ import httpx
 from service.submissions.body import MAX_SUBMISSIONS
 
 ROOT = Path(__file__).parents[2]
+HTTP = ROOT / "docs" / "http.md"
 CURL = re.compile(
     r"^\$ curl -s http://127\.0\.0\.1:8000(\S+) \\\n"
     r" +-H 'Content-Type: application/json' -d @(\S+)$",
@@ -22,9 +23,9 @@ def json_blocks(page: str) -> list[dict[str, Any]]:
     return [json.loads(block) for block in re.findall(r"```json\n(.*?)```", text, re.DOTALL)]
 
 
-def test_the_readme_s_curl_gets_the_answer_that_it_prints(client: httpx.Client) -> None:
-    (url, file), _ = CURL.findall((ROOT / "README.md").read_text(encoding="utf-8"))
-    (printed,) = json_blocks("README.md")
+def test_the_curl_of_the_page_gets_the_answer_that_it_prints(client: httpx.Client) -> None:
+    (url, file), _ = CURL.findall(HTTP.read_text(encoding="utf-8"))
+    (printed,) = json_blocks("docs/http.md")
     # As curl sends it where nobody says what it is: with a form's content type.
     for content_type in ("application/json", "application/x-www-form-urlencoded"):
         answered = client.post(
@@ -34,12 +35,12 @@ def test_the_readme_s_curl_gets_the_answer_that_it_prints(client: httpx.Client) 
         assert answered.json() == {**printed, "version": answered.json()["version"]}
 
 
-def test_the_readme_s_curl_for_many_gets_a_report_and_a_problem(client: httpx.Client) -> None:
-    _, (url, file) = CURL.findall((ROOT / "README.md").read_text(encoding="utf-8"))
+def test_the_curl_for_many_gets_a_report_and_a_problem(client: httpx.Client) -> None:
+    _, (url, file) = CURL.findall(HTTP.read_text(encoding="utf-8"))
     results = client.post(url, content=(ROOT / file).read_bytes()).json()["results"]
     assert [set(result) for result in results] == [{"report"}, {"problem"}]
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert f"up to {MAX_SUBMISSIONS} submissions" in readme
+    page = HTTP.read_text(encoding="utf-8")
+    assert f"up to {MAX_SUBMISSIONS} submissions" in page
 
 
 def test_the_worked_example_of_frame_choice_gets_full_marks(client: httpx.Client) -> None:
