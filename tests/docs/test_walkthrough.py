@@ -16,6 +16,8 @@ DOCS = Path(__file__).parents[2] / "docs"
         ("marks.md", 1),
         ("formats.md", 12),
         ("assignments.md", 3),
+        ("grade-a-folder.md", 1),
+        ("collect-homework.md", 2),
         ("ci/README.md", 3),
         ("figures.md", 2),
     ],
@@ -60,6 +62,7 @@ def test_a_page_that_is_true(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
         (PAGE.replace(" exit=2", "").format(printed="…"), "exit 2"),
         ("```console\n$ rm arm.toml\n```\n", "rm is not run here"),
         ("```console\n```\n", "no command"),
+        ('```csv "a b.csv"\nx\n```\n```csv "a b.csv" expected\ny\n```\n', "line 4: there is\nx"),
     ],
 )
 def test_a_page_that_is_not(

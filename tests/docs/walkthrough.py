@@ -6,7 +6,8 @@ What its code blocks do is said behind the three backticks:
     console exit=1    the same, where the last command ends with that exit code
     toml FILE         is added to the end of the file
     toml FILE instead replaces what the block before has added
-    json FILE         becomes the file, and so does csv FILE
+    json FILE         becomes the file, and so does csv FILE; a name with blanks is in quotes
+    csv FILE expected is what a command before has written into the file
     toml, json, sh    is only read
 
 In what is printed `…` stands for anything within a line, and alone on a line for any lines.
@@ -44,7 +45,7 @@ def blocks(page: str) -> Iterator[Block]:
     """The code blocks of a page, in order."""
     for found in _FENCE.finditer(page):
         line = page.count("\n", 0, found.start()) + 1
-        yield Block(found[1], tuple(found[2].split()), found[3], line)
+        yield Block(found[1], tuple(shlex.split(found[2])), found[3], line)
 
 
 class Reader:
@@ -65,6 +66,9 @@ class Reader:
                     self._run(block)
                 case "toml":
                     self._write_toml(block)
+                case "csv" if "expected" in block.words:
+                    written = (self._folder / block.words[0]).read_text(encoding="utf-8")
+                    assert matches(block.text, written), f"line {block.line}: there is\n{written}"
                 case "json" | "csv":
                     if block.language == "json":
                         json.loads(block.text)
