@@ -1,13 +1,14 @@
 """Install the built wheel with all its dependencies and grade with it: ``make wheel``.
 
-On each supported Python of this machine by pip, and by pipx on this one, as a user would. It needs
-the package index.
+On each supported Python of this machine by pip, and by pipx on this one, as a user would; and from
+a fresh clone by the commands of the README. It needs the package index.
 """
 
 import sys
 import tempfile
 from pathlib import Path
 
+from tests.docs.test_readme import COMMANDS
 from tests.installed.environment import ROOT, build, checked, other_pythons, run
 
 SUBMISSION = ROOT / "docs" / "examples" / "stanford-arm.json"
@@ -20,6 +21,14 @@ def report(program: Path, folder: Path) -> str:
     assert graded.returncode == 1, graded.stderr
     assert POINTS in graded.stdout
     return checked(program, "--version", cwd=folder).strip()
+
+
+def newcomer(folder: Path) -> str:
+    """Return the figures of a fresh clone in which the README's first two commands were run."""
+    checked("git", "clone", "--quiet", ROOT, folder, cwd=ROOT)
+    for command in COMMANDS[:2]:
+        checked(*command.split(), cwd=folder)
+    return report(folder / ".venv" / "bin" / "dh-grader", folder)
 
 
 def main() -> None:
@@ -39,6 +48,7 @@ def main() -> None:
         homes = {"PIPX_HOME": str(folder / "home"), "PIPX_BIN_DIR": str(folder / "programs")}
         checked(pipx / "bin" / "pipx", "install", wheel, cwd=folder, **homes)
         print(f"pipx: {report(folder / 'programs' / 'dh-grader', folder)}")
+        print(f"README in a fresh clone: {newcomer(folder / 'clone')}")
 
 
 if __name__ == "__main__":

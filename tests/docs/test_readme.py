@@ -1,0 +1,50 @@
+"""The README is one page, and its commands do what it says."""
+
+import html
+import re
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from service.cli.program import program
+from tests.docs.walkthrough import blocks
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "README.md").read_text(encoding="utf-8")
+COMMANDS = [
+    line.removeprefix("$ ")
+    for block in blocks(PAGE)
+    for line in block.text.splitlines()
+    if line.startswith("$ ")
+]
+
+
+def test_it_is_one_page() -> None:
+    assert len(PAGE.splitlines()) <= 100
+    assert len(PAGE.split()) <= 650
+
+
+def test_the_newcomer_s_commands_are_first() -> None:
+    """`make wheel` runs them in a fresh clone; see tests/installed."""
+    install = ["python3 -m venv .venv", ".venv/bin/pip install .", ".venv/bin/dh-grader serve"]
+    assert COMMANDS[:3] == install
+
+
+def test_the_picture_shows_what_the_command_prints(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    [command] = [each for each in COMMANDS if " grade " in each]
+    result = CliRunner().invoke(program, command.split()[1:])
+    assert result.exit_code == 1
+    [picture] = re.findall(r"\]\((docs/\S+\.svg)\)", PAGE)
+    drawn = re.findall(r"<text[^>]*>(.*?)</text>", (ROOT / picture).read_text(encoding="utf-8"))
+    shown = "".join("".join(map(html.unescape, drawn)).split())
+    printed = ["".join(line.split()) for line in result.output.splitlines()]
+    assert len(printed) > 10
+    assert [line for line in printed if line not in shown] == []
+
+
+def test_its_targets_exist() -> None:
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    for target in re.findall(r"make (\w+)", " ".join(re.findall(r"`[^`]+`", PAGE) + COMMANDS)):
+        assert re.search(rf"^{target}:", makefile, re.MULTILINE), target
