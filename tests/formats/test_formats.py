@@ -90,6 +90,6 @@ def test_names_of_parts_are_told_apart() -> None:
 
 def test_the_page_on_formats_names_each() -> None:
     page = (Path(__file__).parents[2] / "docs" / "formats.md").read_text(encoding="utf-8")
-    table = page[page.index("| format |") : page.index("What holds for all")]
+    table = page.partition("| format |")[2].partition("\n\n")[0]
     assert {name for name in NAMES if f"`{name}`" in table} == NAMES
     assert {name for name in NAMES if f"--format {name}" in page} == NAMES
