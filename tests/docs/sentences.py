@@ -307,16 +307,16 @@ _SHARED: Final = "Words of several messages"
 _HEAD: Final = """\
 # Sentences
 
-Every sentence that a student can meet, once, with an answer that draws it. [Messages](messages.md)
-says what each code means. Behind the arrow stands the repaired text of what cannot be read, or else
-the correction, which is told at the level `full` only. ↵ stands for the end of a line. Formulas
-without an exercise are for the robot of [What you may type](expressions.md).
+This page lists every sentence of a report once, with an answer that causes it.
+[Messages](messages.md) says what each code means. After the arrow is the repaired text of an
+unreadable entry, or else the correction, which students see at the level `full` only. ↵ means the
+end of a line. Formulas without an exercise use the robot of [What you may type](expressions.md).
 
 This page is generated: `python -m tests.docs.sentences > docs/sentences.md`."""
 _UNMET: Final = """\
 ## Without an example
 
-These have none yet; … stands for what is put in."""
+These sentences have no example yet; … means a value that the program inserts."""
 
 
 def page() -> str:

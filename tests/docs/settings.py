@@ -56,7 +56,7 @@ SECTIONS: Final = (
     ),
     (
         "The command line",
-        "`dh-grader grade` reads these two; the service does not. [Call the service from the command line](client.md).",
+        "Only `dh-grader grade` reads these two. [`grade --server`](client.md) explains them.",
         ("server", "key"),
     ),
 )
