@@ -1,6 +1,6 @@
-"""The page on the keys of an exercise file, from the schema: docs/exercise-fields.md.
+"""Write the page on the keys of an exercise file from the schema: docs/exercise-fields.md.
 
-``python -m tests.docs.exercise_fields > docs/exercise-fields.md`` writes it anew.
+``python -m tests.docs.exercise_fields > docs/exercise-fields.md`` writes it.
 """
 
 import ast
@@ -76,12 +76,12 @@ _KINDS: Final = ", ".join(f"`{kind}`" for kind in SPECS)
 _INTRODUCTION: Final = """\
 # The keys of an exercise file
 
-Every key of an exercise file, in the order in which one writes it. The page
-[Write an exercise](write-an-exercise.md) goes through a whole file, and [Answers by
-kind](answer-kinds.md) shows what students hand in.
+This page lists every key of an exercise file, in the usual order. [Write an
+exercise](write-an-exercise.md) explains a whole file, and [Answer kinds](answer-kinds.md)
+shows what students hand in.
 
 A *formula* is text in the students' notation, such as `"l1 + 0.1"` or `"-90deg"`, or a number. An
-angle without a unit is in radians. A key that is not listed here is a fault, and so is a value of
+angle without a unit is in radians. A key that is not listed here is an error, and so is a value of
 another type.
 
 This page is generated: `python -m tests.docs.exercise_fields`."""
@@ -89,8 +89,8 @@ _PARTS: Final = f"""\
 Every part has these keys and the key `kind`; the further keys of each kind follow below. The kinds
 are {_KINDS}."""
 _POSES: Final = """\
-Parts of these kinds ask for a pose of the robot, or for something that it has. Leave these keys out
-where the part gives the answer itself."""
+Parts of these kinds ask for a pose of the robot, or for a property of it. Leave these keys out if
+the part gives the answer itself."""
 
 
 def page() -> str:

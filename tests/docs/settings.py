@@ -1,6 +1,6 @@
 """Write the page of all environment variables from the settings: docs/settings.md.
 
-``python -m tests.docs.settings > docs/settings.md`` writes it again after a change.
+``python -m tests.docs.settings > docs/settings.md`` writes it.
 """
 
 import sys
@@ -14,8 +14,8 @@ from service.settings import PREFIX, SHIPPED, Settings
 _INTRODUCTION: Final = f"""\
 # Settings
 
-Every setting is an environment variable. An option of the command line (`--port`) counts more than
-its variable. A value that cannot be used prevents startup, and so does an unknown `{PREFIX}…`
+Every setting is an environment variable. An option of the command line (`--port`) overrides its
+variable. A value that cannot be used prevents startup, and so does an unknown `{PREFIX}…`
 variable, for example a typo: the program ends with exit code 2 and names the variable.
 
 Behind a proxy on another machine you may need one more variable, `FORWARDED_ALLOW_IPS`
@@ -25,20 +25,20 @@ This page is generated: `python -m tests.docs.settings`."""
 
 # The sections: a heading, an introduction, and the settings in order.
 SECTIONS: Final = (
-    ("The service", "[Run it for a course](deployment.md).", ("host", "port", "workers")),
+    ("The service", "See [Run it for a course](deployment.md).", ("host", "port", "workers")),
     (
         "Exercises",
-        "[Write an exercise](write-an-exercise.md).",
+        "See [Write an exercise](write-an-exercise.md).",
         ("exercises_dir", "reload_exercises", "editor_dir"),
     ),
     (
         "What students and tutors see",
-        "[How much is told](messages.md#how-much-is-told).",
+        "See [How much is told](messages.md#how-much-is-told).",
         ("feedback", "solutions", "read_attempts", "cors_origins"),
     ),
     (
         "Attempts and keys",
-        "[Recorded attempts](attempts.md), [Keys](keys.md).",
+        "See [Recorded attempts](attempts.md) and [Keys](keys.md).",
         (
             "database",
             "secret",
@@ -51,7 +51,7 @@ SECTIONS: Final = (
     ),
     (
         "Log and metrics",
-        "[Operations](operations.md).",
+        "See [Operations](operations.md).",
         ("log_format", "log_level", "log_addresses", "metrics"),
     ),
     (
