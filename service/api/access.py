@@ -21,7 +21,7 @@ from starlette.types import Scope as Asked
 
 from service.access.caller import NOBODY, Caller, Scope
 from service.access.key_text import PREFIX
-from service.access.keys import CredentialError, Keys, KeysUnreachableError
+from service.access.keys import CredentialError, Keys, KeysBusyError, KeysUnreachableError
 from service.access.open_access import OPEN_ANYWHERE, OpenAccess
 from service.api.access_problems import (
     asking_for_password,
@@ -29,6 +29,7 @@ from service.api.access_problems import (
     attempts_not_shown,
     credential_refused,
     key_needed,
+    keys_busy,
     keys_unreachable,
     learner_makes_token,
     origin_refused,
@@ -104,6 +105,8 @@ class Access:
             return Identity(NOBODY, by_key=True, refusal=credential_refused(str(error)))
         except KeysUnreachableError:
             return Identity(NOBODY, by_key=True, refusal=keys_unreachable())
+        except KeysBusyError:
+            return Identity(NOBODY, by_key=True, refusal=keys_busy())
         return Identity(caller, by_key=True, in_browser=in_browser)
 
     def require(self, request: Request, scope: Scope, exercise: str | None = None) -> Caller:
