@@ -37,35 +37,22 @@ class Checking:
 
         Raises ProblemError where the checks take too long, or the service ends.
         """
-        if self._closed:
-            raise _ending()
+        if self._process is None or self._process.poll() is not None:
+            self._start()
         process = self._process
-        if process is None or process.poll() is not None:
-            process, self._is_ready = _started(), False
-            self._process = process
-            weakref.finalize(self, _end, process)
+        assert process is not None
         try:
-            # The end of the service may have come before this process could be ended with it.
-            if self._closed:
-                raise _ending()
-            if not self._is_ready:
-                _answer(process, READY, _START)
-                self._is_ready = True
-            content = _asked(process, body.model_dump_json().encode(), self._seconds)
-        except ProblemError:
-            _end(process)
-            raise
-        except OSError as error:
+            content = self._asked(process, body.model_dump_json().encode())
+        except BaseException as error:
             _end(process)
             if self._closed:
                 raise _ending() from error
-            if process.returncode == 0:
+            if isinstance(error, _TooLongError):
+                raise _too_long(self._seconds) from error
+            if isinstance(error, OSError) and process.returncode == 0:
                 # It had nothing to do for long, and ended just now.
                 return self.checked(body)
             raise
-        except _TooLongError as error:
-            _end(process)
-            raise _too_long(self._seconds) from error
         if not content:
             raise RuntimeError("the checks failed; the log has their traceback")
         return content
@@ -77,26 +64,34 @@ class Checking:
             # The thread that waits for its answer finds the pipe closed.
             self._process.kill()
 
+    def _start(self) -> None:
+        if self._closed:
+            raise _ending()
+        # A session of its own: a Ctrl+C of the terminal is for the service, which ends this one.
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", _MODULE],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            start_new_session=os.name == "posix",
+        )
+        self._is_ready = False
+        weakref.finalize(self, _end, self._process)
+
+    def _asked(self, process: "subprocess.Popen[bytes]", body: bytes) -> bytes:
+        """Return what the process answers; nothing if it failed. Raises OSError, _TooLongError."""
+        # The end of the service may have come before this process could be ended with it.
+        if self._closed:
+            raise ConnectionResetError
+        if not self._is_ready:
+            _answer(process, READY, _START)
+            self._is_ready = True
+        assert process.stdin is not None
+        send(process.stdin, DONE, body)
+        return _answer(process, DONE, self._seconds)
+
 
 class _TooLongError(Exception):
     """The process has not answered in time."""
-
-
-def _started() -> "subprocess.Popen[bytes]":
-    # A session of its own: a Ctrl+C of the terminal is for the service, which ends this one.
-    return subprocess.Popen(
-        [sys.executable, "-m", _MODULE],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        start_new_session=os.name == "posix",
-    )
-
-
-def _asked(process: "subprocess.Popen[bytes]", body: bytes, seconds: float) -> bytes:
-    """Return what the process answers; nothing if it failed. Raises OSError, _TooLongError."""
-    assert process.stdin is not None
-    send(process.stdin, DONE, body)
-    return _answer(process, DONE, seconds)
 
 
 def _answer(process: "subprocess.Popen[bytes]", expected: bytes, seconds: float) -> bytes:
