@@ -102,6 +102,8 @@ def test_a_wheel_carries_the_program_and_the_catalogue(tmp_path: Path) -> None:
     }
     assert exercises
     assert exercises | program <= carried
+    licences = {name.partition("/licenses/")[2] for name in carried if "/licenses/" in name}
+    assert licences == {"LICENSE", "NOTICE"}
     assert not [name for name in carried if name.startswith(("tests/", "exercises/"))]
 
 
@@ -123,6 +125,26 @@ def test_what_the_dockerfile_copies_exists_and_is_not_ignored() -> None:
     assert [source for source in sources if not (ROOT / source).exists()] == []
     let_through = {line[1:] for line in read(".dockerignore").splitlines() if line.startswith("!")}
     assert let_through == set(sources)
+
+
+@pytest.mark.parametrize(
+    "file", ["Dockerfile", "service/bundles/templates/prairielearn/Dockerfile", "compose.yaml"]
+)
+def test_every_image_of_others_is_named_by_its_digest(file: str) -> None:
+    images = re.findall(r"^ *(?:FROM|image:) (\S+)", read(file), re.MULTILINE)
+    of_others = [image for image in images if image != "dh-grader"]
+    assert of_others
+    for image in of_others:
+        assert re.fullmatch(r"[a-z]+:[\w.-]+@sha256:[0-9a-f]{64}", image), image
+    # Both stages of one image have one base.
+    assert len({image.partition("@")[0] for image in of_others}) == len(set(of_others))
+
+
+def test_every_action_is_named_by_its_commit() -> None:
+    actions = re.findall(r"uses: (.+)", read("docs/ci/github.yml"))
+    assert actions
+    for action in actions:
+        assert re.fullmatch(r"[\w/-]+@[0-9a-f]{40} # v\d+\.\d+\.\d+", action), action
 
 
 def test_the_image_runs_as_a_numbered_user_and_is_watched() -> None:

@@ -72,6 +72,7 @@ class _Api(FastAPI):
         access: Access,
         rates: RequestRates | None,
         monitor: Monitor | None,
+        pages: WebPages | None,
     ) -> None:
         self._cors_origins = cors_origins
         self._turns = turns
@@ -79,6 +80,7 @@ class _Api(FastAPI):
         self._access = access
         self._rates = rates
         self._monitor = monitor
+        self._pages = pages
         # The routes for programs, by which refusals are counted.
         self.interface: list[APIRoute] = []
         super().__init__(
@@ -97,6 +99,8 @@ class _Api(FastAPI):
             self._store.start()
         _freeze_gc()
         yield
+        if self._pages is not None:
+            self._pages.close()
         self._access.close()
         if self._rates is not None:
             self._rates.close()
@@ -158,7 +162,7 @@ def application(
     happens.
     """
     access = access or Access()
-    app = _Api(cors_origins, turns, store, access, rates, monitor)
+    app = _Api(cors_origins, turns, store, access, rates, monitor, pages)
     problems.install(app, None if pages is None else pages.of_problem)
     for router in (
         exercises.routes(catalogue, feedback),

@@ -96,7 +96,13 @@ def _set_up_sqlite(connection: Any, _: object) -> None:
     # Transactions begin where SQLAlchemy says so (below) and not where Python's driver guesses.
     connection.isolation_level = None
     cursor = connection.cursor()
-    for setting in ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON"):
+    # Deleted and replaced rows are overwritten, so that nothing of a forgotten learner stays.
+    for setting in (
+        "journal_mode = WAL",
+        "synchronous = FULL",
+        "foreign_keys = ON",
+        "secure_delete = ON",
+    ):
         cursor.execute(f"PRAGMA {setting}")
     cursor.close()
 

@@ -19,6 +19,7 @@ from service.attempts.attempt import (
     Standing,
 )
 from service.attempts.database import open_database, reason
+from service.attempts.erasure import finish_overwriting, overwrite_deleted
 from service.attempts.errors import StoreDownError
 from service.attempts.grades import Counting, graded_attempts, written
 from service.attempts.reading import AttemptHistory, history, page
@@ -30,7 +31,6 @@ from service.attempts.tutoring import (
     data_of,
     forget,
     override,
-    overwrite_deleted,
 )
 from service.attempts.writer import AttemptWriter
 from service.contract.statistics import ExerciseStatistics
@@ -69,7 +69,7 @@ class AttemptStore:
 
     def start(self) -> None:
         """Begin to take attempts, in the process that serves."""
-        self._writer = AttemptWriter(self.engine)
+        self._writer = AttemptWriter(self.engine, lambda: finish_overwriting(self.engine))
         self._readers = ThreadPoolExecutor(_READERS, "attempts-read")
 
     def close(self) -> None:
@@ -161,12 +161,20 @@ class AttemptStore:
         """How much is recorded of a learner."""
         return await self._read(lambda connection: data_of(connection, learner))
 
-    async def forget(self, learner: str) -> LearnerData:
-        """Delete all that is recorded of a learner, and tell how much it was."""
+    async def forget(self, learner: str) -> tuple[LearnerData, bool | None]:
+        """Delete all that is recorded of a learner; return how much it was.
+
+        With it, whether it is overwritten by now; see ``overwrite_deleted``. If not, the thread
+        that writes tries again every minute.
+        """
         with self.measure("forget"):
             deleted = await self._running.run(lambda connection: forget(connection, learner))
-            await asyncio.to_thread(overwrite_deleted, self.engine)
-        return deleted
+            try:
+                erased = await asyncio.to_thread(overwrite_deleted, self.engine)
+            except SQLAlchemyError:
+                # It is deleted all the same.
+                erased = False
+        return deleted, erased
 
     async def _read(self, work: Callable[[Connection], R]) -> R:
         """The result of ``work``, which writes nothing; beside the attempts that are recorded."""

@@ -7,6 +7,7 @@ from collections import defaultdict
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
+from time import monotonic
 from typing import Any, Final, TypeVar
 
 from sqlalchemy import Connection, Engine
@@ -20,6 +21,8 @@ R = TypeVar("R")
 # So many share a transaction at the most, and so many wait before others are turned away.
 _TOGETHER: Final = 64
 _WAITING: Final = 4096
+# Seconds between two times at which the thread tidies up; the first is at its start.
+_TIDYING: Final = 60.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,8 +43,11 @@ class AttemptWriter:
     several fails, each gets one of its own, so that one that cannot be written costs no other.
     """
 
-    def __init__(self, engine: Engine) -> None:
+    def __init__(self, engine: Engine, tidy: Callable[[], None] = lambda: None) -> None:
+        """Start the thread; it calls ``tidy`` at its start and then every minute."""
         self._engine = engine
+        self._tidy = tidy
+        self._tidy_at = monotonic()
         self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._run, name="attempts", daemon=True)
         self._thread.start()
@@ -69,11 +75,17 @@ class AttemptWriter:
             jobs = [job for job in jobs if not job.done.cancelled()]
             if jobs:
                 self._work_off(jobs)
+            if monotonic() >= self._tidy_at and not ended:
+                self._tidy()
+                self._tidy_at = monotonic() + _TIDYING
 
     def _waiting(self) -> tuple[list[_Job], bool]:
-        """The jobs that wait, at least one, and whether the end has come."""
+        """The jobs that wait, none if it is time to tidy up, and whether the end has come."""
         jobs: list[_Job] = []
-        found = self._jobs.get()
+        try:
+            found = self._jobs.get(timeout=max(0.0, self._tidy_at - monotonic()))
+        except queue.Empty:
+            return jobs, False
         while found is not None:
             jobs.append(found)
             if len(jobs) == _TOGETHER:

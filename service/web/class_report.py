@@ -2,6 +2,7 @@
 
 import io
 import tempfile
+import time
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -24,6 +25,8 @@ from service.submissions.strict_json import MAX_BODY_SIZE
 # Unpacked. A body holds 256 KiB, and what students hand in is much alike.
 MAX_UPLOAD: Final = 8 * 1024 * 1024
 MAX_SUBMISSIONS: Final = 500
+# Seconds. What a class hands in takes one or two; only files made to be costly take longer.
+MOST_SECONDS: Final = 60.0
 _LONGEST_PATH: Final = 1_000
 # In bytes of UTF-8; no file system that is common takes more.
 _LONGEST_NAME: Final = 255
@@ -145,7 +148,13 @@ def _all_graded(
 ) -> Iterator[GradedSubmission]:
     """Each with names that are seen from the folder of the class."""
     above = f"{folder}/"
+    end = time.monotonic() + MOST_SECONDS
     for handed in found:
+        if time.monotonic() >= end:
+            raise _unusable(
+                f"Grading these files takes more than {MOST_SECONDS:g} seconds. Choose fewer, or "
+                "use dh-grader grade FOLDER --format html."
+            )
         submission = graded(handed, terms)
         files = tuple(
             replace(

@@ -94,6 +94,22 @@ def test_the_element_on_a_course_s_own_page(
     unknown.complaints.clear()
 
 
+def test_any_page_may_show_a_figure_and_none_a_tutor_s(
+    visit: Opening, service: str, stranger: Origin
+) -> None:
+    stranger.pages["/figure"] = (
+        '<link rel="icon" href="data:,">'
+        f'<img id="figure" src="{service}/v1/exercises/scara/figure.svg" alt="">'
+        f'<img id="frames" src="{service}/tutor/solutions/scara/frames.svg" alt="">'
+    )
+    opened = visit()
+    opened.page.goto(f"{stranger.address}/figure")
+    shown = "[...document.images].map(each => each.complete && each.naturalWidth > 0)"
+    assert opened.page.evaluate(shown) == [True, False]
+    assert opened.complaints
+    opened.complaints.clear()
+
+
 def test_an_exercise_can_be_read_with_scripts_blocked(visit: Opening, service: str) -> None:
     opened = visit(java_script_enabled=False)
     page = opened.page

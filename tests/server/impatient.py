@@ -1,11 +1,12 @@
 """`python -m tests.server.impatient`: the service with little patience, so that tests need none.
 
-`GET /hanging` there never comes to an answer. The variable ``PATIENCE`` lets it wait longer for the
-rest of a request; at its end it stays impatient.
+`GET /hanging` there never comes to an answer, nor does `GET /working`, in a thread. The variable
+``PATIENCE`` lets it wait longer for the rest of a request; at its end it stays impatient.
 """
 
 import asyncio
 import os
+import time
 
 from fastapi import FastAPI
 
@@ -21,9 +22,14 @@ async def _hanging() -> None:
     await asyncio.sleep(600)
 
 
+async def _working() -> None:
+    await asyncio.to_thread(time.sleep, 600)
+
+
 def _with_hanging(settings: Settings, host: str) -> FastAPI:
     app = installed_app(settings, host)
     app.add_api_route("/hanging", _hanging)
+    app.add_api_route("/working", _working)
     return app
 
 

@@ -1,5 +1,6 @@
 """How a real process ends, alone and with workers, and what it does when one of them is lost."""
 
+import json
 import os
 import signal
 import socket
@@ -15,6 +16,7 @@ from service.server.limits import MAX_CONNECTIONS
 from tests.attack.floods import many_costly
 from tests.guards import ANSWER
 from tests.server.raw import HEALTH, Service, answers, preview, received, service
+from tests.web.test_checking import COSTLY
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
 
@@ -144,6 +146,30 @@ def test_answers_that_the_end_cuts_short_are_no_failures(tmp_path: Path) -> None
             assert [received(line) for line in lines].count(b"")
         # The fixture finds a traceback in the log, if there is one.
         assert "Exception" not in running.log
+
+
+def test_a_thread_that_works_on_does_not_keep_it(tmp_path: Path) -> None:
+    working = b"GET /working HTTP/1.1\r\nHost: x\r\n\r\n"
+    with service(tmp_path, module=IMPATIENT) as running, running.connect(working) as line:
+        running.ask(HEALTH)
+        assert running.end() == 0
+        assert received(line) == b""
+        assert "was given up" in running.log
+
+
+# While the process of the checks starts, and while it is at work.
+@pytest.mark.parametrize("seconds", [0.0, 4.0])
+def test_a_check_of_the_editor_does_not_keep_it(tmp_path: Path, seconds: float) -> None:
+    body = json.dumps({"id": "arm", "text": COSTLY}).encode()
+    head = b"POST /tutor/check HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: %d\r\n\r\n"
+    head %= len(body)
+    with service(tmp_path, module=IMPATIENT) as running, running.connect(head + body) as line:
+        until(lambda: len(workers(running)) == 1)
+        [check] = workers(running)
+        time.sleep(seconds)
+        assert running.end() == 0
+        assert received(line) == b""
+        until(lambda: not runs(check))
 
 
 def connections(process: int) -> int:
