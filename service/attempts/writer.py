@@ -3,6 +3,7 @@
 import asyncio
 import queue
 import threading
+import time
 from collections import defaultdict
 from collections.abc import Callable
 from contextlib import suppress
@@ -17,9 +18,14 @@ from service.attempts.errors import StoreDownError
 
 R = TypeVar("R")
 
+_SILENT: Final = "the database does not react"
+
 # So many share a transaction at the most, and so many wait before others are turned away.
 _TOGETHER: Final = 64
 _WAITING: Final = 4096
+# How long a job waits for the database in all (seconds). A server that does not react at all (a
+# machine that is paused) raises no error, and a lock is waited for five seconds.
+_PATIENCE: Final = 15.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,17 +49,29 @@ class AttemptWriter:
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
         self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
+        # When the thread last began to ask the database, while it waits for the answer.
+        self._asked_at: float | None = None
         self._thread = threading.Thread(target=self._run, name="attempts", daemon=True)
         self._thread.start()
 
     async def run(self, work: Callable[[Connection], R]) -> R:
-        """The result of ``work``, committed. Raises StoreDownError where nothing was written."""
+        """The result of ``work``, committed. Raises StoreDownError if the database did not say so.
+
+        Usually nothing was written then; but a commit whose answer is lost may have taken effect.
+        """
+        asked_at = self._asked_at
+        if asked_at is not None and time.monotonic() - asked_at > _PATIENCE:
+            raise StoreDownError(_SILENT)
         if self._jobs.qsize() >= _WAITING:
             raise StoreDownError("too many attempts wait to be written")
         loop = asyncio.get_running_loop()
         job = _Job(work, loop, loop.create_future())
         self._jobs.put(job)
-        result: R = await job.done
+        try:
+            async with asyncio.timeout(_PATIENCE):
+                result: R = await job.done
+        except TimeoutError as error:
+            raise StoreDownError(_SILENT) from error
         return result
 
     def close(self) -> None:
@@ -69,6 +87,7 @@ class AttemptWriter:
             jobs = [job for job in jobs if not job.done.cancelled()]
             if jobs:
                 self._work_off(jobs)
+                self._asked_at = None
 
     def _waiting(self) -> tuple[list[_Job], bool]:
         """The jobs that wait, at least one, and whether the end has come."""
@@ -85,6 +104,7 @@ class AttemptWriter:
         return jobs, True
 
     def _work_off(self, jobs: list[_Job]) -> None:
+        self._asked_at = time.monotonic()
         try:
             results = self._together(jobs)
         except Exception as error:  # noqa: BLE001 - each job is told of its own failure

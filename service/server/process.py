@@ -6,6 +6,7 @@ import logging
 import os
 import signal
 import socket
+import threading
 from collections.abc import Iterator, Sequence
 from contextvars import Context
 from types import FrameType
@@ -26,6 +27,8 @@ ENDING: Final = (
     f"Ending: requests that have come are answered, for {GRACE:g} s at most. "
     "A second signal ends at once."
 )
+# The end is forced so many seconds after GRACE: a database that does not react would hold it up.
+_MARGIN: Final = 1.5
 _SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -45,6 +48,15 @@ class Server(uvicorn.Server):
         # The supervisor of this worker, which alone sends signals and must not die before it.
         self._parent = port.supervisor if port else None
         self._acceptor: Acceptor | None = None
+        self._last_moment = threading.Timer(GRACE + _MARGIN, _end_at_once)
+        self._last_moment.daemon = True
+
+    def run(self, sockets: list[socket.socket] | None = None) -> None:
+        """Serve until the end, which comes in time whatever threads still wait for."""
+        try:
+            super().run(sockets)
+        finally:
+            self._last_moment.cancel()
 
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:
@@ -91,6 +103,7 @@ class Server(uvicorn.Server):
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:  # noqa: ARG002
         """Answer what has come whole, wait a while for the rest, and hang up on what is left."""
+        self._last_moment.start()
         for server in self.servers:
             server.close()
         if self._acceptor is not None:
@@ -114,3 +127,9 @@ class Server(uvicorn.Server):
     def _guarded(self) -> list[GuardedProtocol]:
         found = list(self.server_state.connections)
         return [connection for connection in found if isinstance(connection, GuardedProtocol)]
+
+
+def _end_at_once() -> None:
+    """End this process. What the database has confirmed is recorded; nothing else is answered."""
+    _log.warning("Something does not react, such as the database: ended without waiting for it.")
+    os._exit(0)
