@@ -72,8 +72,9 @@ class AttemptStore:
         except SQLAlchemyError as error:
             problem = f"{safe_url(engine)}: attempts cannot be recorded there: {reason(error)}"
             raise UnusableDatabaseError(problem) from error
-        # No connection may be carried into processes that are started later.
-        engine.dispose()
+        finally:
+            # No connection may be carried into processes that are started later.
+            engine.dispose()
         return cls(engine)
 
     def start(self) -> None:
