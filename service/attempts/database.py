@@ -63,6 +63,8 @@ def open_database(url: str, *, create: bool = True) -> Engine:
     except CommandError as error:
         newer = "its tables are those of a newer version of the program"
         raise UnusableDatabaseError(f"{safe_url(engine)}: {newer}") from error
+    finally:
+        engine.dispose()
     return engine
 
 

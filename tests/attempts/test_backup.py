@@ -18,7 +18,6 @@ import pytest
 from sqlalchemy import select
 
 from service.attempts.database import in_transaction, open_database
-from service.attempts.errors import UnusableDatabaseError
 from service.attempts.recording import record
 from service.attempts.store import AttemptStore
 from service.attempts.tables import attempts
@@ -165,11 +164,3 @@ def test_a_dump_that_is_made_while_attempts_are_recorded(
         run(back, tmp_path, RESTORED=restored)
 
     check(postgresql_url, restored, catalogue["scara"], back_up)
-
-
-def test_a_backup_of_a_newer_version_is_refused(sqlite_url: str) -> None:
-    open_database(sqlite_url).dispose()
-    with sqlite3.connect(sqlite_url) as connection:
-        connection.execute("UPDATE alembic_version SET version_num = '9999'")
-    with pytest.raises(UnusableDatabaseError, match="newer version"):
-        open_database(sqlite_url)
