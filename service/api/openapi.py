@@ -25,7 +25,7 @@ _REFUSALS = {
     HTTPStatus.REQUEST_ENTITY_TOO_LARGE: "The body is larger than 256 KiB.",
     HTTPStatus.UNSUPPORTED_MEDIA_TYPE: "The body is not JSON and does not claim to be.",
     HTTPStatus.UNPROCESSABLE_ENTITY: "The body has not the right shape, or names an unknown part.",
-    HTTPStatus.SERVICE_UNAVAILABLE: "The database cannot be reached; nothing was recorded.",
+    HTTPStatus.SERVICE_UNAVAILABLE: "The database cannot be reached, or did not confirm.",
 }
 _REFUSED_BODIES: Final = (
     HTTPStatus.BAD_REQUEST,

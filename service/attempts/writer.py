@@ -18,11 +18,16 @@ from service.attempts.errors import StoreDownError
 
 R = TypeVar("R")
 
+_SILENT: Final = "the database does not react"
+
 # So many share a transaction at the most, and so many wait before others are turned away.
 _TOGETHER: Final = 64
 _WAITING: Final = 4096
 # Seconds between two times at which the thread tidies up; the first is at its start.
 _TIDYING: Final = 60.0
+# How long a job waits for the database in all (seconds). A server that does not react at all (a
+# machine that is paused) raises no error, and a lock is waited for five seconds.
+_PATIENCE: Final = 15.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,17 +54,29 @@ class AttemptWriter:
         self._tidy = tidy
         self._tidy_at = monotonic()
         self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
+        # When the thread last began to ask the database, while it waits for the answer.
+        self._asked_at: float | None = None
         self._thread = threading.Thread(target=self._run, name="attempts", daemon=True)
         self._thread.start()
 
     async def run(self, work: Callable[[Connection], R]) -> R:
-        """The result of ``work``, committed. Raises StoreDownError where nothing was written."""
+        """The result of ``work``, committed. Raises StoreDownError if the database did not say so.
+
+        Usually nothing was written then; but a commit whose answer is lost may have taken effect.
+        """
+        asked_at = self._asked_at
+        if asked_at is not None and monotonic() - asked_at > _PATIENCE:
+            raise StoreDownError(_SILENT)
         if self._jobs.qsize() >= _WAITING:
             raise StoreDownError("too many attempts wait to be written")
         loop = asyncio.get_running_loop()
         job = _Job(work, loop, loop.create_future())
         self._jobs.put(job)
-        result: R = await job.done
+        try:
+            async with asyncio.timeout(_PATIENCE):
+                result: R = await job.done
+        except TimeoutError as error:
+            raise StoreDownError(_SILENT) from error
         return result
 
     def close(self) -> None:
@@ -75,6 +92,7 @@ class AttemptWriter:
             jobs = [job for job in jobs if not job.done.cancelled()]
             if jobs:
                 self._work_off(jobs)
+                self._asked_at = None
             if monotonic() >= self._tidy_at and not ended:
                 self._tidy()
                 self._tidy_at = monotonic() + _TIDYING
@@ -97,6 +115,7 @@ class AttemptWriter:
         return jobs, True
 
     def _work_off(self, jobs: list[_Job]) -> None:
+        self._asked_at = monotonic()
         try:
             results = self._together(jobs)
         except Exception as error:  # noqa: BLE001 - each job is told of its own failure

@@ -121,11 +121,13 @@ class Server(uvicorn.Server):
 def _end_at_last() -> None:
     """End the process after the promised time, also if a thread is still at work.
 
-    Python waits for its threads, and nothing ends one; what it was at, nobody reads any more.
+    Python waits for its threads, and nothing ends one. What the database has confirmed is recorded.
     """
 
     def end() -> None:
-        _log.warning("Work that nobody waits for any more was given up.")
+        _log.warning(
+            "Something does not react, such as the database: ended without waiting for it."
+        )
         os._exit(0)
 
     timer = threading.Timer(GRACE + LAST, end)

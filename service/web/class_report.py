@@ -28,6 +28,9 @@ MAX_SUBMISSIONS: Final = 500
 # Seconds. What a class hands in takes one or two; only files made to be costly take longer.
 MOST_SECONDS: Final = 60.0
 _LONGEST_PATH: Final = 1_000
+# Characters outside the texts of an upload, and quotation marks around texts: each may take a
+# hundred bytes once it is read. The page sends 7 and 8 for each file.
+_MOST_MARKS: Final = 50 * MAX_FILES
 # In bytes of UTF-8; no file system that is common takes more.
 _LONGEST_NAME: Final = 255
 
@@ -71,11 +74,21 @@ def unpacked(body: bytes) -> ClassUpload:
             f"The files are more than {MAX_UPLOAD // 1024 // 1024} MiB. Choose fewer, or use "
             "dh-grader grade FOLDER --format html."
         )
+    if _marks(content) > _MOST_MARKS:
+        raise _unusable("The body holds more than the files of a class, their paths and contents.")
     try:
         return ClassUpload.model_validate_json(content)
     except ValidationError as error:
         details = error.errors(include_url=False, include_input=False, include_context=False)
         raise invalid(details, list(ClassUpload.model_fields)) from error
+
+
+def _marks(content: bytes) -> int:
+    """Return how many characters of JSON are outside texts, the quotation marks included."""
+    content = content.replace(rb"\\", b"").replace(rb"\"", b"")
+    quotes = content.count(b'"')
+    # Too many for a list of what is between them.
+    return quotes if quotes > _MOST_MARKS else quotes + sum(map(len, content.split(b'"')[::2]))
 
 
 def class_archive(upload: ClassUpload, catalogue: Catalogue) -> bytes:

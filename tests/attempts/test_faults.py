@@ -6,7 +6,6 @@ import sqlite3
 import time
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import pytest
 from sqlalchemy import event
@@ -88,21 +87,4 @@ def test_a_full_disk_is_told_and_costs_nothing_that_was_recorded(
         until_it_is_full()
     found = asyncio.run(store.standing("scara", "ada", "", None))
     assert found.counted == len(acknowledged) > 0
-    store.close()
-
-
-def test_a_server_that_is_started_again_is_used_again(
-    postgresql_url: str, server: Any, catalogue: Mapping[str, Exercise]
-) -> None:
-    scara = catalogue["scara"]
-    store = AttemptStore.open(postgresql_url)
-    store.start()
-    assert record(store, scara, 1)
-    server.stop()
-    try:
-        with pytest.raises(StoreDownError):
-            record(store, scara, 2)
-    finally:
-        server.start()
-    assert record(store, scara, 2)
     store.close()

@@ -126,6 +126,12 @@ def test_an_exercise_can_be_read_with_scripts_blocked(visit: Opening, service: s
     opened.complaints.clear()
 
 
+HOSTILE_PAGES = (
+    "/tutor", "/tutor/solutions/hostile", "/tutor/editor?exercise=hostile", "/tutor/class", "/docs",
+    "/tutor/attempts", "/v1/exercises/hostile/figure.svg", "/v1/exercises/hostile",
+)  # fmt: skip
+
+
 def test_hostile_texts_stay_texts(visit: Opening, service: str) -> None:
     page = visit().page
     page.add_init_script("window.taken = []; window.stolen = (what) => taken.push(what);")
@@ -159,3 +165,6 @@ def test_hostile_texts_stay_texts(visit: Opening, service: str) -> None:
     )
     assert found == 0
     assert page.evaluate("taken") == []
+    for path in HOSTILE_PAGES:
+        page.goto(service + path)
+        assert page.evaluate("taken") == []

@@ -10,6 +10,7 @@ import time
 
 from fastapi import FastAPI
 
+from service.api import health
 from service.cli import main
 from service.server import crowd, process, protocol, start
 from service.server.installed import installed_app
@@ -39,6 +40,7 @@ if __name__ == "__main__":
         (protocol, "LINGER", 0.3),
         (crowd, "SWEEP", 0.05),
         (process, "GRACE", PATIENCE / 2),
+        (health, "_PATIENCE", PATIENCE / 2),
     ):
         vars(module)[name] = seconds
     vars(start)["installed_app"] = _with_hanging
