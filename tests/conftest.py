@@ -13,6 +13,8 @@ from service.catalogue import Exercise, load_exercise
 from service.catalogue.parts.dh_table import DhTableSpec
 from tests.shipped import shipped_exercises
 
+pytest_plugins = ["tests.browser.fixtures"]
+
 # How long one example takes says more about the machine than about the code.
 settings.register_profile(
     "suite", deadline=None, max_examples=50, suppress_health_check=[HealthCheck.too_slow]
