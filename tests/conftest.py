@@ -2,7 +2,7 @@
 
 import gc
 import os
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,6 +11,7 @@ from hypothesis import HealthCheck, settings
 
 from service.catalogue import Exercise, load_exercise
 from service.catalogue.parts.dh_table import DhTableSpec
+from tests.api.serving import Served, served
 from tests.shipped import shipped_exercises
 
 pytest_plugins = ["tests.browser.fixtures"]
@@ -67,6 +68,13 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
 def catalogue() -> Mapping[str, Exercise]:
     """The shipped exercises by id."""
     return shipped_exercises()
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """A real process with the usual settings, for tests that neither end it nor make it busy."""
+    with served(tmp_path_factory.mktemp("server")) as server:
+        yield server
 
 
 @pytest.fixture(scope="session")

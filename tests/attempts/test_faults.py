@@ -92,17 +92,17 @@ def test_a_full_disk_is_told_and_costs_nothing_that_was_recorded(
 
 
 def test_a_server_that_is_started_again_is_used_again(
-    postgresql_url: str, server: Any, catalogue: Mapping[str, Exercise]
+    postgresql_url: str, postgresql: Any, catalogue: Mapping[str, Exercise]
 ) -> None:
     scara = catalogue["scara"]
     store = AttemptStore.open(postgresql_url)
     store.start()
     assert record(store, scara, 1)
-    server.stop()
+    postgresql.stop()
     try:
         with pytest.raises(StoreDownError):
             record(store, scara, 2)
     finally:
-        server.start()
+        postgresql.start()
     assert record(store, scara, 2)
     store.close()

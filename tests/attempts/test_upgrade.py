@@ -53,7 +53,7 @@ def oldest(request: pytest.FixtureRequest, tmp_path: Path) -> str:
         path = new_file(tmp_path)
         url, zone = f"sqlite:///{path}", ""
     else:
-        server = request.getfixturevalue("server")
+        server = request.getfixturevalue("postgresql")
         url, zone = new_database(server, f"first_{uuid4().hex}"), "+00"
     parsed = make_url(url)
     if parsed.get_backend_name() == "postgresql":

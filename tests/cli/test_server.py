@@ -2,7 +2,6 @@
 
 import json
 import signal
-from collections.abc import Iterator
 from itertools import product
 from pathlib import Path
 from random import Random
@@ -32,12 +31,6 @@ points = 10
 [[exercises]]
 id = "stanford-arm"
 """
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with served(tmp_path_factory.mktemp("server")) as server:
-        yield server
 
 
 @pytest.fixture
