@@ -2,6 +2,7 @@
 
 import gc
 import os
+import sys
 from collections.abc import Callable, Generator, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +16,10 @@ from tests.api.serving import Served, served
 from tests.shipped import shipped_exercises
 
 pytest_plugins = ["tests.browser.fixtures"]
+
+# The suite starts this program a hundred times: it would be compiled each time.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 # How long one example takes says more about the machine than about the code.
 settings.register_profile(
