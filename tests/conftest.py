@@ -2,6 +2,7 @@
 
 import gc
 import os
+import random
 import sys
 from collections.abc import Callable, Generator, Iterator, Mapping
 from dataclasses import replace
@@ -34,6 +35,16 @@ FIGURE = "figure"
 def pytest_xdist_auto_num_workers() -> int:
     """One more than there are cores: many a test waits for a process or a page."""
     return (os.cpu_count() or 1) + 1
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--shuffle", metavar="SEED", help="run the tests in the order of this seed")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Shuffle all tests if asked to; each process does so alike."""
+    if seed := config.getoption("shuffle"):
+        random.Random(seed).shuffle(items)
 
 
 @pytest.hookimpl(wrapper=True)
