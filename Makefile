@@ -49,7 +49,7 @@ test: $(dev) ## lint, type-check and test on every core
 	wait $$checker; checked=$$?; cat "$$types"; [ $$tested = 0 ] && [ $$checked = 0 ]; }
 
 thorough: $(dev) ## the same tests, and all of which the suite has a sample (takes long)
-	$(pytest) -m "campaign or not campaign" --ignore tests/installed
+	$(pytest) -m "campaign or not campaign" --hypothesis-profile thorough --ignore tests/installed
 
 browser: $(dev) ## say which Chromium the browser tests use; fetch one from npm where there is none
 	$(python) -m tests.browser.chromium

@@ -159,3 +159,32 @@ def test_continuous_integration_runs_make_test() -> None:
     assert "make test" in " ".join(logical_lines(read(".ci/run")))
     assert "set -euo pipefail" in logical_lines(read(".ci/run"))
     assert sys.platform == "win32" or os.access(ROOT / ".ci" / "run", os.X_OK)
+
+
+@pytest.mark.skipif(os.name == "nt" or shutil.which("git") is None, reason="needs bash and git")
+@pytest.mark.parametrize(
+    ("tests", "fails"),
+    [(":", False), ("echo x >> changed; echo x > cache/x", False), ("echo x > left", True)],
+    ids=["clean", "ignored", "left"],
+)
+def test_continuous_integration_fails_where_tests_leave_a_file(
+    tests: str, fails: bool, tmp_path: Path
+) -> None:
+    """In a clone that has local changes."""
+    clone, programs = tmp_path / "clone", tmp_path / "programs"
+    (clone / ".ci").mkdir(parents=True)
+    shutil.copy(ROOT / ".ci" / "run", clone / ".ci" / "run")
+    (clone / "cache").mkdir()
+    (clone / ".gitignore").write_text("cache/\n", encoding="utf-8")
+    (clone / "changed").touch()
+    subprocess.run(["git", "init", "--quiet"], cwd=clone, check=True)
+    programs.mkdir()
+    make = programs / "make"
+    make.write_text(f'#!/bin/sh\n[ "$1" != test ] || {{ {tests}; }}\n', encoding="utf-8")
+    make.chmod(0o755)
+    path = f"{programs}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        [clone / ".ci" / "run"], env={**os.environ, "PATH": path}, capture_output=True, check=False
+    )
+    assert done.returncode == fails, done.stderr
+    assert (b"left" in done.stderr) is fails

@@ -8,7 +8,7 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from service.api.application import application
@@ -184,7 +184,6 @@ JSON = st.recursive(
 )
 
 
-@settings(max_examples=60, deadline=None)
 @given(answer=JSON, part=st.sampled_from(["table", "pose"]))
 def test_whatever_an_answer_holds_there_is_a_report(
     client: httpx.Client, answer: object, part: str

@@ -154,9 +154,9 @@ def test_only_the_owner_reads_a_new_file_and_an_earlier_one_keeps_its_mode(tmp_p
 
 
 def test_a_dump_that_is_made_while_attempts_are_recorded(
-    server: Any, postgresql_url: str, tmp_path: Path, catalogue: Mapping[str, Exercise]
+    postgresql: Any, postgresql_url: str, tmp_path: Path, catalogue: Mapping[str, Exercise]
 ) -> None:
-    restored = new_database(server, "restored")
+    restored = new_database(postgresql, "restored")
     back = command("pg_restore").replace('"$SERVER/attempts"', '"$RESTORED"')
 
     def back_up() -> None:

@@ -28,7 +28,7 @@ from tests.attempts.test_upgrade import FIXED, INSERT, REPORT, ROWS, make_old
 from tests.guards import ANSWER
 
 REVISIONS = ("0001", "0002", "0003")
-# Each is killed before so many of its statements and its commit; there are over 25 from the oldest on.
+# Each is killed before its n-th statement or commit; the upgrade of the oldest has over 25.
 SOME = (2, 15, 25)
 EVERY = range(1, 40)
 _number = count()
@@ -48,7 +48,7 @@ def old(request: pytest.FixtureRequest, tmp_path: Path) -> OldDatabase:
             return found
 
         return lambda revision: str(shutil.copy(file(revision), tmp_path / f"{next(_number)}.db"))
-    server = request.getfixturevalue("server")
+    server = request.getfixturevalue("postgresql")
 
     @cache
     def template(revision: str) -> str:

@@ -46,7 +46,7 @@ def store_and_switch(
             state["now"] = to
             store.engine.dispose()
     else:
-        server, name = request.getfixturevalue("server"), store.engine.url.database
+        server, name = request.getfixturevalue("postgresql"), store.engine.url.database
 
         def switch(to: str) -> None:
             server.psql(f"""

@@ -71,7 +71,7 @@ class Course:
 
 
 def test_every_acknowledged_attempt_is_there_once_however_the_server_stops(
-    server: Any,
+    postgresql: Any,
     postgresql_url: str,
     catalogue: Mapping[str, Exercise],
     monkeypatch: pytest.MonkeyPatch,
@@ -88,7 +88,7 @@ def test_every_acknowledged_attempt_is_there_once_however_the_server_stops(
                 for i in range(CLIENTS):
                     learners.create_task(course.learner(f"learner {i}"))
                 for how in STOPS:
-                    await course.survive(server, how)
+                    await course.survive(postgresql, how)
                 course.over = True
         return course
 
@@ -100,19 +100,19 @@ def test_every_acknowledged_attempt_is_there_once_however_the_server_stops(
 
 
 def test_a_service_ends_in_time_although_its_database_does_not_react(
-    server: Any, tmp_path: Path
+    postgresql: Any, tmp_path: Path
 ) -> None:
-    url = new_database(server, "paused")
+    url = new_database(postgresql, "paused")
     with service(tmp_path, module="tests.server.impatient", DH_GRADER_DATABASE=url) as running:
         address = f"http://127.0.0.1:{running.port}"
         body = {"learner": "ada", "answers": {"table": NO_TWIST}}
         assert httpx.post(address + ATTEMPTS, json=body, timeout=ANSWER).status_code == 201
-        stop(server, "pause")
+        stop(postgresql, "pause")
         try:
             # Its check of the database is what the service then waits for.
             ready = httpx.get(f"{address}/readyz", timeout=ANSWER)
             assert (ready.status_code, "does not react within" in running.log) == (503, True)
             assert running.end() == 0
         finally:
-            start(server, "pause")
+            start(postgresql, "pause")
         assert "ended without waiting" in running.log

@@ -82,7 +82,7 @@ def oldest(request: pytest.FixtureRequest, tmp_path: Path) -> str:
     if request.param == "sqlite":
         url = f"sqlite:///{new_file(tmp_path)}"
     else:
-        url = new_database(request.getfixturevalue("server"), f"first_{uuid4().hex}")
+        url = new_database(request.getfixturevalue("postgresql"), f"first_{uuid4().hex}")
     make_old(url, OLDEST)
     return url
 
