@@ -1,6 +1,7 @@
 """One thread that writes: what waits is written together, so that many share one durable commit."""
 
 import asyncio
+import logging
 import queue
 import threading
 from collections import defaultdict
@@ -17,6 +18,8 @@ from service.attempts.database import is_deadlock, reason
 from service.attempts.errors import StoreDownError
 
 R = TypeVar("R")
+
+_log = logging.getLogger(__name__)
 
 _SILENT: Final = "the database does not react"
 
@@ -94,7 +97,10 @@ class AttemptWriter:
                 self._work_off(jobs)
                 self._asked_at = None
             if monotonic() >= self._tidy_at and not ended:
-                self._tidy()
+                try:
+                    self._tidy()
+                except Exception:  # noqa: BLE001 - attempts are recorded all the same
+                    _log.exception("The database could not be tidied up")
                 self._tidy_at = monotonic() + _TIDYING
 
     def _waiting(self) -> tuple[list[_Job], bool]:

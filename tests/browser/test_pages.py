@@ -8,7 +8,7 @@ from typing import Any
 from playwright.sync_api import Page, expect
 
 from tests.api.serving import ROOT
-from tests.browser.fixtures import Origin
+from tests.browser.conftest import Origin
 from tests.browser.fixtures import Visit
 from tests.browser.hostile import TEXTS
 from tests.browser.steps import cells, open_exercise
