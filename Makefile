@@ -105,8 +105,8 @@ wheel: $(dev) ## install the built wheel with pip and pipx on every Python that 
 slips: $(dev) ## spoil the poses of all robots by each single slip of the table: is it named?
 	$(python) -m tests.pose_slips --show
 
-durability: $(dev) ## kill the service while it records attempts, 20 times on each database
-	$(python) -m pytest -m campaign tests/attempts/test_durability.py
+durability: $(dev) ## kill the service while it records attempts, and migrations, 20 times on each database
+	$(python) -m pytest -m campaign tests/attempts/test_durability.py tests/attempts/test_migrations.py
 
 attempts: $(dev) ## measure a store of COUNT= attempts; regrade as many by four processes, two being killed
 	$(python) -m tests.attempts.campaign --count "$(COUNT)"

@@ -49,7 +49,7 @@ def advice(text: str) -> FieldInfo:
 
 NotBool = BeforeValidator(_no_truth_value)
 Formula = Annotated[str | float, NotBool]
-Shown = Annotated[str, AfterValidator(_showable)]
+LooseText = Annotated[str, AfterValidator(_showable)]
 Text = Annotated[
     str, StringConstraints(strip_whitespace=True, min_length=1), AfterValidator(_showable)
 ]

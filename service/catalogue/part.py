@@ -11,9 +11,9 @@ from pydantic import Field, StrictBool, model_validator
 from service.catalogue.fields import (
     FrameName,
     Identifier,
+    LooseText,
     Marking,
     NotBool,
-    Shown,
     StrictModel,
     Text,
 )
@@ -47,7 +47,7 @@ class PartSpec(StrictModel, ABC):
     """The name of the part in answers and reports."""
     title: Text
     """The title that students see."""
-    prompt: Shown = ""
+    prompt: LooseText = ""
     """The task, in one sentence or more: Markdown, like the statement."""
     points: Annotated[float, Field(gt=0, le=1000, strict=True), NotBool] = 1.0
     """The points for a right answer; its rows share them."""

@@ -18,8 +18,8 @@ from service.catalogue.fields import (
     Formula,
     Four,
     Homogeneous,
+    LooseText,
     Screw,
-    Shown,
     StrictModel,
     Text,
     advice,
@@ -46,7 +46,7 @@ class SymbolSpec(StrictModel):
     """Whether it is an angle, a length or a plain number."""
     description: Text
     """Its meaning, as students see it."""
-    unit: Shown = ""
+    unit: LooseText = ""
     """Its unit, as students see it; without one "rad" for an angle and "m" for a length."""
     range: tuple[Formula, Formula] | None = None
     """The least and the greatest test value; without it −π to π for an angle, 0.2 to 1 for a

@@ -28,7 +28,7 @@ from tests.attempts.test_upgrade import FIXED, INSERT, REPORT, ROWS, make_old
 from tests.guards import ANSWER
 
 REVISIONS = ("0001", "0002", "0003")
-# Each is killed before its n-th statement or commit; the upgrade of the oldest has over 25.
+# The statements before which a migration from the oldest revision is killed; it has over 25.
 SOME = (2, 15, 25)
 EVERY = range(1, 40)
 _number = count()
