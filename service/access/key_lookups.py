@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from typing import Final
 
-from service.access.keys import Key, KeysBusyError
+from service.access.keys import Key, KeysBusyError, KeysUnreachableError
 
 # A column of the table of keys, ``id`` or ``digest``, and the value to find there.
 KeyPlace = tuple[str, str]
@@ -15,6 +15,8 @@ KeyPlace = tuple[str, str]
 TOGETHER: Final = 128
 # How many may wait: more than the connections of a process.
 WAITING: Final = 4096
+# Seconds that a look-up may take. A database that is paused raises no error.
+PATIENCE: Final = 15.0
 
 
 class KeyLookups:
@@ -47,8 +49,11 @@ class KeyLookups:
             self._waiting.append(place)
             if self._working is None or self._working.done():
                 self._working = asyncio.create_task(self._work_off())
-        # Others may wait for it when this client has gone.
-        return await asyncio.shield(asked)
+        try:
+            # Others may wait for it when this client has gone.
+            return await asyncio.wait_for(asyncio.shield(asked), PATIENCE)
+        except TimeoutError as error:
+            raise KeysUnreachableError from error
 
     def close(self) -> None:
         """End the thread."""

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from sqlalchemy import Connection, Engine, event, select, text
 
+from service.access import key_lookups
 from service.access.caller import Caller, Scope
 from service.access.key_lookups import KeyPlace
 from service.access.key_ring import KeyRing
@@ -266,3 +267,23 @@ def test_a_client_that_goes_away_costs_no_other_its_answer(engine: Engine) -> No
 
     assert asyncio.run(ask()).key_id == known.id
     ring.close()
+
+
+def test_a_database_that_does_not_react_is_given_up(
+    engine: Engine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(key_lookups, "PATIENCE", 0.05)
+    reacts = threading.Event()
+    key, _ = made(engine, Scope.GRADE)
+    ring = KeyRing(engine, SECRET, KEPT)
+
+    def silent(*_: object) -> None:
+        reacts.wait(ANSWER)
+
+    event.listen(engine, "before_cursor_execute", silent)
+    try:
+        with pytest.raises(KeysUnreachableError):
+            asked(ring, key)
+    finally:
+        reacts.set()
+        ring.close()
