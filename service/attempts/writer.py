@@ -3,11 +3,11 @@
 import asyncio
 import queue
 import threading
-import time
 from collections import defaultdict
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
+from time import sleep
 from typing import Any, Final, TypeVar
 
 from sqlalchemy import Connection, Engine
@@ -83,7 +83,7 @@ class AttemptWriter:
         jobs: list[_Job] = []
         found = self._jobs.get()
         if gather and found is not None:
-            time.sleep(gather)
+            sleep(gather)
         while found is not None:
             jobs.append(found)
             if len(jobs) == _TOGETHER:

@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 from sqlalchemy import Connection, Engine, event
 
-from service.attempts import writer as module
 from service.attempts.database import open_database
 from service.attempts.writer import AttemptWriter
 from tests.guards import ANSWER
@@ -61,7 +60,7 @@ def test_where_jobs_came_at_once_the_next_one_waits_for_others(
         last_waits.set()
         await asyncio.gather(later, last)
 
-    monkeypatch.setattr(module.time, "sleep", gather)
+    monkeypatch.setattr("service.attempts.writer.sleep", gather)
     writer = AttemptWriter(engine)
     try:
         asyncio.run(send())
@@ -79,7 +78,7 @@ def test_a_client_that_sends_one_job_after_the_other_never_waits(
         for _ in range(5):
             await writer.run(nothing)
 
-    monkeypatch.setattr(module.time, "sleep", gathered.append)
+    monkeypatch.setattr("service.attempts.writer.sleep", gathered.append)
     writer = AttemptWriter(engine)
     try:
         asyncio.run(send())
