@@ -14,7 +14,7 @@ from tests.together import together
 Make = Callable[[str], Exercise]
 # What stands in a cell that cannot be read, is empty, or has no value.
 SPOILT = ["0.5 +", "foo", "", None, "0,5", "1/0", "sqrt(-1)", "0.333", True]
-ODD = ["", None, [], {}, "0.5", 3, "[1 2; 3 4]", [[]], {"rows": []}]
+ODD: list[object] = ["", None, [], {}, "0.5", 3, "[1 2; 3 4]", [[]], {"rows": []}]
 
 
 def spoilt(answer: object) -> Iterator[object]:
