@@ -14,6 +14,8 @@ from hypothesis import strategies as st
 from service.api.application import application
 from service.catalogue import Exercise, FeedbackLevel, least
 from service.grading import Verdict
+from tests.grading.support.bare_numbers import BARE, BareExercise
+from tests.together import together
 
 URL = "/v1/exercises/planar-rrr/grade"
 
@@ -223,3 +225,19 @@ def test_an_unknown_exercise_is_a_404(client: httpx.Client) -> None:
     response = client.post("/v1/exercises/planar-rrrr/grade", json={"answers": {}})
     assert response.status_code == 404
     assert "planar-rrr" in response.json()["detail"]
+
+
+@together("bare", BARE)
+def test_exercises_of_numbers_alone(
+    bare: BareExercise, make_exercise: Callable[[str], Exercise], client_of: Any
+) -> None:
+    exercise = make_exercise(bare.text)
+    with client_of(application({exercise.id: exercise})) as client:
+        url = f"/v1/exercises/{exercise.id}"
+        assert client.get(url).status_code == 200
+        for answer, right in [(bare.right, True), *((each, False) for each in bare.wrong)]:
+            response = client.post(f"{url}/grade", json={"answers": {"it": answer}, "echo": True})
+            assert response.status_code == 200
+            assert (response.json()["score"] == 1) == right
+            body = {"text": str(answer), "exercise": exercise.id, "part": "it"}
+            assert client.post("/v1/preview", json=body).status_code == 200

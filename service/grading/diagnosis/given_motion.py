@@ -44,11 +44,11 @@ class GivenMotion:
 
     @classmethod
     def of(cls, part_id: str, exercise: Exercise, samples: Samples) -> "GivenMotion | None":
-        """That of a part; None where the exercise gives no formulas for it."""
-        grid = exercise.formulas.get(part_id)
-        if grid is None:
-            return None
+        """That of a part; None where the exercise gives no formulas with symbols for it."""
+        grid = exercise.formulas.get(part_id) or ()
         used = {name for formula in chain(*grid) for name in formula.symbols}
+        if not used:
+            return None
         of_kind = {
             kind: tuple(v.name for v in exercise.variables if v.kind == kind and v.name in used)
             for kind in ("angle", "length")
