@@ -62,6 +62,8 @@ class Slip(Change):
 def changed_values(changes: Sequence[Change], values: SymbolValues) -> dict[str, Numbers]:
     """The values ``(K · samples,)`` that K changes leave each symbol, those of one in a row."""
     names = list(values)
+    if not names:
+        return {}
     places = {name: i for i, name in enumerate(names)}
     right = np.array([values[name] for name in names])
     stacked = np.repeat(right[:, None], len(changes), axis=1)

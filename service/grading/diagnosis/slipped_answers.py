@@ -46,14 +46,13 @@ class SlippedAnswers:
 
 
 def slipped_answers(part: PartSpec, grading: Grading) -> SlippedAnswers | None:
-    """The answers to a part; None where neither a robot nor formulas with symbols give it.
+    """The answers to a part; None where neither a robot nor formulas give it.
 
     They are poses ``(K, 4, 4, samples)``, or ``(K, rows, columns, samples)`` where the part has
     formulas of its own.
     """
     exercise = grading.exercise
-    # Without symbols no slip changes the right answer.
-    if grading.following or not exercise.variables:
+    if grading.following:
         return None
     if exercise.formulas.get(part.id) is not None:
         return _of_formulas(part, exercise, grading.samples)
