@@ -102,8 +102,9 @@ wheel: $(dev) ## install the built wheel with pip and pipx on every Python that 
 	$(python) -m tests.installed
 	$(python) -m pytest -m campaign tests/installed
 
-slips: $(dev) ## spoil the poses of all robots by each single slip of the table: is it named?
+slips: $(dev) ## spoil the poses of all robots, and of random ones, by each slip of the table: is it named?
 	$(python) -m tests.pose_slips --show
+	$(python) -m tests.pose_slips.unseen --arms 200 --show
 
 durability: $(dev) ## kill the service while it records attempts, and migrations, 20 times on each database
 	$(python) -m pytest -m campaign tests/attempts/test_durability.py tests/attempts/test_migrations.py

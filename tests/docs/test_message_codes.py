@@ -106,7 +106,12 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
     ((SINGLE,), (f"{DIAGNOSIS}matrix_entry.py", f"{DIAGNOSIS}missing_symbol.py", VALUES)),
     (
         ("Slips behind a pose",),
-        (f"{DIAGNOSIS}joint_slips.py", f"{DIAGNOSIS}table_slips.py", f"{DIAGNOSIS}slip_search.py"),
+        (
+            f"{DIAGNOSIS}joint_slips.py",
+            f"{DIAGNOSIS}table_slips.py",
+            f"{DIAGNOSIS}rows_and_columns.py",
+            f"{DIAGNOSIS}slip_search.py",
+        ),
     ),
     (("Positions",), (f"{DIAGNOSIS}position.py",)),
     (

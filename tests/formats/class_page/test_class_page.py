@@ -64,7 +64,7 @@ def test_the_index_tells_the_counts() -> None:
         "Submissions 7 1 not graded",
         "5 of 6 answered, 1 all right.",
         "2 100 % 5/5 60 % 3/5",  # row 2 of the table: a, alpha
-        "2 submissions α is not right: compare the two z axes. quarter_turn in Denavit-Hartenberg",
+        "2 submissions α is not right: compare z1 and z2. quarter_turn in Denavit-Hartenberg",
         "table (2) ben cleo 1 submission The fixed row",
         "1 submission Something is missing after the + at the end. trailing_operator",
         "2 submissions Denavit-Hartenberg table, 1 wrong cell row 2 alpha: pi/2 ben cleo",
