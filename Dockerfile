@@ -1,5 +1,7 @@
 # The builder ends with /opt/dh-grader: a virtual environment with the program and its catalogue.
-FROM python:3.13-slim AS builder
+# By digest, the same in both stages: python 3.13.15 on Debian trixie. docs/deployment.md says how to
+# take a newer one.
+FROM python:3.13-slim@sha256:7c61056e61ac89e852de05f3dc6fa51a6dd2181797bceed46aa725dd7cb2cd3b AS builder
 ENV PIP_DISABLE_PIP_VERSION_CHECK=1 \
     PIP_NO_CACHE_DIR=1 \
     PIP_ROOT_USER_ACTION=ignore
@@ -13,14 +15,15 @@ RUN python -m venv --without-pip /opt/dh-grader \
 COPY requirements-build.lock ./
 RUN python -m pip install --require-hashes -r requirements-build.lock
 
-COPY pyproject.toml README.md LICENSE ./
+COPY pyproject.toml README.md LICENSE NOTICE ./
 COPY exercises exercises
 COPY service service
 RUN python -m pip wheel --no-deps --no-build-isolation --wheel-dir dist . \
-    && python -m pip --python /opt/dh-grader/bin/python install --no-deps --no-index dist/*.whl
+    && python -m pip --python /opt/dh-grader/bin/python install --no-deps --no-index dist/*.whl \
+    && /opt/dh-grader/bin/python -m service.cli.licences > /opt/dh-grader/LICENCES
 
 
-FROM python:3.13-slim
+FROM python:3.13-slim@sha256:7c61056e61ac89e852de05f3dc6fa51a6dd2181797bceed46aa725dd7cb2cd3b
 COPY --from=builder /opt/dh-grader /opt/dh-grader
 ENV PATH="/opt/dh-grader/bin:$PATH" \
     PYTHONDONTWRITEBYTECODE=1 \

@@ -49,7 +49,7 @@ test: $(dev) ## lint, type-check and test on every core
 	wait $$checker; checked=$$?; cat "$$types"; [ $$tested = 0 ] && [ $$checked = 0 ]; }
 
 thorough: $(dev) ## the same tests, and all of which the suite has a sample (takes long)
-	$(pytest) -m "campaign or not campaign" --ignore tests/installed
+	$(pytest) -m "campaign or not campaign" --hypothesis-profile thorough --ignore tests/installed
 
 browser: $(dev) ## say which Chromium the browser tests use; fetch one from npm where there is none
 	$(python) -m tests.browser.chromium
@@ -102,11 +102,12 @@ wheel: $(dev) ## install the built wheel with pip and pipx on every Python that 
 	$(python) -m tests.installed
 	$(python) -m pytest -m campaign tests/installed
 
-slips: $(dev) ## spoil the poses of all robots by each single slip of the table: is it named?
+slips: $(dev) ## spoil the poses of all robots, and of random ones, by each slip of the table: is it named?
 	$(python) -m tests.pose_slips --show
+	$(python) -m tests.pose_slips.unseen --arms 200 --show
 
-durability: $(dev) ## kill the service while it records attempts, 20 times on each database
-	$(python) -m pytest -m campaign tests/attempts/test_durability.py
+durability: $(dev) ## kill the service while it records attempts, and migrations, 20 times on each database
+	$(python) -m pytest -m campaign tests/attempts/test_durability.py tests/attempts/test_migrations.py
 
 attempts: $(dev) ## measure a store of COUNT= attempts; regrade as many by four processes, two being killed
 	$(python) -m tests.attempts.campaign --count "$(COUNT)"

@@ -2,7 +2,9 @@
 
 import gc
 import os
-from collections.abc import Callable, Generator, Mapping
+import random
+import sys
+from collections.abc import Callable, Generator, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,12 +13,23 @@ from hypothesis import HealthCheck, settings
 
 from service.catalogue import Exercise, load_exercise
 from service.catalogue.parts.dh_table import DhTableSpec
+from tests.api.serving import Served, served
 from tests.shipped import shipped_exercises
 
+pytest_plugins = ["tests.browser.fixtures"]
+
+# The suite starts this program a hundred times: it would be compiled each time.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
+
 # How long one example takes says more about the machine than about the code.
-settings.register_profile(
-    "suite", deadline=None, max_examples=50, suppress_health_check=[HealthCheck.too_slow]
-)
+for profile, examples in (("suite", 30), ("thorough", 500)):
+    settings.register_profile(
+        profile,
+        deadline=None,
+        max_examples=examples,
+        suppress_health_check=[HealthCheck.too_slow],
+    )
 settings.load_profile("suite")
 
 FIGURE = "figure"
@@ -26,6 +39,16 @@ FIGURE = "figure"
 def pytest_xdist_auto_num_workers() -> int:
     """One more than there are cores: many a test waits for a process or a page."""
     return (os.cpu_count() or 1) + 1
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--shuffle", metavar="SEED", help="run the tests in the order of this seed")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Shuffle all tests if asked to; each process does so alike."""
+    if seed := config.getoption("shuffle"):
+        random.Random(seed).shuffle(items)
 
 
 @pytest.hookimpl(wrapper=True)
@@ -65,6 +88,13 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
 def catalogue() -> Mapping[str, Exercise]:
     """The shipped exercises by id."""
     return shipped_exercises()
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """A real process with the usual settings, for tests that neither end it nor make it busy."""
+    with served(tmp_path_factory.mktemp("server")) as server:
+        yield server
 
 
 @pytest.fixture(scope="session")

@@ -102,6 +102,8 @@ def test_a_wheel_carries_the_program_and_the_catalogue(tmp_path: Path) -> None:
     }
     assert exercises
     assert exercises | program <= carried
+    licences = {name.partition("/licenses/")[2] for name in carried if "/licenses/" in name}
+    assert licences == {"LICENSE", "NOTICE"}
     assert not [name for name in carried if name.startswith(("tests/", "exercises/"))]
 
 
@@ -125,6 +127,26 @@ def test_what_the_dockerfile_copies_exists_and_is_not_ignored() -> None:
     assert let_through == set(sources)
 
 
+@pytest.mark.parametrize(
+    "file", ["Dockerfile", "service/bundles/templates/prairielearn/Dockerfile", "compose.yaml"]
+)
+def test_every_image_of_others_is_named_by_its_digest(file: str) -> None:
+    images = re.findall(r"^ *(?:FROM|image:) (\S+)", read(file), re.MULTILINE)
+    of_others = [image for image in images if image != "dh-grader"]
+    assert of_others
+    for image in of_others:
+        assert re.fullmatch(r"[a-z]+:[\w.-]+@sha256:[0-9a-f]{64}", image), image
+    # Both stages of one image have one base.
+    assert len({image.partition("@")[0] for image in of_others}) == len(set(of_others))
+
+
+def test_every_action_is_named_by_its_commit() -> None:
+    actions = re.findall(r"uses: (.+)", read("docs/ci/github.yml"))
+    assert actions
+    for action in actions:
+        assert re.fullmatch(r"[\w/-]+@[0-9a-f]{40} # v\d+\.\d+\.\d+", action), action
+
+
 def test_the_image_runs_as_a_numbered_user_and_is_watched() -> None:
     final_stage = logical_lines(read("Dockerfile").rpartition("\nFROM ")[2])
     [user] = [line for line in final_stage if line.startswith("USER ")]
@@ -137,3 +159,32 @@ def test_continuous_integration_runs_make_test() -> None:
     assert "make test" in " ".join(logical_lines(read(".ci/run")))
     assert "set -euo pipefail" in logical_lines(read(".ci/run"))
     assert sys.platform == "win32" or os.access(ROOT / ".ci" / "run", os.X_OK)
+
+
+@pytest.mark.skipif(os.name == "nt" or shutil.which("git") is None, reason="needs bash and git")
+@pytest.mark.parametrize(
+    ("tests", "fails"),
+    [(":", False), ("echo x >> changed; echo x > cache/x", False), ("echo x > left", True)],
+    ids=["clean", "ignored", "left"],
+)
+def test_continuous_integration_fails_where_tests_leave_a_file(
+    tests: str, fails: bool, tmp_path: Path
+) -> None:
+    """In a clone that has local changes."""
+    clone, programs = tmp_path / "clone", tmp_path / "programs"
+    (clone / ".ci").mkdir(parents=True)
+    shutil.copy(ROOT / ".ci" / "run", clone / ".ci" / "run")
+    (clone / "cache").mkdir()
+    (clone / ".gitignore").write_text("cache/\n", encoding="utf-8")
+    (clone / "changed").touch()
+    subprocess.run(["git", "init", "--quiet"], cwd=clone, check=True)
+    programs.mkdir()
+    make = programs / "make"
+    make.write_text(f'#!/bin/sh\n[ "$1" != test ] || {{ {tests}; }}\n', encoding="utf-8")
+    make.chmod(0o755)
+    path = f"{programs}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        [clone / ".ci" / "run"], env={**os.environ, "PATH": path}, capture_output=True, check=False
+    )
+    assert done.returncode == fails, done.stderr
+    assert (b"left" in done.stderr) is fails

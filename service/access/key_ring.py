@@ -2,7 +2,7 @@
 
 import asyncio
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
@@ -14,7 +14,8 @@ from sqlalchemy import Connection, Engine
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.access.caller import Caller, Scope
-from service.access.key_table import any_key, fits, key_with, note_use
+from service.access.key_lookups import KeyLookups, KeyPlace
+from service.access.key_table import any_key, fits, keys_at, note_use
 from service.access.key_text import PREFIX, is_spelt_right
 from service.access.keys import CredentialError, Key, KeysUnreachableError, Secret
 from service.attempts.database import in_transaction
@@ -25,12 +26,13 @@ R = TypeVar("R")
 KEPT: Final = 5.0
 # How many keys are kept.
 _MOST: Final = 2000
-# So many unknown keys are looked up at once: somebody may invent any number of them.
-_ASKED: Final = 64
+# How many unknown keys are kept, and for how many seconds: one may be made meanwhile.
+_MOST_UNKNOWN: Final = 4000
+_UNKNOWN: Final = 2.0
+# Seconds between two look-ups of keys that are not known: anybody may invent any number of them.
+_PAUSE: Final = 0.01
 # A key's last use is written so seldom (seconds).
 _NOTED: Final = timedelta(minutes=1)
-
-
 # So long a known key is not asked about again, while the database is down (seconds).
 _DOWN: Final = 15.0
 
@@ -49,10 +51,12 @@ class KeyRing:
         self._engine = engine
         self._secret = secret
         self._seconds = seconds
-        # One reads while the other waits to write when a key was used.
-        self._threads = ThreadPoolExecutor(2, "keys")
-        self._found: OrderedDict[tuple[str, str], _Found] = OrderedDict()
-        self._asking: dict[tuple[str, str], asyncio.Task[Key | None]] = {}
+        self._found: OrderedDict[KeyPlace, _Found] = OrderedDict()
+        self._unknown: OrderedDict[KeyPlace, float] = OrderedDict()
+        # Neither a known key nor a note of its use waits for unknown ones.
+        self._known_ones = KeyLookups(self._find)
+        self._new_ones = KeyLookups(self._find, _PAUSE)
+        self._thread = ThreadPoolExecutor(1, "keys")
         self._noted: dict[str, datetime] = {}
         self.has_keys = self._read(any_key)
         self.has_their_secret = secret is None or self._read(lambda each: fits(each, secret))
@@ -69,7 +73,10 @@ class KeyRing:
         return self.has_keys
 
     async def caller(self, credential: str) -> Caller:
-        """The holder of a key or token. Raises CredentialError, KeysUnreachableError."""
+        """The holder of a key or token.
+
+        Raises CredentialError, KeysUnreachableError, KeysBusyError.
+        """
         if self._secret is None:
             raise CredentialError("The service knows no keys: DH_GRADER_SECRET is not set.")
         if not credential.startswith(PREFIX):
@@ -94,10 +101,12 @@ class KeyRing:
 
     def close(self) -> None:
         """Write what waits, and end."""
-        self._threads.shutdown()
+        self._known_ones.close()
+        self._new_ones.close()
+        self._thread.shutdown()
 
     async def _holder(self, column: str, value: str) -> Caller:
-        key = await self._key(column, value)
+        key = await self._key((column, value))
         if key is None:
             raise CredentialError("No key of this service reads so.")
         now = datetime.now(UTC)
@@ -105,42 +114,42 @@ class KeyRing:
         self._note(key, now)
         return caller
 
-    async def _key(self, column: str, value: str) -> Key | None:
-        place = column, value
-        found = self._found.get(place)
-        if found is not None and monotonic() < found.until:
+    async def _key(self, at: KeyPlace) -> Key | None:
+        now = monotonic()
+        found = self._found.get(at)
+        if found is not None and now < found.until:
             return found.key
-        asking = self._asking.get(place)
-        if asking is None:
-            if found is None and len(self._asking) >= _ASKED:
-                raise KeysUnreachableError
-            asking = self._asking[place] = asyncio.create_task(self._ask(place))
-        # Others may wait for it when this client has gone.
-        return await asyncio.shield(asking)
-
-    async def _ask(self, place: tuple[str, str]) -> Key | None:
+        if found is None and now < self._unknown.get(at, 0.0):
+            return None
         try:
-            key = await self._in_thread(lambda: self._read(lambda c: key_with(c, *place)))
+            key = await (self._new_ones if found is None else self._known_ones).key(at)
         except KeysUnreachableError:
-            before = self._found.get(place)
-            if before is None:
+            if found is None:
                 raise
-            self._found[place] = _Found(before.key, monotonic() + _DOWN)
-            return before.key
-        finally:
-            del self._asking[place]
-        if key is not None:
-            self._found[place] = _Found(key, monotonic() + self._seconds)
-            self._found.move_to_end(place)
-            while len(self._found) > _MOST:
-                self._found.popitem(last=False)
+            self._found[at] = _Found(found.key, monotonic() + _DOWN)
+            return found.key
+        self._keep(at, key)
         return key
+
+    def _keep(self, place: KeyPlace, key: Key | None) -> None:
+        now = monotonic()
+        if key is None:
+            self._found.pop(place, None)
+            self._unknown[place] = now + min(_UNKNOWN, self._seconds)
+            self._unknown.move_to_end(place)
+            while len(self._unknown) > _MOST_UNKNOWN:
+                self._unknown.popitem(last=False)
+            return
+        self._found[place] = _Found(key, now + self._seconds)
+        self._found.move_to_end(place)
+        while len(self._found) > _MOST:
+            self._found.popitem(last=False)
 
     def _note(self, key: Key, now: datetime) -> None:
         before = self._noted.get(key.id, key.last_used_at)
         if before is None or now - before >= _NOTED:
             self._noted[key.id] = now
-            self._threads.submit(self._write_use, key.id, now)
+            self._thread.submit(self._write_use, key.id, now)
 
     def _write_use(self, key_id: str, now: datetime) -> None:
         # It is noted anew a minute later.
@@ -148,7 +157,10 @@ class KeyRing:
             in_transaction(self._engine, lambda connection: note_use(connection, key_id, now))
 
     async def _in_thread(self, work: Callable[[], R]) -> R:
-        return await asyncio.get_running_loop().run_in_executor(self._threads, work)
+        return await asyncio.get_running_loop().run_in_executor(self._thread, work)
+
+    def _find(self, places: Collection[KeyPlace]) -> Mapping[KeyPlace, Key]:
+        return self._read(lambda connection: keys_at(connection, places))
 
     def _read(self, work: Callable[[Connection], R]) -> R:
         try:

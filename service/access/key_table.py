@@ -2,7 +2,7 @@
 
 import json
 import secrets
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import asdict
 from datetime import datetime
 from typing import Any
@@ -61,10 +61,16 @@ def all_keys(connection: Connection) -> list[Key]:
     return [_key(row) for row in connection.execute(select(keys).order_by(keys.c.created_at))]
 
 
-def key_with(connection: Connection, column: str, value: str) -> Key | None:
-    """The key with this ``id`` or ``digest``."""
-    row = connection.execute(select(keys).where(keys.c[column] == value)).one_or_none()
-    return None if row is None else _key(row)
+def keys_at(
+    connection: Connection, places: Collection[tuple[str, str]]
+) -> dict[tuple[str, str], Key]:
+    """Return the keys at these places, each a column (``id``, ``digest``) and its value."""
+    columns: dict[str, list[str]] = {column: [] for column, _ in places}
+    for column, value in places:
+        columns[column].append(value)
+    wanted = (keys.c[column].in_(values) for column, values in columns.items())
+    rows = connection.execute(select(keys).where(or_(*wanted))).all()
+    return {(column, getattr(row, column)): _key(row) for row in rows for column in columns}
 
 
 def revoke_key(connection: Connection, key_id: str, now: datetime) -> bool:

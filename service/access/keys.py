@@ -15,6 +15,10 @@ class KeysUnreachableError(Exception):
     """The database of the keys does not answer."""
 
 
+class KeysBusyError(Exception):
+    """Too many unknown keys are being looked up; a known one never waits for them."""
+
+
 class CredentialError(Exception):
     """A key or token that is not valid; the text says why."""
 
@@ -55,7 +59,10 @@ class Keys(Protocol):
         """Whether there is any key; revoked and expired ones count."""
 
     async def caller(self, credential: str) -> Caller:
-        """The holder of a key or token. Raises CredentialError, KeysUnreachableError."""
+        """The holder of a key or token.
+
+        Raises CredentialError, KeysUnreachableError, KeysBusyError.
+        """
 
     def token(self, caller: Caller, expires_at: datetime) -> str:
         """A token with the rights of ``caller``."""

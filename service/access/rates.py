@@ -13,6 +13,7 @@ from limits.storage import MemoryStorage, Storage, storage_from_string
 from limits.strategies import SlidingWindowCounterRateLimiter
 
 from service.access.caller import Caller
+from service.access.client_key import client_key
 
 _log = logging.getLogger(__name__)
 
@@ -50,13 +51,14 @@ class Rates:
     async def seconds_to_wait(self, caller: Caller, address: str) -> int:
         """Count a request; 0 where it is allowed, else when to come again.
 
-        Who brings a key counts by it, whatever the address.
+        Requests with a key count by it, whatever the address; with IPv6, all addresses of a /64
+        network count as one.
         """
         owner = caller.owner
         rates = self._per_key if owner else self._per_address
         if not rates:
             return 0
-        counted = ("key", owner) if owner else ("address", address)
+        counted = ("key", owner) if owner else ("address", client_key(address))
         if self._shared is not None:
             loop = asyncio.get_running_loop()
             try:

@@ -3,17 +3,34 @@
 A token is not kept anywhere. It names the key that made it, and is valid as long as this key is.
 """
 
+import time
 from datetime import datetime
-from typing import Final, NamedTuple
+from typing import Annotated, Final, Literal, NamedTuple
 
 import jwt
+from pydantic import BaseModel, ConfigDict, StringConstraints, ValidationError
 
 from service.access.caller import Caller, Scope
 from service.access.keys import CredentialError
+from service.contract.attempts import Learner
 
 _ALGORITHM: Final = "HS256"
 _ISSUER: Final = "dh-grader"
-_NEEDED: Final = ["exp", "iss", "sub", "key", "scope"]
+_JWS: Final = jwt.PyJWS()
+
+
+class _Claims(BaseModel):
+    """The claims of a token, in the shape in which ``signed`` writes them and in no other."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    iss: Literal["dh-grader"]
+    sub: Learner
+    # The id of a key: it is looked up in the database.
+    key: Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{8}$")]
+    scope: str
+    exp: int
+    exercises: list[str] | None = None
 
 
 class LearnerToken(NamedTuple):
@@ -54,17 +71,21 @@ def signed(token: LearnerToken, expires_at: datetime, secret: bytes) -> str:
 def verified(text: str, secret: bytes) -> LearnerToken:
     """What a token says that this installation has signed. Raises CredentialError."""
     try:
-        claims = jwt.decode(
-            text, secret, [_ALGORITHM], issuer=_ISSUER, options={"require": _NEEDED}
-        )
-    except jwt.ExpiredSignatureError as error:
-        raise CredentialError("The token has expired.") from error
+        claims = _Claims.model_validate_json(_JWS.decode(text, secret, [_ALGORITHM]))
+        scopes = frozenset(map(Scope, claims.scope.split()))
     except jwt.InvalidTokenError as error:
         raise CredentialError("This is no key and no token of this service.") from error
-    exercises = claims.get("exercises")
-    return LearnerToken(
-        claims["key"],
-        claims["sub"],
-        frozenset(map(Scope, claims["scope"].split())),
-        None if exercises is None else frozenset(exercises),
-    )
+    except ValidationError as error:
+        wrong = {str(detail["loc"][0]) if detail["loc"] else "" for detail in error.errors()}
+        named = [name for name in _Claims.model_fields if name in wrong] or ["others"]
+        raise CredentialError(_odd(*named)) from error
+    except ValueError as error:
+        raise CredentialError(_odd("scope")) from error
+    if claims.exp <= time.time():
+        raise CredentialError("The token has expired.")
+    exercises = None if claims.exercises is None else frozenset(claims.exercises)
+    return LearnerToken(claims.key, claims.sub, scopes, exercises)
+
+
+def _odd(*claims: str) -> str:
+    return f"The token has claims that this service does not make: {', '.join(claims)}."

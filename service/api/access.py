@@ -21,7 +21,7 @@ from starlette.types import Scope as Asked
 
 from service.access.caller import NOBODY, Caller, Scope
 from service.access.key_text import PREFIX
-from service.access.keys import CredentialError, Keys, KeysUnreachableError
+from service.access.keys import CredentialError, Keys, KeysBusyError, KeysUnreachableError
 from service.access.open_access import OPEN_ANYWHERE, OpenAccess
 from service.api.access_problems import (
     asking_for_password,
@@ -29,6 +29,7 @@ from service.api.access_problems import (
     attempts_not_shown,
     credential_refused,
     key_needed,
+    keys_busy,
     keys_unreachable,
     learner_makes_token,
     origin_refused,
@@ -104,6 +105,8 @@ class Access:
             return Identity(NOBODY, by_key=True, refusal=credential_refused(str(error)))
         except KeysUnreachableError:
             return Identity(NOBODY, by_key=True, refusal=keys_unreachable())
+        except KeysBusyError:
+            return Identity(NOBODY, by_key=True, refusal=keys_busy())
         return Identity(caller, by_key=True, in_browser=in_browser)
 
     def require(self, request: Request, scope: Scope, exercise: str | None = None) -> Caller:
@@ -318,9 +321,33 @@ def _host_name(netloc: str) -> str:
 
 
 def _is_same_origin(request: Request) -> bool:
-    """Whether no page of another origin asks; programs name no origin."""
-    origin = request.headers.get("origin")
-    return origin is None or origin.partition("://")[2] == request.headers.get("host", "")
+    """True if no page of another origin asks; programs name no origin.
+
+    A browser says by Sec-Fetch-Site where a request comes from, also for pictures and scripts, for
+    which it names no origin (Fetch Metadata). It says so over HTTPS and to this machine, and knows
+    the scheme better than a service behind a proxy. Following a link from anywhere is no fault: the
+    page that holds the link sees nothing of the answer.
+    """
+    headers = request.headers
+    site = headers.get("sec-fetch-site")
+    if site not in (None, "same-origin", "none") and not _follows_link(request):
+        return False
+    origin = headers.get("origin")
+    if origin is None:
+        return True
+    scheme, _, host = origin.partition("://")
+    is_of_scheme = site == "same-origin" or scheme == request.scope["scheme"]
+    return is_of_scheme and host == headers.get("host", "")
+
+
+def _follows_link(request: Request) -> bool:
+    """True if a browser opens the answer as a page of its own, in no frame."""
+    headers = request.headers
+    return (
+        request.method in ("GET", "HEAD")
+        and headers.get("sec-fetch-mode") == "navigate"
+        and headers.get("sec-fetch-dest") == "document"
+    )
 
 
 def _credential(header: str) -> tuple[str, bool]:

@@ -52,6 +52,17 @@ def keys_unreachable() -> ProblemError:
     return store_down("The key cannot be checked: the database does not answer.")
 
 
+def keys_busy() -> ProblemError:
+    """Return the problem of an unknown key where too many are looked up already."""
+    return ProblemError(
+        HTTPStatus.SERVICE_UNAVAILABLE,
+        "Too many keys are being checked. Send this request again.",
+        "busy",
+        "The service has a lot to do",
+        headers={"Retry-After": "1"},
+    )
+
+
 def scope_missing(scope: Scope) -> ProblemError:
     """The key is for something else."""
     return ProblemError(

@@ -37,7 +37,7 @@ from service.api.compression import PackedGets
 from service.api.door import DoorMiddleware, RequestRates
 from service.api.lookup import Catalogue
 from service.api.monitor import Monitor
-from service.api.openapi import HEADING, completed, other_failures
+from service.api.openapi import HEADING, completed, other_failures, work_out_schemas
 from service.api.request_context import HEADER
 from service.api.web_pages import WebPages
 from service.catalogue import FeedbackLevel
@@ -55,10 +55,13 @@ def _freeze_gc() -> None:
     """Exempt the program's own objects from the garbage collector's rounds.
 
     A body of many small lists sets off full rounds; over the program itself, too, they took twice
-    as long as reading the body.
+    as long as reading the body. A process that starts without the collector has it from here on,
+    and no first round, which takes as long as the ones it was spared.
     """
-    gc.collect()
+    if gc.isenabled():
+        gc.collect()
     gc.freeze()
+    gc.enable()
 
 
 class _Api(FastAPI):
@@ -72,6 +75,7 @@ class _Api(FastAPI):
         access: Access,
         rates: RequestRates | None,
         monitor: Monitor | None,
+        pages: WebPages | None,
     ) -> None:
         self._cors_origins = cors_origins
         self._turns = turns
@@ -79,6 +83,7 @@ class _Api(FastAPI):
         self._access = access
         self._rates = rates
         self._monitor = monitor
+        self._pages = pages
         # The routes for programs, by which refusals are counted.
         self.interface: list[APIRoute] = []
         super().__init__(
@@ -97,6 +102,8 @@ class _Api(FastAPI):
             self._store.start()
         _freeze_gc()
         yield
+        if self._pages is not None:
+            self._pages.close()
         self._access.close()
         if self._rates is not None:
             self._rates.close()
@@ -133,6 +140,7 @@ class _Api(FastAPI):
     def openapi(self) -> dict[str, Any]:
         """The description of the interface, made at the first call."""
         if self.openapi_schema is None:
+            work_out_schemas()
             self.openapi_schema = completed(super().openapi())
         return self.openapi_schema
 
@@ -158,7 +166,7 @@ def application(
     happens.
     """
     access = access or Access()
-    app = _Api(cors_origins, turns, store, access, rates, monitor)
+    app = _Api(cors_origins, turns, store, access, rates, monitor, pages)
     problems.install(app, None if pages is None else pages.of_problem)
     for router in (
         exercises.routes(catalogue, feedback),

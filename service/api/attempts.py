@@ -94,7 +94,10 @@ def routes(
         try:
             recorded = await attempting.recorded(request)
         except StoreDownError as error:
-            detail = "The attempt was not recorded. Send it again, with the same Idempotency-Key."
+            detail = (
+                "The database did not confirm the attempt. Send it again, with the same "
+                "Idempotency-Key."
+            )
             raise store_down(detail) from error
         except AttemptRefusedError as error:
             raise ProblemError(

@@ -66,7 +66,11 @@ def _drawn(exercise: Exercise, theme: Theme) -> bytes:
 
 
 def _headers(theme: Theme) -> dict[str, str]:
-    """The figure's own style and nothing else, wherever it is opened."""
+    """The figure's own style and nothing else, wherever it is opened; any page may show it."""
     digest = base64.b64encode(hashlib.sha256(style_sheet(theme).encode()).digest()).decode()
     policy = f"default-src 'none'; style-src 'sha256-{digest}'; frame-ancestors 'self'"
-    return {"Content-Security-Policy": policy, "Cache-Control": "no-cache"}
+    return {
+        "Content-Security-Policy": policy,
+        "Cross-Origin-Resource-Policy": "cross-origin",
+        "Cache-Control": "no-cache",
+    }

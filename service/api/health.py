@@ -62,7 +62,7 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
         if checks is not None:
             try:
                 await checks.passed()
-            except (StoreDownError, TimeoutError) as error:
+            except StoreDownError as error:
                 raise store_down("The database does not answer.") from error
         return Ready(exercises=exercises)
 
@@ -77,14 +77,17 @@ class _Checks:
         self._under_way: asyncio.Task[None] | None = None
 
     async def passed(self) -> None:
-        """Return once a check has passed. Raises StoreDownError, TimeoutError."""
+        """Return once a check has passed. Raises StoreDownError."""
         if self._under_way is None or self._under_way.done():
             self._under_way = asyncio.create_task(self._check())
         # Who asked may go away; the others still wait.
         await asyncio.shield(self._under_way)
 
     async def _check(self) -> None:
-        await asyncio.wait_for(self._store.check(), _PATIENCE)
+        try:
+            await asyncio.wait_for(self._store.check(), _PATIENCE)
+        except TimeoutError as error:
+            raise StoreDownError(f"the database does not react within {_PATIENCE:g} s") from error
 
 
 def _no_exercises() -> ProblemError:

@@ -25,7 +25,7 @@ _REFUSALS = {
     HTTPStatus.REQUEST_ENTITY_TOO_LARGE: "The body is larger than 256 KiB.",
     HTTPStatus.UNSUPPORTED_MEDIA_TYPE: "The body is not JSON and does not claim to be.",
     HTTPStatus.UNPROCESSABLE_ENTITY: "The body has not the right shape, or names an unknown part.",
-    HTTPStatus.SERVICE_UNAVAILABLE: "The database cannot be reached; nothing was recorded.",
+    HTTPStatus.SERVICE_UNAVAILABLE: "The database cannot be reached, or did not confirm.",
 }
 _REFUSED_BODIES: Final = (
     HTTPStatus.BAD_REQUEST,
@@ -94,6 +94,8 @@ _SCHEMES: Final = {
     }
 }
 _REF_TEMPLATE: Final = "#/components/schemas/{model}"
+# The schemas of bodies, each empty until a document is asked for.
+_BODY_SCHEMAS: Final[dict[type[BaseModel], dict[str, Any]]] = {}
 
 
 def posting(
@@ -107,7 +109,7 @@ def posting(
 
     ``name`` begins the names of its two examples; ``further`` are refusals beside those of a body.
     """
-    schema = body.model_json_schema(ref_template=_REF_TEMPLATE)
+    schema = _BODY_SCHEMAS.setdefault(body, {})
     content = {"schema": schema, "example": example(f"{name}-request")}
     request = {"required": True, "content": {"application/json": content}}
     refused = sorted([*_REFUSED_BODIES, *further])
@@ -144,6 +146,12 @@ def _problem(description: str) -> dict[str, Any]:
 def _problem_schema() -> dict[str, Any]:
     # Worked out for each response, it took a quarter of the application's start.
     return ProblemDocument.model_json_schema(ref_template=_REF_TEMPLATE)
+
+
+def work_out_schemas() -> None:
+    """Fill in the schemas of all bodies, which no start of the service waits for."""
+    for body, schema in _BODY_SCHEMAS.items():
+        schema.update(body.model_json_schema(ref_template=_REF_TEMPLATE))
 
 
 def completed(document: dict[str, Any]) -> dict[str, Any]:

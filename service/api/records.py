@@ -26,7 +26,7 @@ async def ask(
     try:
         return await question(store)
     except StoreDownError as error:
-        detail = "The database does not answer; nothing was read or written."
+        detail = "The database does not answer."
         raise store_down(detail) from error
 
 

@@ -143,12 +143,19 @@ def routes(
     async def forget_learner(request: Request) -> Response:
         """Delete all that is recorded of a learner, for ever; for tutors of all exercises.
 
-        Without `apply` nothing is deleted, and the answer tells how much it would be.
+        Without `apply` nothing is deleted, and the answer tells how much it would be. While another
+        program reads a database of SQLite, what was deleted is still in a file beside it: `erased`.
         """
         access.require_change(request, None)
         body = await body_as(ForgetRequest, request)
-        data = await ask(store, lambda it: (it.forget if body.apply else it.data_of)(body.learner))
-        return private(ForgottenData(learner=body.learner, deleted=body.apply, **asdict(data)))
+        erased = None
+        if body.apply:
+            data, erased = await ask(store, lambda it: it.forget(body.learner))
+        else:
+            data = await ask(store, lambda it: it.data_of(body.learner))
+        return private(
+            ForgottenData(learner=body.learner, deleted=body.apply, erased=erased, **asdict(data))
+        )
 
     @router.post(
         "/exercises/{exercise_id}/regrade",

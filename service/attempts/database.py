@@ -23,6 +23,14 @@ _MIGRATION_LOCK: Final = 0x6468_6772
 # PostgreSQL, appendix A, "deadlock_detected"; so often a transaction is tried then.
 _TRIES: Final = 5
 _DEADLOCK: Final = "40P01"
+# A server whose machine is gone is given up after half a minute (libpq, "keepalives_idle" and
+# following); without this, TCP goes on for a quarter of an hour.
+_WHEN_SILENT: Final = {
+    "keepalives_idle": 10,
+    "keepalives_interval": 5,
+    "keepalives_count": 3,
+    "tcp_user_timeout": 25_000,
+}
 
 
 def open_database(url: str, *, create: bool = True) -> Engine:
@@ -55,6 +63,8 @@ def open_database(url: str, *, create: bool = True) -> Engine:
     except CommandError as error:
         newer = "its tables are those of a newer version of the program"
         raise UnusableDatabaseError(f"{safe_url(engine)}: {newer}") from error
+    finally:
+        engine.dispose()
     return engine
 
 
@@ -84,7 +94,7 @@ def _engine(url: str) -> Engine:
                 pool_pre_ping=True,
                 # No failure that is logged tells what somebody has answered.
                 hide_parameters=True,
-                connect_args={"connect_timeout": 3, "options": options},
+                connect_args=_WHEN_SILENT | {"connect_timeout": 3, "options": options},
             )
         case _:
             raise UnusableDatabaseError(
@@ -96,7 +106,13 @@ def _set_up_sqlite(connection: Any, _: object) -> None:
     # Transactions begin where SQLAlchemy says so (below) and not where Python's driver guesses.
     connection.isolation_level = None
     cursor = connection.cursor()
-    for setting in ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON"):
+    # Deleted and replaced rows are overwritten, so that nothing of a forgotten learner stays.
+    for setting in (
+        "journal_mode = WAL",
+        "synchronous = FULL",
+        "foreign_keys = ON",
+        "secure_delete = ON",
+    ):
         cursor.execute(f"PRAGMA {setting}")
     cursor.close()
 

@@ -2,7 +2,10 @@
 
 
 class StoreDownError(Exception):
-    """The database cannot be reached, or cannot write; what was asked for was not done."""
+    """The database cannot be reached, cannot write, or does not react.
+
+    What was asked for was not done, unless the answer to a commit was lost.
+    """
 
 
 class UnusableDatabaseError(Exception):

@@ -8,7 +8,7 @@ from contextlib import AbstractContextManager, nullcontext
 from datetime import UTC, datetime
 from typing import IO, Final, TypeVar
 
-from sqlalchemy import Connection, Engine, literal, select
+from sqlalchemy import Connection, Engine, false, update
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.attempts.attempt import (
@@ -18,8 +18,9 @@ from service.attempts.attempt import (
     RecordedAttempt,
     Standing,
 )
-from service.attempts.database import open_database, reason
-from service.attempts.errors import StoreDownError
+from service.attempts.database import open_database, reason, safe_url
+from service.attempts.erasure import finish_overwriting, overwrite_deleted
+from service.attempts.errors import StoreDownError, UnusableDatabaseError
 from service.attempts.grades import Counting, graded_attempts, written
 from service.attempts.reading import AttemptHistory, history, page
 from service.attempts.recording import AttemptAfter, record_next, standing
@@ -30,17 +31,19 @@ from service.attempts.tutoring import (
     data_of,
     forget,
     override,
-    overwrite_deleted,
 )
 from service.attempts.writer import AttemptWriter
 from service.contract.statistics import ExerciseStatistics
 
 R = TypeVar("R")
 
-# The tables must be there, too.
-_ALIVE: Final = select(literal(1)).select_from(attempts).limit(1)
+# Changes no row, and fails where the tables are missing or may not be written to.
+_ALIVE: Final = update(attempts).values(number=attempts.c.number).where(false())
 # So many tutors read at once; others wait.
 _READERS: Final = 2
+# How long a tutor's reading may take, its wait for others included (seconds): longer than a
+# statement may take in PostgreSQL.
+_READING: Final = 70.0
 # An export that is larger waits for its reader on the disk (bytes).
 _IN_MEMORY: Final = 1024 * 1024
 
@@ -63,13 +66,20 @@ class AttemptStore:
     def open(cls, url: str) -> "AttemptStore":
         """The store at a URL or in an SQLite file. Raises UnusableDatabaseError."""
         engine = open_database(url)
-        # No connection may be carried into processes that are started later.
-        engine.dispose()
+        try:
+            with engine.begin() as connection:
+                connection.execute(_ALIVE)
+        except SQLAlchemyError as error:
+            problem = f"{safe_url(engine)}: attempts cannot be recorded there: {reason(error)}"
+            raise UnusableDatabaseError(problem) from error
+        finally:
+            # No connection may be carried into processes that are started later.
+            engine.dispose()
         return cls(engine)
 
     def start(self) -> None:
         """Begin to take attempts, in the process that serves."""
-        self._writer = AttemptWriter(self.engine)
+        self._writer = AttemptWriter(self.engine, lambda: finish_overwriting(self.engine))
         self._readers = ThreadPoolExecutor(_READERS, "attempts-read")
 
     def close(self) -> None:
@@ -161,19 +171,31 @@ class AttemptStore:
         """How much is recorded of a learner."""
         return await self._read(lambda connection: data_of(connection, learner))
 
-    async def forget(self, learner: str) -> LearnerData:
-        """Delete all that is recorded of a learner, and tell how much it was."""
+    async def forget(self, learner: str) -> tuple[LearnerData, bool | None]:
+        """Delete all that is recorded of a learner; return how much it was.
+
+        With it, whether it is overwritten by now; see ``overwrite_deleted``. If not, the thread
+        that writes tries again every minute.
+        """
         with self.measure("forget"):
             deleted = await self._running.run(lambda connection: forget(connection, learner))
-            await asyncio.to_thread(overwrite_deleted, self.engine)
-        return deleted
+            try:
+                erased = await asyncio.to_thread(overwrite_deleted, self.engine)
+            except SQLAlchemyError:
+                # It is deleted all the same.
+                erased = False
+        return deleted, erased
 
     async def _read(self, work: Callable[[Connection], R]) -> R:
         """The result of ``work``, which writes nothing; beside the attempts that are recorded."""
         assert self._readers is not None, "the store has not been started"
         loop = asyncio.get_running_loop()
         with self.measure("read"):
-            return await loop.run_in_executor(self._readers, self._read_by, work)
+            found = loop.run_in_executor(self._readers, self._read_by, work)
+            try:
+                return await asyncio.wait_for(found, _READING)
+            except TimeoutError as error:
+                raise StoreDownError(f"the database has not answered for {_READING:g} s") from error
 
     def _read_by(self, work: Callable[[Connection], R]) -> R:
         try:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Final
 
-from sqlalchemy import Connection, Engine, delete, func, insert, select, text, update
+from sqlalchemy import Connection, delete, func, insert, select, update
 from sqlalchemy.exc import IntegrityError
 
 from service.attempts.errors import UnknownAttemptError, UnusablePointsError
@@ -65,8 +65,6 @@ def forget(connection: Connection, learner: str) -> LearnerData:
 
     Outcomes stay: they hold verdicts and codes, and neither learners nor answers.
     """
-    if connection.dialect.name == "sqlite":
-        connection.execute(text("PRAGMA secure_delete = ON"))
     for _ in range(_TRIES):
         try:
             with connection.begin_nested():
@@ -84,10 +82,3 @@ def _forget(connection: Connection, learner: str) -> LearnerData:
         connection.execute(delete(table).where(table.c.attempt.in_(mine)))
     connection.execute(delete(attempts).where(attempts.c.learner == learner))
     return data
-
-
-def overwrite_deleted(engine: Engine) -> None:
-    """Overwrite what was deleted where it still stands: in SQLite, in the file of late changes."""
-    if engine.dialect.name == "sqlite":
-        with engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
-            connection.execute(text("PRAGMA wal_checkpoint(TRUNCATE)"))

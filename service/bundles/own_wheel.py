@@ -55,7 +55,7 @@ def _below(folder: Path, name: str) -> Iterator[BundledFile]:
 
 def _metadata(installed: Distribution, folder: str) -> Iterator[BundledFile]:
     yield BundledFile(f"{folder}/WHEEL", _WHEEL.encode())
-    for name in ("METADATA", "entry_points.txt", "licenses/LICENSE"):
+    for name in ("METADATA", "entry_points.txt", "licenses/LICENSE", "licenses/NOTICE"):
         text = installed.read_text(name)
         if text is not None:
             yield BundledFile(f"{folder}/{name}", text.encode())

@@ -4,9 +4,18 @@ A formula is text in the students' own notation (``"l1 + 0.1"``, ``"-90deg"``); 
 read is checked in ``compile.py``, where the exercise's symbols are known.
 """
 
-from typing import Annotated, Literal
+import re
+from typing import Annotated, Final, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StrictInt, StringConstraints
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    StrictInt,
+    StringConstraints,
+)
 from pydantic.fields import FieldInfo
 
 
@@ -14,6 +23,22 @@ def _no_truth_value(value: object) -> object:
     if isinstance(value, bool):
         raise ValueError(f"is {str(value).lower()}; write a number or a formula")
     return value
+
+
+# Control characters and the two that XML forbids besides (XML 1.0, "Char"), which break a page or a
+# figure; and marks by which a text reads as another one (Unicode, annex 9, "embeddings").
+_UNSHOWN: Final = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ufffe\uffff]")
+# The longest statement that comes with the program has 1,500 characters. Formulas take longest to
+# show: a text of this length a quarter of a second, once.
+_LONGEST: Final = 20_000
+
+
+def _showable(text: str) -> str:
+    if found := _UNSHOWN.search(text):
+        raise ValueError(f"holds U+{ord(found[0]):04X}, which no reader sees; leave it out")
+    if len(text) > _LONGEST:
+        raise ValueError(f"has {len(text):,} characters; write at most {_LONGEST:,}")
+    return text
 
 
 def advice(text: str) -> FieldInfo:
@@ -24,7 +49,10 @@ def advice(text: str) -> FieldInfo:
 
 NotBool = BeforeValidator(_no_truth_value)
 Formula = Annotated[str | float, NotBool]
-Text = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1)]
+LooseText = Annotated[str, AfterValidator(_showable)]
+Text = Annotated[
+    str, StringConstraints(strip_whitespace=True, min_length=1), AfterValidator(_showable)
+]
 IDENTIFIER = r"[a-z][a-z0-9]*(?:[-_][a-z0-9]+)*"
 Identifier = Annotated[
     str,

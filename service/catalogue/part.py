@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, StrictBool, model_validator
 
-from service.catalogue.fields import FrameName, Identifier, Marking, NotBool, StrictModel, Text
+from service.catalogue.fields import (
+    FrameName,
+    Identifier,
+    LooseText,
+    Marking,
+    NotBool,
+    StrictModel,
+    Text,
+)
 from service.catalogue.formulas import FieldError, WrittenFormulas
 from service.catalogue.robot import Robot
 from service.catalogue.screw_robot import Reference
@@ -39,7 +47,7 @@ class PartSpec(StrictModel, ABC):
     """The name of the part in answers and reports."""
     title: Text
     """The title that students see."""
-    prompt: str = ""
+    prompt: LooseText = ""
     """The task, in one sentence or more: Markdown, like the statement."""
     points: Annotated[float, Field(gt=0, le=1000, strict=True), NotBool] = 1.0
     """The points for a right answer; its rows share them."""

@@ -14,7 +14,16 @@ from pydantic import (
 
 from service.catalogue.attempts import AttemptsSpec
 from service.catalogue.feedback_level import FeedbackLevel
-from service.catalogue.fields import Formula, Four, Homogeneous, Screw, StrictModel, Text, advice
+from service.catalogue.fields import (
+    Formula,
+    Four,
+    Homogeneous,
+    LooseText,
+    Screw,
+    StrictModel,
+    Text,
+    advice,
+)
 from service.catalogue.parts import SPECS, AnyPartSpec
 from service.expressions import Kind
 from service.kinematics.dh import Convention
@@ -37,7 +46,7 @@ class SymbolSpec(StrictModel):
     """Whether it is an angle, a length or a plain number."""
     description: Text
     """Its meaning, as students see it."""
-    unit: str = ""
+    unit: LooseText = ""
     """Its unit, as students see it; without one "rad" for an angle and "m" for a length."""
     range: tuple[Formula, Formula] | None = None
     """The least and the greatest test value; without it −π to π for an angle, 0.2 to 1 for a

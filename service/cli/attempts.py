@@ -13,6 +13,7 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from service.attempts.attempt import AttemptFilter, GradesFormat
 from service.attempts.database import in_transaction, open_database, reason
+from service.attempts.erasure import overwrite_deleted
 from service.attempts.errors import (
     UnknownAttemptError,
     UnusableDatabaseError,
@@ -26,7 +27,6 @@ from service.attempts.tutoring import (
     data_of,
     forget,
     override,
-    overwrite_deleted,
 )
 from service.cli.output import write
 from service.cli.terminal import give_up, installed, installed_exercise, stdout
@@ -41,6 +41,11 @@ commands = typer.Typer(
 
 _MOST_SLIPS: Final = 15
 _MOST_LISTED: Final = 1_000_000
+_STILL_THERE: Final = (
+    "It is still in the file -wal beside the database, because another program is reading. A "
+    "service that uses the database overwrites it within a minute after that program has ended; "
+    "without a service, run this command again then."
+)
 
 
 def encodable(value: str | None) -> str | None:
@@ -238,13 +243,17 @@ def forget_learner(
         with engine.connect() as connection:
             found = data_of(connection, learner)
         if not found.attempts:
-            give_up("Nothing is recorded of this learner.")
+            # An earlier call may have left something to overwrite.
+            left = overwrite_deleted(engine) is False
+            give_up("Nothing is recorded of this learner." + (f" {_STILL_THERE}" if left else ""))
         if not yes:
             question = f"Forget {visible(learner)}? For ever deleted are {_told(found)}."
             typer.confirm(question, abort=True)
         deleted = in_transaction(engine, lambda connection: forget(connection, learner))
-        overwrite_deleted(engine)
+        erased = overwrite_deleted(engine)
     typer.echo(f"Deleted: {_told(deleted)}.")
+    if erased is False:
+        typer.echo(_STILL_THERE)
 
 
 def _told(data: LearnerData) -> str:

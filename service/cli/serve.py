@@ -1,5 +1,6 @@
 """`dh-grader serve`: the service on this machine."""
 
+import gc
 from typing import Annotated
 
 import typer
@@ -24,6 +25,8 @@ def command(
 ) -> None:
     """Start the service; the environment variables DH_GRADER_… set it up."""
     settings = load_settings(host=host, port=port, workers=workers)
+    # Until the application is up: what is loaded stays, so looking for garbage finds none.
+    gc.disable()
     # Only here: the web framework is half of the program's weight, and grading needs none of it.
     from service.server.start import serve
 

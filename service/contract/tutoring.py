@@ -49,6 +49,12 @@ class ForgottenData(BaseModel):
     attempts: int
     earlier_reports: int
     overrides: int = Field(description="Points that tutors gave, or withdrew.")
+    erased: bool | None = Field(
+        None,
+        description="Whether the files of SQLite hold none of it any more. If not, another program "
+        "is reading the database; the service overwrites it within a minute after that has ended. "
+        "Left out where nothing was to be deleted, and with PostgreSQL.",
+    )
 
 
 class RegradeRequest(BaseModel):

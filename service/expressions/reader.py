@@ -267,7 +267,7 @@ def _parsed(text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool) ->
     if len(characters.text) > LIMITS.characters:
         raise UnreadableError("beyond", (0, len(text)), limit="terms")
     tokens = Lexer(text, characters, vocabulary, degrees=degrees, notes=notes).run()
-    builder = Builder(text, notes, degrees=degrees)
+    builder = Builder(text, notes, vocabulary.turning, degrees=degrees)
     tree = parse(tokens, builder)
     symbols = _shared(_used_symbols(tree))
     if degrees:

@@ -37,6 +37,8 @@ _WORTH_IT: Final = 40
 _WORD: Final = re.compile(r"\\?[A-Za-z0-9_.]+|[^ ]")
 # A formula has few words, which come again and again. Other texts are counted in one piece.
 _MOST_WORDS: Final = 100
+# More symbols than any text has.
+_PACKED: Final = 1 << 32
 
 # Most texts are read again and again; longer ones are not worth the memory.
 _LONGEST_REMEMBERED: Final = 500
@@ -64,20 +66,25 @@ def reading_cost(text: str) -> int:
 
 
 def _of_text(text: str) -> _Count:
-    count = _remembered(text) if len(text) <= _LONGEST_REMEMBERED else _by_words(text)
-    return _Count(count.symbols + len(text) // _CHARACTERS_PER_SYMBOL, count.extra)
+    return _remembered(text) if len(text) <= _LONGEST_REMEMBERED else _by_words(text)
 
 
 def _by_words(text: str) -> _Count:
-    words = Counter(_WORD.findall(text))
-    if len(words) > _MOST_WORDS:
-        return _scanned(text)
-    symbols = extra = 0
-    for word, times in words.items():
-        symbols_of_word, extra_of_word = _of_word(word)
-        symbols += times * symbols_of_word
-        extra += times * extra_of_word
-    return _Count(symbols, extra + _EXTRA_OF_NUMBER * len(_OF_NUMBER.findall(text)))
+    characters = len(text) // _CHARACTERS_PER_SYMBOL
+    words = _WORD.findall(text)
+    if len(words) > _MOST_WORDS and len(set(words)) > _MOST_WORDS:
+        symbols, extra = _scanned(text)
+        return _Count(symbols + characters, extra)
+    extra, symbols = divmod(sum(map(_of_word, words)), _PACKED)
+    if "n(" in text or "s(" in text:
+        extra += _EXTRA_OF_NUMBER * len(_OF_NUMBER.findall(text))
+    return _Count(symbols + characters, extra)
+
+
+def _packed(word: str) -> int:
+    """The count of a word as one number: that of many words is then summed in one call."""
+    symbols, extra = _scanned(word)
+    return symbols + _PACKED * extra
 
 
 def _scanned(text: str) -> _Count:
@@ -96,4 +103,4 @@ def _scanned(text: str) -> _Count:
 
 
 _remembered: Final = lru_cache(maxsize=8192)(_by_words)
-_of_word: Final = lru_cache(maxsize=2048)(_scanned)
+_of_word: Final = lru_cache(maxsize=2048)(_packed)

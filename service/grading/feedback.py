@@ -88,7 +88,7 @@ Messages = tuple[Feedback, ...]
 
 _TELLS_HINTS: Final = (FeedbackLevel.FULL, FeedbackLevel.HINTS)
 # The note on the reading that a slip makes needless where it is told, by the slip's code.
-_NOTES_ON: Final = {"swapped_atan2": "atan2_order"}
+_NOTES_ON: Final = {"swapped_atan2": "atan2_order", "degrees_as_radians": "bare_radians"}
 
 
 def told_at(

@@ -2,11 +2,12 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, Protocol
 
 from service.catalogue import Exercise
-from service.expressions.printing.spelling import Spelling, spelling_of
+from service.expressions import Expression, Vocabulary
+from service.expressions.printing.spelling import Habits, Spelling, habits_of, spelling_of
 from service.grading.feedback import Finding
 from service.grading.reading.entry import Entry, Reader
 from service.grading.report import Feedback, Place, RowReport, Verdict
@@ -15,6 +16,9 @@ from service.kinematics.transforms import Matrices, inverse
 
 # So many entries show how a student names symbols.
 NAMING_ENTRIES = 4
+# The characters of a cell of a table. What longer texts show is not remembered: their expressions
+# would be kept with it.
+_CELL = 40
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,9 +78,13 @@ class Grading:
         """The spelling of the entries of a part, in which the student is answered."""
         # Half the cells of a table are a bare 0, which shows nothing.
         expressions = [entry.expression for entry in entries]
-        typed = [each.typed for each in expressions if each is not None and each.source != "0"]
-        degrees = self.reader.angle_unit == "degrees"
-        return spelling_of(typed, self.exercise.vocabulary, degrees=degrees)
+        vocabulary = self.exercise.vocabulary
+        habits = [
+            _habits(each, vocabulary)
+            for each in expressions
+            if each is not None and each.source != "0"
+        ]
+        return spelling_of(habits, vocabulary, degrees=self.reader.angle_unit == "degrees")
 
     def symbol_names(self, entries: Iterable[Entry]) -> Callable[[str], str]:
         """The names of symbols as the entries of a part have them, found when one is asked for.
@@ -100,6 +108,18 @@ class Grading:
         joints = (joint.variable for joint in self.exercise.joints)
         names = {variable.name for variable in self.exercise.variables}
         return frozenset(names.difference(joints, *read))
+
+
+def _habits(expression: Expression, vocabulary: Vocabulary) -> Habits:
+    if len(expression.source) <= _CELL:
+        return _habits_of_cell(expression, vocabulary)
+    return habits_of(expression.typed, vocabulary)
+
+
+# A class writes the same cells again and again, and each is one expression.
+@lru_cache(maxsize=2048)
+def _habits_of_cell(expression: Expression, vocabulary: Vocabulary) -> Habits:
+    return habits_of(expression.typed, vocabulary)
 
 
 def _length(entry: Entry) -> int:

@@ -33,11 +33,13 @@ class Samples:
 
     Samples 0..15 are drawn freely. Samples 16..31 repeat their link parameters with other joint
     values, so that a change between the halves is due to the joints alone. ``in_degrees`` are the
-    angles whose values a student reads in degrees.
+    angles whose values a student reads in degrees, ``bare_count`` is the number of samples where
+    there are no symbols.
     """
 
     values: Mapping[str, Numbers]
     in_degrees: Set[str] = frozenset()
+    bare_count: int = SAMPLES
 
     @cached_property
     def memo(self) -> dict[str, Numbers]:
@@ -61,14 +63,15 @@ class Samples:
     @property
     def count(self) -> int:
         """How many values each symbol has."""
-        return len(next(iter(self.values.values())))
+        return next(map(len, self.values.values()), self.bare_count)
 
     def subset(self, count: int) -> "Samples":
         """The first ``count`` samples of each half: enough to tell generic tables apart."""
         return self.cached(
             count,
             lambda: Samples(
-                {name: self.subset_of(values, count) for name, values in self.values.items()}
+                {name: self.subset_of(values, count) for name, values in self.values.items()},
+                bare_count=2 * count,
             ),
         )
 
@@ -77,7 +80,7 @@ class Samples:
 
         They are drawn from the samples themselves, and so are the same for the same samples.
         """
-        drawn = next(iter(self.values.values())).tobytes().hex()
+        drawn = next((values.tobytes().hex() for values in self.values.values()), "")
         more = {name: 0.5 + _uniform(name + drawn, self.count) for name in sorted(names)}
         return Samples({**self.values, **more}, self.in_degrees)
 

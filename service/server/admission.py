@@ -17,9 +17,9 @@ from typing import Any, Final
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from service.access.client_key import client_key
 from service.api.problems import ProblemError
 from service.api.turns import CLIENT, ONE_ADDRESS, TURN, Client
-from service.server.crowd import client_key
 from service.server.fair_queue import FairQueue, Ticket
 from service.server.limits import HEALTH
 from service.server.refusals import too_busy, too_many

@@ -6,12 +6,12 @@ them, the longest waiting first. A request that has come whole is never dropped.
 """
 
 import asyncio
-import ipaddress
 from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Final, Protocol
 
+# For admission, which imports it from here.
 from service.server.limits import MAX_CONNECTIONS, MAX_UNFINISHED, OTHER_FILES, RESERVE, SWEEP
 
 # The share of the connections that is closed at once, so that choosing them costs little for each.
@@ -132,16 +132,6 @@ def by_turn(
         if not queues[address]:
             del queues[address]
         yield member
-
-
-def client_key(address: str) -> str:
-    """Whom an address belongs to: with IPv6 the network, of which one client has all addresses."""
-    if ":" not in address:
-        return address
-    try:
-        return str(ipaddress.ip_network((address.partition("%")[0], 64), strict=False))
-    except ValueError:
-        return address
 
 
 def room_here() -> Room:

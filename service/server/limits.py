@@ -34,5 +34,7 @@ MAX_UNFINISHED: Final = 32 * 1024 * 1024
 
 # From the signal to end until the last answers are given up.
 GRACE: Final = 8.0
+# Seconds beyond it until the process ends, whatever a thread of it is at.
+LAST: Final = 1.3
 # Where a supervisor asks; these wait for nobody.
 HEALTH: Final = frozenset({"/healthz", "/readyz"})

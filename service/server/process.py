@@ -6,6 +6,7 @@ import logging
 import os
 import signal
 import socket
+import threading
 from collections.abc import Iterator, Sequence
 from contextvars import Context
 from types import FrameType
@@ -15,7 +16,7 @@ import uvicorn
 
 from service.api.monitor import Monitor
 from service.server.guarded_state import GuardedState
-from service.server.limits import GRACE
+from service.server.limits import GRACE, LAST
 from service.server.protocol import GuardedProtocol
 from service.server.shared_port import Acceptor, SharedPort
 
@@ -91,6 +92,7 @@ class Server(uvicorn.Server):
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:  # noqa: ARG002
         """Answer what has come whole, wait a while for the rest, and hang up on what is left."""
+        _end_at_last()
         for server in self.servers:
             server.close()
         if self._acceptor is not None:
@@ -114,3 +116,20 @@ class Server(uvicorn.Server):
     def _guarded(self) -> list[GuardedProtocol]:
         found = list(self.server_state.connections)
         return [connection for connection in found if isinstance(connection, GuardedProtocol)]
+
+
+def _end_at_last() -> None:
+    """End the process after the promised time, also if a thread is still at work.
+
+    Python waits for its threads, and nothing ends one. What the database has confirmed is recorded.
+    """
+
+    def end() -> None:
+        _log.warning(
+            "Something does not react, such as the database: ended without waiting for it."
+        )
+        os._exit(0)
+
+    timer = threading.Timer(GRACE + LAST, end)
+    timer.daemon = True
+    timer.start()

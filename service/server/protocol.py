@@ -20,9 +20,10 @@ from uvicorn.protocols.http.flow_control import FlowControl
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol, RequestResponseCycle
 from uvicorn.server import ServerState
 
+from service.access.client_key import client_key
 from service.api.problems import ProblemError
 from service.api.request_context import end_request
-from service.server.crowd import Crowd, client_key
+from service.server.crowd import Crowd
 from service.server.early_cors import origin_in
 from service.server.framing import Framing
 from service.server.guarded_state import GuardedState
@@ -33,6 +34,8 @@ from service.submissions.strict_json import MAX_BODY_SIZE
 # A server may ignore the wish for another protocol (RFC 9110, 7.8). The parser would stop at it.
 _UPGRADE: Final = re.compile(rb"\r\n(?=upgrade:)", re.IGNORECASE)
 _HOST: Final = re.compile(rb"\r\nhost[ \t]*:", re.IGNORECASE)
+# The parser takes zeros before a length by the thousand; int() refuses more than 4,300 digits.
+_LONG_LENGTH: Final = re.compile(rb"\r\ncontent-length:[ \t]*[0-9]{20}", re.IGNORECASE)
 # Whether to linger, and for how many seconds: a close is then a reset.
 _AT_ONCE: Final = struct.pack("hh" if sys.platform == "win32" else "ii", 1, 0)
 
@@ -179,6 +182,8 @@ class GuardedProtocol(HttpToolsProtocol):
             # RFC 9112, 3.2.
             if hosts > 1 or not (hosts or piece.partition(b"\r\n")[0].endswith(b"0")):
                 raise malformed("A request names its host once, in a header Host.")
+            if _LONG_LENGTH.search(piece):
+                raise malformed("The Content-Length has more than 19 digits.")
         try:
             self.parser.feed_data(_UPGRADE.sub(b"\r\nignored-", piece) if head else piece)
         except (httptools.HttpParserError, httptools.HttpParserUpgrade) as error:

@@ -1,5 +1,6 @@
 """`dh-grader serve`: the settings put into effect, in one process or several."""
 
+import gc
 import logging
 import signal
 import sys
@@ -36,6 +37,7 @@ def serve(settings: Settings) -> bool:
             server.run()
             return server.started
         config = _config(settings, app)
+        gc.enable()
         # The workers read the exercises themselves: here they were read to see that they can be
         # used.
         try:

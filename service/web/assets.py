@@ -16,7 +16,9 @@ from typing import Final
 FOLDER: Final = Path(__file__).parent / "static"
 _MEDIA_TYPES: Final = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
 # A file names another one in quotes, as beside it; a module may import one later, when it needs it.
-_NAMED: Final = re.compile(r'(import\()?"\./([\w.-]+)"')
+# A pattern that begins with plain characters is searched for ten times as fast.
+_NAMED: Final = re.compile(r'"\./([\w.-]+)"')
+_LATER: Final = "import("
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,17 +65,17 @@ def load_assets(folder: Path = FOLDER) -> Assets:
     """The files of a folder. Raises LookupError where one names another that there is not."""
     files = {file.name: file for file in folder.iterdir() if file.suffix in _MEDIA_TYPES}
     texts = {name: file.read_text(encoding="utf-8") for name, file in files.items()}
-    named = {name: _NAMED.findall(text) for name, text in texts.items()}
+    named = {name: list(_NAMED.finditer(text)) for name, text in texts.items()}
     assets: dict[str, Asset] = {}
     # Those that are named come first: a name is part of the content that is hashed.
-    order = {name: [other for _, other in found] for name, found in named.items()}
+    order = {name: [match[1] for match in found] for name, found in named.items()}
     for name in TopologicalSorter(order).static_order():
         if name not in files:
             raise LookupError(f"a static file names {name!r}, which does not exist")
-        content = _NAMED.sub(
-            lambda match: f'{match[1] or ""}"./{assets[match[2]].name}"', texts[name]
-        ).encode()
-        needs = tuple(other for later, other in named[name] if not later)
+        content = _NAMED.sub(lambda match: f'"./{assets[match[1]].name}"', texts[name]).encode()
+        needs = tuple(
+            match[1] for match in named[name] if not texts[name].endswith(_LATER, 0, match.start())
+        )
         stem, suffix = files[name].stem, files[name].suffix
         hashed = f"{stem}-{hashlib.sha256(content).hexdigest()[:12]}{suffix}"
         assets[name] = Asset(hashed, content, _MEDIA_TYPES[suffix], needs)

@@ -2,6 +2,7 @@
 
 import io
 import tempfile
+import time
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -24,7 +25,12 @@ from service.submissions.strict_json import MAX_BODY_SIZE
 # Unpacked. A body holds 256 KiB, and what students hand in is much alike.
 MAX_UPLOAD: Final = 8 * 1024 * 1024
 MAX_SUBMISSIONS: Final = 500
+# Seconds. What a class hands in takes one or two; only files made to be costly take longer.
+MOST_SECONDS: Final = 60.0
 _LONGEST_PATH: Final = 1_000
+# Characters outside the texts of an upload, and quotation marks around texts: each may take a
+# hundred bytes once it is read. The page sends 7 and 8 for each file.
+_MOST_MARKS: Final = 50 * MAX_FILES
 # In bytes of UTF-8; no file system that is common takes more.
 _LONGEST_NAME: Final = 255
 
@@ -68,11 +74,21 @@ def unpacked(body: bytes) -> ClassUpload:
             f"The files are more than {MAX_UPLOAD // 1024 // 1024} MiB. Choose fewer, or use "
             "dh-grader grade FOLDER --format html."
         )
+    if _marks(content) > _MOST_MARKS:
+        raise _unusable("The body holds more than the files of a class, their paths and contents.")
     try:
         return ClassUpload.model_validate_json(content)
     except ValidationError as error:
         details = error.errors(include_url=False, include_input=False, include_context=False)
         raise invalid(details, list(ClassUpload.model_fields)) from error
+
+
+def _marks(content: bytes) -> int:
+    """Return how many characters of JSON are outside texts, the quotation marks included."""
+    content = content.replace(rb"\\", b"").replace(rb"\"", b"")
+    quotes = content.count(b'"')
+    # Too many for a list of what is between them.
+    return quotes if quotes > _MOST_MARKS else quotes + sum(map(len, content.split(b'"')[::2]))
 
 
 def class_archive(upload: ClassUpload, catalogue: Catalogue) -> bytes:
@@ -145,7 +161,13 @@ def _all_graded(
 ) -> Iterator[GradedSubmission]:
     """Each with names that are seen from the folder of the class."""
     above = f"{folder}/"
+    end = time.monotonic() + MOST_SECONDS
     for handed in found:
+        if time.monotonic() >= end:
+            raise _unusable(
+                f"Grading these files takes more than {MOST_SECONDS:g} seconds. Choose fewer, or "
+                "use dh-grader grade FOLDER --format html."
+            )
         submission = graded(handed, terms)
         files = tuple(
             replace(

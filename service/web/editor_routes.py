@@ -13,7 +13,8 @@ from service.api.bounded_work import BoundedWork
 from service.api.lookup import Catalogue, exercise_or_404
 from service.api.problems import ProblemError
 from service.web.assets import Assets
-from service.web.exercise_check import CheckRequest, checked
+from service.web.checking import Checking
+from service.web.exercise_check import CheckRequest
 from service.web.exercise_folder import ExerciseFolder, SaveRequest
 from service.web.page_headers import NO_STORE, PRIVATE_HEADERS
 from service.web.tutor_pages import editor_page
@@ -22,7 +23,11 @@ _NEW: Final = "my-exercise"
 
 
 def editor_routes(
-    catalogue: Catalogue, assets: Assets, folder: ExerciseFolder, work: BoundedWork
+    catalogue: Catalogue,
+    assets: Assets,
+    folder: ExerciseFolder,
+    work: BoundedWork,
+    checking: Checking,
 ) -> APIRouter:
     """The editor, the check of its text, and the writing of its file."""
     router = APIRouter()
@@ -51,7 +56,7 @@ def editor_routes(
     async def check(request: Request) -> Response:
         """The findings on a text, which is not kept."""
         body = await body_as(CheckRequest, request)
-        content = await work.do(partial(checked, body))
+        content = await work.do(partial(checking.checked, body))
         return Response(content, headers=NO_STORE, media_type="application/json")
 
     @router.post("/files")

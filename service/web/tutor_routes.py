@@ -17,6 +17,7 @@ from service.api.piecewise import PiecewiseResponse
 from service.api.problems import ProblemError
 from service.catalogue import Exercise, Robot
 from service.web.assets import Assets
+from service.web.checking import Checking
 from service.web.class_routes import class_routes
 from service.web.editor_routes import editor_routes
 from service.web.exercise_folder import ExerciseFolder
@@ -28,13 +29,14 @@ from service.web.tutor_pages import solution_page, tutor_page
 class Tutoring:
     """Who may see solutions, the folders of exercise files, and the one that may be written to.
 
-    ``records`` says whether the service records attempts.
+    ``records`` says whether the service records attempts; ``checking`` checks the editor's text.
     """
 
     access: Access
     folders: Sequence[Path] = field(default=())
     editor_dir: Path | None = None
     records: bool = False
+    checking: Checking = field(default_factory=Checking)
 
 
 def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
@@ -49,7 +51,7 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
     folder = ExerciseFolder(tutoring.folders, tutoring.editor_dir)
     for routes in (
         _solution_routes(catalogue, assets, access),
-        editor_routes(catalogue, assets, folder, work),
+        editor_routes(catalogue, assets, folder, work, tutoring.checking),
         class_routes(catalogue, assets, work),
     ):
         router.include_router(routes, dependencies=[Depends(require, scope="function")])

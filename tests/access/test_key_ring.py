@@ -1,20 +1,25 @@
 """Keys in memory and in the database: what is kept, for how long, and what becomes of failures."""
 
 import asyncio
-from collections.abc import Iterator
+import threading
+from collections.abc import Collection, Iterator
+from contextlib import suppress
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
-from sqlalchemy import Engine, select, text
+from sqlalchemy import Connection, Engine, event, select, text
 
+from service.access import key_lookups
 from service.access.caller import Caller, Scope
+from service.access.key_lookups import KeyPlace
 from service.access.key_ring import KeyRing
-from service.access.key_table import add_key, all_keys, revoke_key
+from service.access.key_table import add_key, all_keys, keys_at, revoke_key
 from service.access.key_text import new_key_text
-from service.access.keys import CredentialError, Key, KeysUnreachableError, Secret
+from service.access.keys import CredentialError, Key, KeysBusyError, KeysUnreachableError, Secret
 from service.attempts.database import in_transaction, open_database
 from service.attempts.tables import keys
+from tests.guards import ANSWER
 
 SECRET = Secret("0123456789abcdef" * 4)
 # So long a ring keeps what it has found, here.
@@ -129,17 +134,156 @@ def test_a_known_key_works_while_the_database_is_down(engine: Engine) -> None:
         KeyRing(engine, SECRET)
 
 
-def test_invented_keys_take_no_place_of_known_ones(engine: Engine) -> None:
+def flooded(ring: KeyRing, invented: int, *keys: str) -> list[Caller]:
+    """The callers of these keys, asked in the midst of keys that nobody has made."""
+
+    async def flood() -> list[BaseException | Caller]:
+        before, after = ((new_key_text() for _ in range(invented // 2)) for _ in range(2))
+        asked = map(ring.caller, (*before, *keys, *after))
+        return await asyncio.gather(*asked, return_exceptions=True)
+
+    told = asyncio.run(flood())
+    refused = [each for each in told if isinstance(each, BaseException)]
+    assert {type(each) for each in refused} == {CredentialError}
+    assert len(refused) == invented
+    return [each for each in told if isinstance(each, Caller)]
+
+
+def test_a_good_key_is_found_among_any_number_of_invented_ones(engine: Engine) -> None:
+    known, new = made(engine), made(engine)
+    ring = KeyRing(engine, SECRET, 0.0)
+    asked(ring, known[0])
+    statements = 0
+
+    def count(*_: object) -> None:
+        nonlocal statements
+        statements += 1
+
+    event.listen(engine, "before_cursor_execute", count)
+    callers = flooded(ring, 2000, known[0], new[0])
+    event.remove(engine, "before_cursor_execute", count)
+    assert [each.key_id for each in callers] == [known[1].id, new[1].id]
+    # Many share one: 128 of the invented ones, then a note of the last use of each key.
+    assert statements < 40
+    ring.close()
+
+
+def test_a_known_key_waits_for_no_invented_one(
+    engine: Engine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    key, known = made(engine)
+    ring = KeyRing(engine, SECRET, 0.0)
+    asked(ring, key)
+    answers, looked = threading.Event(), threading.Event()
+
+    def slow(connection: Connection, places: Collection[KeyPlace]) -> dict[KeyPlace, Key]:
+        if ("digest", SECRET.key_digest(key)) not in places:
+            looked.set()
+            assert answers.wait(ANSWER)
+        return keys_at(connection, places)
+
+    monkeypatch.setattr("service.access.key_ring.keys_at", slow)
+
+    async def ask() -> Caller:
+        invented = [asyncio.create_task(ring.caller(new_key_text())) for _ in range(300)]
+        while not looked.is_set():
+            await asyncio.sleep(0)
+        found = await ring.caller(key)
+        assert not any(task.done() for task in invented)
+        answers.set()
+        refused = await asyncio.gather(*invented, return_exceptions=True)
+        assert {type(each) for each in refused} == {CredentialError}
+        return found
+
+    assert asyncio.run(ask()).key_id == known.id
+    ring.close()
+
+
+def test_an_unknown_key_is_asked_about_again_within_seconds(engine: Engine) -> None:
+    key, now = new_key_text(), datetime.now(UTC)
+    ring = KeyRing(engine, SECRET, KEPT)
+    with pytest.raises(CredentialError):
+        asked(ring, key)
+    digest = SECRET.key_digest(key)
+    in_transaction(
+        engine,
+        lambda connection: add_key(connection, "", digest, (), None, now, now + timedelta(days=1)),
+    )
+
+    async def until_known() -> Caller:
+        while True:
+            with suppress(CredentialError):
+                return await ring.caller(key)
+            await asyncio.sleep(KEPT)
+
+    assert asyncio.run(until_known()).scopes == {Scope.GRADE}
+    ring.close()
+
+
+def test_one_wrong_key_is_looked_up_once_in_a_while(engine: Engine) -> None:
+    made(engine)
+    ring = KeyRing(engine, SECRET, 60.0)
+    key, statements = new_key_text(), []
+    event.listen(engine, "before_cursor_execute", lambda *args: statements.append(args[2]))
+
+    async def again_and_again() -> None:
+        for _ in range(50):
+            with pytest.raises(CredentialError, match="No key"):
+                await ring.caller(key)
+
+    asyncio.run(again_and_again())
+    assert len(statements) < 10
+    ring.close()
+
+
+def test_too_many_at_once_are_no_failure_of_the_database(
+    engine: Engine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.access.key_lookups.WAITING", 10)
     key, known = made(engine)
     ring = KeyRing(engine, SECRET, 0.0)
     asked(ring, key)
 
     async def flood() -> list[BaseException | Caller]:
-        invented = (new_key_text() for _ in range(200))
+        invented = (new_key_text() for _ in range(50))
         return await asyncio.gather(*map(ring.caller, (*invented, key)), return_exceptions=True)
 
     *refused, caller = asyncio.run(flood())
     assert isinstance(caller, Caller)
     assert caller.key_id == known.id
-    assert {type(each) for each in refused} == {CredentialError, KeysUnreachableError}
+    assert {type(each) for each in refused} == {CredentialError, KeysBusyError}
     ring.close()
+
+
+def test_a_client_that_goes_away_costs_no_other_its_answer(engine: Engine) -> None:
+    key, known = made(engine)
+    ring = KeyRing(engine, SECRET, 0.0)
+
+    async def ask() -> Caller:
+        gone, stays = (asyncio.create_task(ring.caller(key)) for _ in range(2))
+        await asyncio.sleep(0)
+        gone.cancel()
+        return await stays
+
+    assert asyncio.run(ask()).key_id == known.id
+    ring.close()
+
+
+def test_a_database_that_does_not_react_is_given_up(
+    engine: Engine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(key_lookups, "PATIENCE", 0.05)
+    reacts = threading.Event()
+    key, _ = made(engine, Scope.GRADE)
+    ring = KeyRing(engine, SECRET, KEPT)
+
+    def silent(*_: object) -> None:
+        reacts.wait(ANSWER)
+
+    event.listen(engine, "before_cursor_execute", silent)
+    try:
+        with pytest.raises(KeysUnreachableError):
+            asked(ring, key)
+    finally:
+        reacts.set()
+        ring.close()

@@ -57,6 +57,16 @@ def test_keys_and_addresses_are_counted_apart(store: str) -> None:
     other.close()
 
 
+def test_all_addresses_of_an_ipv6_network_count_as_one(store: str) -> None:
+    rates = Rates("", "1/day", store)
+    network, other = "2001:db8:0:7::1", "2001:db8:0:8::1"
+    same = ("2001:db8:0:7::2", "2001:0db8:0000:0007:ffff:ffff:ffff:ffff", "2001:db8:0:7::3%eth0")
+    mapped = ("::ffff:10.0.0.7", "10.0.0.7", "::ffff:10.0.0.8")
+    asked = [(NOBODY, address) for address in (network, *same, other, *mapped)]
+    assert waits(rates, *asked) == [False, True, True, True, False, False, True, False]
+    rates.close()
+
+
 def test_without_its_store_each_counts_for_itself(caplog: pytest.LogCaptureFixture) -> None:
     rates = Rates("", "1/day", "redis+unix:///nowhere")
     assert waits(rates, (NOBODY, "a"), (NOBODY, "a"), (COURSE, "a")) == [False, True, False]

@@ -8,8 +8,6 @@ from fastapi import FastAPI
 
 from service.api.application import application
 from service.catalogue import Exercise
-from tests.api.serving import served
-from tests.shipped import shipped_exercises
 
 
 class InProcess(httpx.BaseTransport):
@@ -31,11 +29,6 @@ class InProcess(httpx.BaseTransport):
 
 
 @pytest.fixture(scope="session")
-def catalogue() -> Mapping[str, Exercise]:
-    return shipped_exercises()
-
-
-@pytest.fixture(scope="session")
 def app(catalogue: Mapping[str, Exercise]) -> FastAPI:
     return application(catalogue)
 
@@ -50,10 +43,3 @@ def client(app: FastAPI) -> Iterator[httpx.Client]:
 def client_of() -> Any:
     """Makes a client of any app."""
     return lambda app: httpx.Client(transport=InProcess(app), base_url="http://service")
-
-
-@pytest.fixture(scope="module")
-def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
-    """The port of a real process."""
-    with served(tmp_path_factory.mktemp("server")) as server:
-        yield server.port

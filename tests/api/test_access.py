@@ -45,6 +45,15 @@ def test_whoever_sits_at_the_machine_is_one(host: str) -> None:
     assert answered(None, {"host": host})
     assert answered(None, {"host": host, "origin": f"http://{host}"})
     assert answered(None, {"host": host}, client="::1", server="::1")
+    # A browser that shows a page of the service, and one in which somebody typed the address.
+    for site in ("same-origin", "none"):
+        assert answered(None, {"host": host, "sec-fetch-site": site})
+    own = {"origin": f"http://{host}", "sec-fetch-site": "same-origin", "sec-fetch-mode": "cors"}
+    assert answered(None, {"host": host, **own})
+    # A link on another page, which learns nothing of the answer.
+    link = {"sec-fetch-mode": "navigate", "sec-fetch-dest": "document"}
+    for site in ("cross-site", "same-site"):
+        assert answered(None, {"host": host, "sec-fetch-site": site, **link})
 
 
 @pytest.mark.parametrize(
@@ -66,6 +75,21 @@ def test_whoever_sits_at_the_machine_is_one(host: str) -> None:
         ({**PROGRAM, "origin": "https://course.example.edu"}, {}),
         ({**PROGRAM, "origin": "http://127.0.0.1:9000"}, {}),
         ({**PROGRAM, "origin": "null"}, {}),
+        # The same name by another scheme is another origin.
+        ({**PROGRAM, "origin": "https://127.0.0.1:8000"}, {}),
+        ({**PROGRAM, "origin": "chrome-extension://127.0.0.1:8000"}, {}),
+        # A picture, script, frame or form of another page, or of another port of this machine.
+        *(
+            ({**PROGRAM, "sec-fetch-site": site, **how}, {})
+            for site in ("cross-site", "same-site", "unheard-of", "")
+            for how in (
+                {},
+                {"sec-fetch-mode": "no-cors", "sec-fetch-dest": "image"},
+                {"sec-fetch-mode": "no-cors", "sec-fetch-dest": "script"},
+                {"sec-fetch-mode": "navigate", "sec-fetch-dest": "iframe"},
+                {"sec-fetch-mode": "cors", "origin": "http://127.0.0.1:8000"},
+            )
+        ),
     ],
 )
 def test_nobody_else_is(headers: dict[str, str], ends: dict[str, str]) -> None:
@@ -78,3 +102,8 @@ def test_the_setting_decides_where_it_is_set() -> None:
     assert not answered(False, PROGRAM)
     # A page elsewhere never asks with a tutor's browser.
     assert not answered(True, {**PROGRAM, "origin": "https://course.example.edu"})
+    assert not answered(True, {**PROGRAM, "sec-fetch-site": "cross-site"})
+    # A proxy that speaks TLS and does not say so: the browser does.
+    name = {"host": "grader.example.edu", "origin": "https://grader.example.edu"}
+    assert answered(True, {**name, "sec-fetch-site": "same-origin"}, **far)
+    assert not answered(True, name, **far)

@@ -43,7 +43,7 @@ def test_a_body_at_the_limit_is_read(client: httpx.Client) -> None:
     assert client.post(GRADE, content=padded(MAX_BODY_SIZE)).status_code == 200
 
 
-@pytest.mark.parametrize("declared", [None, b"10", b"-1", b"x"])
+@pytest.mark.parametrize("declared", [None, b"10", b"-1", b"x", b"0" * 5000 + b"10"])
 def test_a_body_that_outgrows_its_headers_is_not_read_to_its_end(
     app: FastAPI, declared: bytes | None
 ) -> None:
@@ -151,7 +151,13 @@ def test_an_id_that_could_not_stand_in_a_log_is_replaced(
 def test_every_answer_is_hardened(client: httpx.Client, method: str, url: str) -> None:
     response = client.request(method, url)
     assert response.headers["x-content-type-options"] == "nosniff"
+    assert response.headers["cross-origin-resource-policy"] == "same-origin"
     assert "server" not in response.headers
+
+
+def test_any_page_may_show_a_figure(client: httpx.Client) -> None:
+    figure = client.get("/v1/exercises/scara/figure.svg")
+    assert figure.headers["cross-origin-resource-policy"] == "cross-origin"
 
 
 def test_a_failure_inside_says_nothing_of_itself(

@@ -8,12 +8,14 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from service.api.application import application
 from service.catalogue import Exercise, FeedbackLevel, least
 from service.grading import Verdict
+from tests.grading.support.bare_numbers import BARE, BareExercise
+from tests.together import together
 
 URL = "/v1/exercises/planar-rrr/grade"
 
@@ -184,7 +186,6 @@ JSON = st.recursive(
 )
 
 
-@settings(max_examples=60, deadline=None)
 @given(answer=JSON, part=st.sampled_from(["table", "pose"]))
 def test_whatever_an_answer_holds_there_is_a_report(
     client: httpx.Client, answer: object, part: str
@@ -224,3 +225,19 @@ def test_an_unknown_exercise_is_a_404(client: httpx.Client) -> None:
     response = client.post("/v1/exercises/planar-rrrr/grade", json={"answers": {}})
     assert response.status_code == 404
     assert "planar-rrr" in response.json()["detail"]
+
+
+@together("bare", BARE)
+def test_exercises_of_numbers_alone(
+    bare: BareExercise, make_exercise: Callable[[str], Exercise], client_of: Any
+) -> None:
+    exercise = make_exercise(bare.text)
+    with client_of(application({exercise.id: exercise})) as client:
+        url = f"/v1/exercises/{exercise.id}"
+        assert client.get(url).status_code == 200
+        for answer, right in [(bare.right, True), *((each, False) for each in bare.wrong)]:
+            response = client.post(f"{url}/grade", json={"answers": {"it": answer}, "echo": True})
+            assert response.status_code == 200
+            assert (response.json()["score"] == 1) == right
+            body = {"text": str(answer), "exercise": exercise.id, "part": "it"}
+            assert client.post("/v1/preview", json=body).status_code == 200

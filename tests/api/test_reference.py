@@ -2,13 +2,16 @@
 
 import hashlib
 import re
-import sys
+from collections.abc import Callable
 
 import httpx
 import pytest
+from playwright.sync_api import expect
 
 from service.api.reference import FOLDER
-from tests import chromium
+from tests.api.serving import Served
+from tests.browser.fixtures import Visit
+from tests.guards import ANSWER
 
 PAGE = "/docs"
 
@@ -72,22 +75,19 @@ def test_the_files_are_those_that_were_published() -> None:
 
 
 @pytest.mark.campaign
-@pytest.mark.skipif(chromium.FOUND is None or sys.platform == "win32", reason="needs a Chromium")
-def test_in_a_browser_without_the_internet(port: int, client: httpx.Client) -> None:
-    paths = client.get("/openapi.json").json()["paths"].values()
-    with chromium.blank_page() as page:
-        page.open(f"http://127.0.0.1:{port}{PAGE}")
-        shown = page.wait_for("document.querySelectorAll('.opblock').length")
-        assert shown == sum(map(len, paths))
-        many = "document.querySelector('#operations-grading-gradeMany {}')"
-        page.wait_for(f"({many.format('.opblock-summary-control')}.click(), true)")
-        page.wait_for(f"{many.format('.execute')} && ({many.format('.execute')}.click(), true)")
-        answer = ".live-responses-table .response"
-        text = page.wait_for(f"{many.format(answer)} && {many.format(answer)}.innerText")
-        assert text.startswith("200")
-        assert "urn:dh-grader:problem:unknown-exercise" in text
-        assert page.complaints == []
-        origin = f"http://127.0.0.1:{port}/"
-        away = [url for url in page.requests if not url.startswith((origin, "data:"))]
-        assert away == []
-        assert f"{origin}v1/grade" in page.requests
+def test_in_a_browser_without_the_internet(visit: Callable[..., Visit], server: Served) -> None:
+    origin = f"{server.address}/"
+    document = httpx.get(f"{origin}openapi.json", trust_env=False, timeout=ANSWER).json()
+    paths = document["paths"].values()
+    opened = visit()
+    page = opened.page
+    page.goto(server.address + PAGE)
+    expect(page.locator(".opblock")).to_have_count(sum(map(len, paths)))
+    many = page.locator("#operations-grading-gradeMany")
+    many.locator(".opblock-summary-control").click()
+    many.locator(".execute").click()
+    answer = many.locator(".live-responses-table .response")
+    expect(answer).to_contain_text("200")
+    expect(answer).to_contain_text("urn:dh-grader:problem:unknown-exercise")
+    assert [url for url in opened.requests if not url.startswith((origin, "data:"))] == []
+    assert f"{origin}v1/grade" in opened.requests

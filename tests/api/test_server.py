@@ -10,15 +10,15 @@ from pathlib import Path
 import httpx
 import pytest
 
-from tests.api.serving import ROOT
+from tests.api.serving import ROOT, Served
 from tests.guards import ANSWER
 
 GRADE = "/v1/exercises/planar-rrr/grade"
 
 
-def test_it_grades_and_does_not_name_its_server(port: int) -> None:
+def test_it_grades_and_does_not_name_its_server(server: Served) -> None:
     response = httpx.post(
-        f"http://127.0.0.1:{port}{GRADE}", json={"answers": {}}, trust_env=False, timeout=ANSWER
+        f"{server.address}{GRADE}", json={"answers": {}}, trust_env=False, timeout=ANSWER
     )
     assert response.status_code == 200
     assert response.json()["exercise"] == "planar-rrr"
@@ -26,9 +26,9 @@ def test_it_grades_and_does_not_name_its_server(port: int) -> None:
     assert response.headers["x-content-type-options"] == "nosniff"
 
 
-def test_it_grades_many_in_one_request(port: int) -> None:
+def test_it_grades_many_in_one_request(server: Served) -> None:
     content = (ROOT / "docs" / "examples" / "many.json").read_bytes()
-    url = f"http://127.0.0.1:{port}/v1/grade"
+    url = f"{server.address}/v1/grade"
     response = httpx.post(url, content=content, trust_env=False, timeout=ANSWER)
     assert response.status_code == 200
     right, refused = response.json()["results"]
@@ -36,8 +36,8 @@ def test_it_grades_many_in_one_request(port: int) -> None:
     assert refused["problem"]["status"] == 404
 
 
-def test_head_has_no_body_on_the_wire(port: int) -> None:
-    url = f"http://127.0.0.1:{port}/v1/exercises"
+def test_head_has_no_body_on_the_wire(server: Served) -> None:
+    url = f"{server.address}/v1/exercises"
     with httpx.Client(trust_env=False, timeout=ANSWER) as client:
         plain = {"accept-encoding": "identity"}
         length = int(client.head(url, headers=plain).headers["content-length"])
@@ -52,13 +52,13 @@ def test_head_has_no_body_on_the_wire(port: int) -> None:
 @pytest.mark.parametrize("framing", [b"Content-Length: 20000000", b"Transfer-Encoding: chunked"])
 @pytest.mark.parametrize("path", [GRADE, "/v1/preview"])
 def test_twenty_megabytes_are_refused_while_they_are_still_coming(
-    port: int, path: str, framing: bytes
+    server: Served, path: str, framing: bytes
 ) -> None:
     chunked = b"chunked" in framing
     piece = b" " * 65536
     if chunked:
         piece = b"10000\r\n" + piece + b"\r\n"
-    with socket.create_connection(("127.0.0.1", port), timeout=ANSWER) as connection:
+    with socket.create_connection(("127.0.0.1", server.port), timeout=ANSWER) as connection:
         head = f"POST {path} HTTP/1.1\r\nHost: x\r\n".encode() + framing + b"\r\n\r\n"
         connection.sendall(head)
         # Five pieces are over the limit; the rest of the 20 MB is never sent.

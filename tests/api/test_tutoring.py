@@ -18,6 +18,7 @@ from service.attempts import regrade_steps, regrading
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise, load_catalogue, shipped_folder
 from tests.api.conftest import InProcess
+from tests.attempts.erasure import files_with, reader
 from tests.attempts.recorded import LAZY, NO_TWIST, RIGHT, recorded
 
 HERE = "http://127.0.0.1:8000"
@@ -142,12 +143,27 @@ def test_a_learner_is_forgotten_only_when_that_is_said(
     told = tutor.post("/v1/learners/forget", learner="ada-4711")
     assert told == {"learner": "ada-4711", "deleted": False, **counts}
     assert len(tutor.ask("GET", "/v1/attempts").json()["attempts"]) == 2
-    assert tutor.post("/v1/learners/forget", learner="ada-4711", apply=True)["deleted"]
+    told = tutor.post("/v1/learners/forget", learner="ada-4711", apply=True)
+    assert told == {"learner": "ada-4711", "deleted": True, "erased": True, **counts}
     left = tutor.ask("GET", "/v1/attempts").json()["attempts"]
     assert [each["learner"] for each in left] == ["grace"]
     assert tutor.post("/v1/learners/forget", learner="ada-4711", apply=True)["attempts"] == 0
     files = list(tmp_path.glob("attempts.db*"))
     assert not any(b"ada-4711" in file.read_bytes() for file in files)
+
+
+def test_a_tutor_reads_that_a_text_is_still_in_a_file(
+    tutor: Tutor, store: AttemptStore, catalogue: Mapping[str, Exercise], tmp_path: Path
+) -> None:
+    path = str(tmp_path / "attempts.db")
+    recorded(store, catalogue["scara"], "ada-4711", NO_TWIST)
+    with reader(path):
+        told = tutor.post("/v1/learners/forget", learner="ada-4711", apply=True)
+        assert (told["deleted"], told["erased"], told["attempts"]) == (True, False, 1)
+        assert files_with("ada-4711", path)
+    told = tutor.post("/v1/learners/forget", learner="ada-4711", apply=True)
+    assert (told["deleted"], told["erased"], told["attempts"]) == (True, True, 0)
+    assert files_with("ada-4711", path) == []
 
 
 def test_a_regrade_goes_step_by_step(

@@ -12,7 +12,7 @@ def test_no_two_requests_are_the_same() -> None:
 
 
 def test_memory_of_a_few_requests() -> None:
-    found = course(80, 40, "suite")
+    found = course(40, 20, "suite")
     assert found.failures == 0
     # The caches are not yet full after so few.
     assert not found.growth > 50

@@ -16,7 +16,7 @@ _number = count()
 
 
 @pytest.fixture(scope="session")
-def server() -> Iterator[Any]:
+def postgresql() -> Iterator[Any]:
     with postgresql_server() as running:
         open_database(new_database(running, TEMPLATE)).dispose()
         yield running
@@ -46,9 +46,9 @@ def sqlite_url(file_with_tables: str, tmp_path: Path) -> str:
 
 
 @pytest.fixture
-def postgresql_url(server: Any) -> str:
+def postgresql_url(postgresql: Any) -> str:
     """The same in PostgreSQL."""
-    return new_database(server, f"attempts{next(_number)}", TEMPLATE)
+    return new_database(postgresql, f"attempts{next(_number)}", TEMPLATE)
 
 
 @pytest.fixture(params=KINDS)

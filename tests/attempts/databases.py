@@ -1,16 +1,19 @@
 """Real databases for the tests: a file of SQLite, and a PostgreSQL server from a wheel."""
 
 import os
+import signal
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 from urllib.parse import quote
 
 from sqlalchemy import create_engine, make_url, text
 
 KINDS = ("sqlite", "postgresql")
+# A guard against a server that does not end, in seconds.
+GUARD: Final = 60
 
 
 @contextmanager
@@ -28,6 +31,37 @@ def postgresql_server() -> Iterator[Any]:
             yield server
         finally:
             server.cleanup()
+
+
+# How a server may go away: it ends its clients in good order, hangs up on them, is killed with all
+# its processes, or stands still and says nothing (its machine is paused).
+STOPS: Final = {
+    "fast": signal.SIGINT,
+    "immediate": signal.SIGQUIT,
+    "kill": signal.SIGKILL,
+    "pause": signal.SIGSTOP,
+}
+
+
+def stop(server: Any, how: str) -> None:
+    """Have the server go away in one of these ways."""
+    main = server.get_postmaster_info().process
+    processes = [main, *main.children()]
+    for each in processes if how in ("kill", "pause") else [main]:
+        each.send_signal(STOPS[how])
+    if how != "pause":
+        for each in processes:
+            each.wait(GUARD)
+
+
+def start(server: Any, how: str) -> None:
+    """Have the server come back that was stopped in this way."""
+    if how != "pause":
+        server.start()
+        return
+    main = server.get_postmaster_info().process
+    for each in [*main.children(), main]:
+        each.resume()
 
 
 def new_database(server: Any, name: str, like: str = "template1") -> str:

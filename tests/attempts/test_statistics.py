@@ -40,7 +40,7 @@ def test_a_class_is_counted(store: AttemptStore, catalogue: Mapping[str, Exercis
     assert all(slip.attempts == sum(slip.by_day.values()) for slip in told.misconceptions)
     sentences = {slip.code: slip.sentence for slip in told.misconceptions}
     # As docs/sentences.md has it.
-    assert sentences["half_turn"] == "α is not right: compare the two z axes."
+    assert sentences["half_turn"] == "α is not right: compare z1 and z2."
     (group,) = told.identical
     assert (group.learners, group.attempts, group.among) == (3, 3, ["ada", "grace", "linus"])
     assert group.wrong == ["table/2/alpha"]

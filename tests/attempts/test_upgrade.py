@@ -12,7 +12,7 @@ from uuid import uuid4
 import pytest
 from alembic import command
 from alembic.config import Config
-from sqlalchemy import create_engine, inspect, make_url, text
+from sqlalchemy import create_engine, make_url, text
 
 from service.access.key_table import add_key, fits, revoke_key, settle
 from service.access.keys import Secret
@@ -44,45 +44,46 @@ ROWS: tuple[dict[str, Any], ...] = (
     {"id": "a" * 32, "learner": "ada", "ordinal": 1, "is_late": True, "worth": 0.5, "key": "k"},
     {"id": "b" * 32, "learner": "bob", "ordinal": None, "is_late": False, "worth": 1, "key": None},
 )
+# How the first version records an attempt.
+INSERT = (
+    "INSERT INTO attempts (id, exercise, learner, ordinal, at, is_late, worth, submission, "
+    "answers_digest, report, version, grader, points, max_points, outcome, owner, idempotency_key, "
+    "request_digest) VALUES (:id, 'scara', :learner, :ordinal, '2026-09-01 12:00:00.000000{zone}', "
+    ":is_late, :worth, :submission, 'x', :report, '0', '0.0.1', 0.0, 16.0, 1, 'course', :key, 'r')"
+)
+FIXED = {"submission": json.dumps({"answers": {"table": RIGHT}}), "report": REPORT}
 
 
-@pytest.fixture(params=["sqlite", "postgresql"])
-def oldest(request: pytest.FixtureRequest, tmp_path: Path) -> str:
-    """The URL of a database with the first tables, in which two attempts are recorded."""
-    if request.param == "sqlite":
-        path = new_file(tmp_path)
-        url, zone = f"sqlite:///{path}", ""
-    else:
-        server = request.getfixturevalue("server")
-        url, zone = new_database(server, f"first_{uuid4().hex}"), "+00"
-    parsed = make_url(url)
+def make_old(url: str, revision: str) -> None:
+    """Make the tables of a revision in an empty database, and two attempts of the first."""
+    parsed = make_url(url if "://" in url else f"sqlite:///{url}")
+    zone = ""
     if parsed.get_backend_name() == "postgresql":
-        parsed = parsed.set(drivername="postgresql+psycopg")
+        parsed, zone = parsed.set(drivername="postgresql+psycopg"), "+00"
     engine = create_engine(parsed)
     config = Config()
     config.set_main_option("script_location", str(MIGRATIONS))
     with engine.begin() as connection:
         config.attributes["connection"] = connection
-        command.upgrade(config, OLDEST)
+        command.upgrade(config, revision)
         connection.execute(
             text(
                 "INSERT INTO outcomes (exercise, digest, content) VALUES ('scara', 'd', :content)"
             ),
             {"content": OUTCOME},
         )
-        submission = json.dumps({"answers": {"table": RIGHT}})
-        connection.execute(
-            text(
-                "INSERT INTO attempts (id, exercise, learner, ordinal, at, is_late, worth, "
-                "submission, answers_digest, report, version, grader, points, max_points, outcome, "
-                "owner, idempotency_key, request_digest) VALUES (:id, 'scara', :learner, :ordinal, "
-                f"'2026-09-01 12:00:00.000000{zone}', :is_late, :worth, :submission, 'x', :report, "
-                "'0', '0.0.1', 0.0, 16.0, 1, 'course', :key, 'r')"
-            ),
-            [row | {"submission": submission, "report": REPORT} for row in ROWS],
-        )
-        assert not inspect(connection).has_table("keys")
+        connection.execute(text(INSERT.format(zone=zone)), [row | FIXED for row in ROWS])
     engine.dispose()
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def oldest(request: pytest.FixtureRequest, tmp_path: Path) -> str:
+    """The URL of a database with the first tables, in which two attempts are recorded."""
+    if request.param == "sqlite":
+        url = f"sqlite:///{new_file(tmp_path)}"
+    else:
+        url = new_database(request.getfixturevalue("postgresql"), f"first_{uuid4().hex}")
+    make_old(url, OLDEST)
     return url
 
 

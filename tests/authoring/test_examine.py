@@ -7,7 +7,9 @@ import pytest
 from service.authoring import Level, examine
 from service.catalogue import Exercise, shipped_folder
 from tests.authoring.files import HEAD, POSE, ROBOT, Make, only, robot, told
+from tests.grading.support.bare_numbers import BARE, BareExercise
 from tests.samples import one_in
+from tests.together import together
 
 RIGHT_ROWS = '[["c1", 0, "s1", "d2 s1"], ["s1", 0, "-c1", "-d2 c1"], [0, 1, 0, "a1"], [0, 0, 0, 1]]'
 WRONG_ROWS = RIGHT_ROWS.replace('"a1"', '"-a1"')
@@ -39,7 +41,7 @@ def test_of_a_file_in_order_nothing_is_said(make_exercise: Make) -> None:
 
 
 @pytest.mark.parametrize(
-    "exercise_id", one_in(3, sorted(file.stem for file in shipped_folder().glob("*.toml")))
+    "exercise_id", one_in(4, sorted(file.stem for file in shipped_folder().glob("*.toml")))
 )
 def test_the_shipped_exercises_are_in_order(
     exercise_id: str, catalogue: Mapping[str, Exercise]
@@ -270,3 +272,11 @@ def test_an_angle_without_a_unit_is_radians_in_the_model_answer_too(make_exercis
     """Handed in by those who work in degrees it would be another angle."""
     text = HEAD + robot("R", '[["a1", 0.7, "0", "q1 + 0.4"]]') + TABLE.format("table", "") + POSE
     assert [each for each in told(make_exercise, text) if each.level is Level.FAILED] == []
+
+
+@together("bare", BARE)
+def test_an_exercise_of_numbers_alone_fails_nothing(
+    bare: BareExercise, make_exercise: Make
+) -> None:
+    remarks = told(make_exercise, bare.text)
+    assert [each.field for each in remarks if each.level is Level.FAILED] == []

@@ -78,6 +78,8 @@ def running_server(
     """The service with one trivial route more, in processes of its own; yields the port."""
     with tempfile.TemporaryDirectory() as folder:
         options = ("--workers", str(workers))
+        # The modules are compiled once, as an installed program has them, and not at each start.
+        settings = {"PYTHONDONTWRITEBYTECODE": "", **settings}
         with service(Path(folder), *options, module=module, **settings) as running:
             while running.log.count("startup complete") < workers:
                 time.sleep(0.02)

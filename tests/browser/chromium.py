@@ -1,6 +1,7 @@
-"""The Chromium that the tests drive: the machine's, Playwright's own, or that of an npm package.
+"""The Chromium that the tests drive: the machine's, that of an npm package, or Playwright's own.
 
-``python -m tests.browser.chromium`` says which there is, and fetches the last where there is none.
+``python -m tests.browser.chromium`` says which one it is. If the machine has none, it fetches the
+npm package.
 """
 
 import os
@@ -9,7 +10,9 @@ import subprocess
 import sys
 import tarfile
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import cache
 from io import BytesIO
 from pathlib import Path
 from typing import Final
@@ -24,16 +27,7 @@ _FOLDER: Final = Path(sys.prefix) / "chromium-153.0.0"
 _PROGRAMS: Final = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
 # The package's own configuration names the folders of the machine that it is made for.
-_FONTS: Final = Path("fonts.conf")
-_FONT_FOLDERS: Final = """\
-<?xml version="1.0"?>
-<!DOCTYPE fontconfig SYSTEM "fonts.dtd">
-<fontconfig>
-  <dir prefix="relative">fonts</dir>
-  <dir>/usr/share/fonts</dir>
-  <cachedir prefix="relative">fonts-cache</cachedir>
-</fontconfig>
-"""
+_FONTS: Final = Path(__file__).with_name("fonts.conf")
 
 OPTIONS: Final = [
     "--no-sandbox", "--no-first-run", "--disable-sync", "--disable-quic",
@@ -60,15 +54,23 @@ class Chromium:
     environment: dict[str, str] = field(default_factory=dict)
 
 
+@cache
 def find_chromium() -> Chromium | None:
-    """The Chromium that is there, or None. Nothing is fetched."""
+    """Return a Chromium of this machine, or None. Nothing is fetched."""
     if program := next(filter(None, map(shutil.which, _PROGRAMS)), None):
         return Chromium(program)
+    if unpacked := _unpacked():
+        return unpacked
+    # Playwright can be asked only by a thread that is not using it already.
+    with ThreadPoolExecutor(1) as other:
+        own = other.submit(_path_of_playwright).result()
+    return Chromium(own) if Path(own).is_file() else None
+
+
+def _path_of_playwright() -> str:
+    """The path at which Playwright installs its Chromium."""
     with sync_playwright() as playwright:
-        own = playwright.chromium.executable_path
-    if Path(own).is_file():
-        return Chromium(own)
-    return _unpacked()
+        return playwright.chromium.executable_path
 
 
 def _unpacked() -> Chromium | None:
@@ -79,7 +81,10 @@ def _unpacked() -> Chromium | None:
     libraries = [str(_FOLDER / "lib"), os.environ.get("LD_LIBRARY_PATH", "")]
     variables = {
         "LD_LIBRARY_PATH": os.pathsep.join(filter(None, libraries)),
-        "FONTCONFIG_FILE": str(_FOLDER / _FONTS.name),
+        "FONTCONFIG_FILE": str(_FONTS),
+        # The folders of the fonts and of what is remembered of them.
+        "XDG_DATA_HOME": str(_FOLDER),
+        "XDG_CACHE_HOME": str(_FOLDER / "cache"),
     }
     return Chromium(str(program), variables)
 
@@ -106,7 +111,6 @@ def fetch_chromium() -> Chromium | None:
 
 def _unpack(archive: Path, folder: Path) -> None:
     """The program with its libraries, fonts and WebGL in software, side by side."""
-    (folder / _FONTS).write_text(_FONT_FOLDERS, encoding="utf-8")
     with tarfile.open(archive) as package:
         for member in package.getmembers():
             name = Path(member.name).name

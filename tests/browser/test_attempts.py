@@ -2,10 +2,7 @@
 
 import csv
 import json
-import os
 import re
-import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
@@ -23,8 +20,8 @@ from service.access.keys import Secret
 from service.attempts.database import in_transaction
 from service.attempts.store import AttemptStore
 from service.catalogue import shipped_folder
-from tests.api.serving import ROOT, announced_port
-from tests.browser.conftest import Visit
+from tests.api.serving import served
+from tests.browser.fixtures import Visit
 from tests.browser.hostile import PICTURE
 from tests.browser.steps import cells
 from tests.browser.test_pages import violations
@@ -99,27 +96,14 @@ def recording(tmp_path: Path) -> Iterator[Recording]:
 
     keys = key(Scope.RECORD, Scope.TUTOR), key(Scope.TUTOR, exercises=["scara"])
     store.close()
-    log = tmp_path / "log"
-    command = [sys.executable, "-m", "service", "serve", "--port", "0"]
     variables = {
-        "NO_COLOR": "1",
         "DH_GRADER_DATABASE": database,
         "DH_GRADER_SECRET": secret,
         "DH_GRADER_EXERCISES_DIR": str(folder),
         "DH_GRADER_RELOAD_EXERCISES": "true",
     }
-    with (
-        log.open("wb") as output,
-        subprocess.Popen(
-            command, cwd=ROOT, stdout=output, stderr=output, env=os.environ | variables
-        ) as process,
-    ):
-        try:
-            yield Recording(f"http://127.0.0.1:{announced_port(process, log)}", folder, *keys)
-        finally:
-            process.terminate()
-            process.wait(timeout=ANSWER)
-    assert "Traceback" not in log.read_text(encoding="utf-8")
+    with served(tmp_path, **variables) as server:
+        yield Recording(server.address, folder, *keys)
 
 
 def rows(page: Page) -> Any:

@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from service.catalogue import Exercise
-from tests.browser.conftest import Visit
+from tests.browser.fixtures import Visit
 from tests.browser.steps import answer, cells, open_exercise, paste, right_answers
 from tests.samples import one_in
 

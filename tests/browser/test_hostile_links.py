@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import expect
 
-from tests.browser.conftest import Visit
+from tests.browser.fixtures import Visit
 from tests.browser.hostile import PICTURE, SCRIPT, TEXTS
 from tests.browser.steps import cells, open_exercise
 

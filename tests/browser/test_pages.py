@@ -8,7 +8,8 @@ from typing import Any
 from playwright.sync_api import Page, expect
 
 from tests.api.serving import ROOT
-from tests.browser.conftest import Origin, Visit
+from tests.browser.conftest import Origin
+from tests.browser.fixtures import Visit
 from tests.browser.hostile import TEXTS
 from tests.browser.steps import cells, open_exercise
 
@@ -94,6 +95,22 @@ def test_the_element_on_a_course_s_own_page(
     unknown.complaints.clear()
 
 
+def test_any_page_may_show_a_figure_and_none_a_tutor_s(
+    visit: Opening, service: str, stranger: Origin
+) -> None:
+    stranger.pages["/figure"] = (
+        '<link rel="icon" href="data:,">'
+        f'<img id="figure" src="{service}/v1/exercises/scara/figure.svg" alt="">'
+        f'<img id="frames" src="{service}/tutor/solutions/scara/frames.svg" alt="">'
+    )
+    opened = visit()
+    opened.page.goto(f"{stranger.address}/figure")
+    shown = "[...document.images].map(each => each.complete && each.naturalWidth > 0)"
+    assert opened.page.evaluate(shown) == [True, False]
+    assert opened.complaints
+    opened.complaints.clear()
+
+
 def test_an_exercise_can_be_read_with_scripts_blocked(visit: Opening, service: str) -> None:
     opened = visit(java_script_enabled=False)
     page = opened.page
@@ -108,6 +125,12 @@ def test_an_exercise_can_be_read_with_scripts_blocked(visit: Opening, service: s
     # Only the scripts were refused.
     assert [each for each in opened.complaints if not each.endswith(".js")] == []
     opened.complaints.clear()
+
+
+HOSTILE_PAGES = (
+    "/tutor", "/tutor/solutions/hostile", "/tutor/editor?exercise=hostile", "/tutor/class", "/docs",
+    "/tutor/attempts", "/v1/exercises/hostile/figure.svg", "/v1/exercises/hostile",
+)  # fmt: skip
 
 
 def test_hostile_texts_stay_texts(visit: Opening, service: str) -> None:
@@ -143,3 +166,6 @@ def test_hostile_texts_stay_texts(visit: Opening, service: str) -> None:
     )
     assert found == 0
     assert page.evaluate("taken") == []
+    for path in HOSTILE_PAGES:
+        page.goto(service + path)
+        assert page.evaluate("taken") == []

@@ -7,8 +7,8 @@ from math import cos, sin
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.browser.chromium import find_chromium
-from tests.browser.conftest import Visit
+from tests.browser.chromium import Chromium
+from tests.browser.fixtures import Visit
 from tests.browser.steps import cells, open_exercise
 from tests.browser.test_pages import violations
 
@@ -96,12 +96,12 @@ def test_a_joint_moves_the_robot_and_the_student_s_table(
     expect(page.locator(".stage")).to_have_count(0)
 
 
-def test_without_webgl_there_is_the_drawing(browser: Browser, service: str) -> None:
-    found = find_chromium()
-    assert found is not None
+def test_without_webgl_there_is_the_drawing(
+    browser: Browser, chromium: Chromium, service: str
+) -> None:
     options = ["--no-sandbox", "--disable-gpu", "--disable-3d-apis"]
     other = browser.browser_type.launch(
-        executable_path=found.program, args=options, env={**os.environ, **found.environment}
+        executable_path=chromium.program, args=options, env={**os.environ, **chromium.environment}
     )
     page = other.new_page(reduced_motion="reduce")
     complaints: list[str] = []

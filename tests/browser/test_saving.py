@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.api.serving import ROOT, announced_port
-from tests.browser.conftest import Visit
+from tests.browser.fixtures import Visit
 from tests.guards import ANSWER
 
 Opening = Callable[..., Visit]

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from tests.browser.chromium import find_chromium
+from tests.browser.chromium import Chromium
 from tests.browser.hostile import PICTURE
 from tests.browser.steps import cells, open_exercise
 
@@ -15,12 +15,10 @@ TABLE = ["a1", "0", "0", "theta1", "a2", "0", "0", "theta2"]
 
 
 @pytest.fixture
-def page(browser: Browser) -> Iterator[Page]:
-    found = find_chromium()
-    assert found is not None
+def page(browser: Browser, chromium: Chromium) -> Iterator[Page]:
     options = ["--no-sandbox", "--disable-gpu", "--disable-3d-apis"]
     other = browser.browser_type.launch(
-        executable_path=found.program, args=options, env={**os.environ, **found.environment}
+        executable_path=chromium.program, args=options, env={**os.environ, **chromium.environment}
     )
     page = other.new_page(reduced_motion="reduce", viewport={"width": 320, "height": 700})
     complaints: list[str] = []

@@ -81,6 +81,17 @@ FAULTS: dict[str, tuple[tuple[str, str], str, str]] = {
     "unknown key of a symbol": (("range =", "limits ="), "symbols.a1.limits", "there is no key"),
     "title missing": (('title = "An arm"\n', ""), "title", "required"),
     "title blank": (('"An arm"', '"  "'), "title", "at least 1"),
+    "a title that turns around": (('"An arm"', r'"An \u202earm"'), "title", r"U\+202E"),
+    "a prompt that no page can hold": (
+        ("points = 4", r'prompt = "a\u0001"' + "\npoints = 4"),
+        "parts[1].prompt",
+        r"U\+0001",
+    ),
+    "a statement without end": (
+        ("Two joints.", "x" * 20_001),
+        "statement",
+        "20,001 characters; write at most 20,000",
+    ),
     "title of another type": (('"An arm"', "5"), "title", "write it in quotation marks"),
     "no parts": ((VALID[VALID.index("[[parts]]") :], ""), "parts", "required"),
     "points of another type": (("points = 4", 'points = "many"'), "parts[1].points", "number"),

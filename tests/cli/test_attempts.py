@@ -6,6 +6,7 @@ import pytest
 
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise, shipped_folder
+from tests.attempts.erasure import files_with, reader
 from tests.attempts.recorded import NO_TWIST, RIGHT, new_attempt, recorded_all
 from tests.cli.conftest import Run
 
@@ -199,3 +200,18 @@ def test_a_forgotten_learner_is_nowhere_in_the_files(
     for file in tmp_path.glob("attempts.db*"):
         assert b"grace" not in file.read_bytes()
     assert "ada" in run("attempts", "export").output
+
+
+def test_a_text_that_is_still_in_a_file_is_told_of(
+    run: Run, course: list[str], tmp_path: Path
+) -> None:
+    [path] = map(str, tmp_path.glob("attempts.db"))
+    with reader(path):
+        told = run("attempts", "forget", "grace", "--yes")
+        assert told.exit_code == 0
+        assert "still in the file -wal" in told.output
+        again = run("attempts", "forget", "grace", "--yes")
+        assert (again.exit_code, "still in the file -wal" in again.output) == (2, True)
+        assert files_with("grace", path)
+    assert "-wal" not in run("attempts", "forget", "grace", "--yes").output
+    assert files_with("grace", path) == []

@@ -1,6 +1,7 @@
 """`dh-grader keys`, and a start that is refused for want of them."""
 
 import re
+import shutil
 import sqlite3
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from service.access.key_text import is_spelt_right
+from service.catalogue import shipped_folder
 from service.cli.keys import commands
 from service.server.installed import installed_app
 from service.settings import Settings, SettingsError, load_settings
@@ -21,6 +23,11 @@ def _installation(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     for name in Settings.model_fields:
         monkeypatch.delenv(f"DH_GRADER_{name.upper()}", raising=False)
     monkeypatch.setenv("DH_GRADER_DATABASE", str(tmp_path / "attempts.db"))
+    # One exercise, so that an application is made quickly.
+    folder = tmp_path / "exercises"
+    folder.mkdir()
+    shutil.copy(shipped_folder() / "scara.toml", folder)
+    monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", str(folder))
 
 
 def run(*arguments: str) -> Result:

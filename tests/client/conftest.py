@@ -5,7 +5,6 @@ from typing import Any
 import pytest
 
 from service.client import AsyncGraderClient, GraderClient, Retries
-from tests.api.serving import Served, served
 
 # What a test does with a client of either sort: it calls one method.
 Use = Callable[[Any], Any]
@@ -13,13 +12,6 @@ Use = Callable[[Any], Any]
 Using = Callable[..., Any]
 
 QUICK = Retries(number=2, first_wait=0.001, longest_wait=5.0)
-
-
-@pytest.fixture(scope="session")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    """A real process; it may show all that its exercises allow."""
-    with served(tmp_path_factory.mktemp("server")) as server:
-        yield server
 
 
 def synchronous(address: str, use: Use, **options: Any) -> Any:

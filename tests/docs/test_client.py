@@ -6,29 +6,24 @@ import re
 from pathlib import Path
 from typing import Any
 
-import pytest
-
 from service import client
 from service.client import Retries
-from tests.api.serving import served
+from tests.api.serving import Served
 
 PAGE = (Path(__file__).parents[2] / "docs" / "client.md").read_text(encoding="utf-8")
 _EXAMPLE = re.compile(r"^```python\n(.*?)^```\n(.*?)^```text\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 _SHOWN = "http://127.0.0.1:8000"
 
 
-def test_the_examples_print_what_the_page_says(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_examples_print_what_the_page_says(server: Served) -> None:
     examples = _EXAMPLE.findall(PAGE)
     assert len(examples) == PAGE.count("```python") == 4
     names: dict[str, Any] = {}
-    with served(tmp_path) as server:
-        for program, _, printed in examples:
-            page = io.StringIO()
-            with contextlib.redirect_stdout(page):
-                exec(program.replace(_SHOWN, server.address), names)  # noqa: S102 - our own page
-            assert page.getvalue() == printed
+    for program, _, printed in examples:
+        page = io.StringIO()
+        with contextlib.redirect_stdout(page):
+            exec(program.replace(_SHOWN, server.address), names)  # noqa: S102 - our own page
+        assert page.getvalue() == printed
 
 
 def test_the_page_names_what_there_is() -> None:

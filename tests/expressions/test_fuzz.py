@@ -1,7 +1,7 @@
 """Whatever is typed, one answer comes back, soon, and the same one again."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from service.expressions import LIMITS, ExpressionError, read
@@ -36,19 +36,16 @@ def _check(text: str) -> None:
         assert min(first.seconds, second.seconds) < STALL
 
 
-@settings(max_examples=150, deadline=None)
 @given(formulas)
 def test_formulas_of_the_grammar(text: str) -> None:
     _check(text)
 
 
-@settings(max_examples=150, deadline=None)
 @given(st.lists(st.sampled_from(PIECES), max_size=25).map("".join) | st.text(max_size=60))
 def test_pieces_of_formulas(text: str) -> None:
     _check(text)
 
 
-@settings(max_examples=100, deadline=None)
 @given(st.sampled_from(seeds()), st.integers(0, 60), st.binary(max_size=6))
 def test_cases_with_other_bytes_in_them(text: str, at: int, put: bytes) -> None:
     data = text.encode()

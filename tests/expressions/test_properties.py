@@ -6,7 +6,7 @@ from operator import add, mul, sub
 import numpy as np
 import pytest
 import sympy
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from service.expressions import ExpressionError, Symbol, Vocabulary, joint_variable, read
@@ -130,7 +130,6 @@ mild: st.SearchStrategy[Node] = st.recursive(
 )
 
 
-@settings(max_examples=50, deadline=None)
 @given(mild, st.lists(st.floats(-3, 3), min_size=6, max_size=6))
 def test_values_are_those_of_sympy(tree: Node, numbers: list[float]) -> None:
     values = {symbol.name: number for symbol, number in zip(ARM.symbols, numbers, strict=True)}

@@ -48,13 +48,13 @@ def entries(seed: int, count: int) -> list[sympy.Expr]:
 @pytest.mark.parametrize("printer", PRINTERS)
 def test_a_print_is_read(printer: str) -> None:
     count = 0
-    for expression in entries(1, 60):
+    for expression in entries(1, 40):
         text = PRINTERS[printer](expression)
         if len(text) > LIMITS.characters:
             continue
         count += 1
         assert worth(text) == pytest.approx(value(expression), rel=1e-9, abs=1e-9), text
-    assert count > 40
+    assert count > 25
 
 
 @pytest.mark.parametrize("rewriting", REWRITINGS)
@@ -62,17 +62,17 @@ def test_a_rewritten_formula_is_worth_the_same(rewriting: str) -> None:
     """Both texts are read by us; that they are equal is SymPy's word."""
     random = Random(2)
     changed = 0
-    for _ in range(20):
+    for _ in range(10):
         expression = product(random)
         rewritten = REWRITINGS[rewriting](expression)
         changed += rewritten != expression
         for pair in ((str(expression), str(rewritten)), (str(expression), sympy.latex(rewritten))):
             assert worth(pair[0]) == pytest.approx(worth(pair[1]), rel=1e-9, abs=1e-9), pair
-    assert changed >= 5
+    assert changed >= 3
 
 
 def test_our_own_latex_is_read_back() -> None:
-    for expression in entries(3, 60):
+    for expression in entries(3, 40):
         ours = read(str(expression), ROBOT).latex()
         if len(ours) <= LIMITS.characters:
             assert worth(ours) == pytest.approx(value(expression), rel=1e-9, abs=1e-9)

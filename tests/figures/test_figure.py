@@ -1,9 +1,8 @@
 """The figures of all exercises: legible, accessible, and no answer in them."""
 
 import re
-import sys
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from itertools import product
@@ -21,7 +20,7 @@ from service.figures.style import Theme
 from service.figures.symbol_numbers import drawing_numbers
 from service.figures.view import View
 from service.kinematics.transforms import Numbers
-from tests import chromium
+from tests.browser.fixtures import Visit
 from tests.shipped import shipped_exercises
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -48,20 +47,8 @@ def texts(svg: str) -> list[str]:
     return ["".join(each.itertext()).translate(GREEK) for each in found]
 
 
-@pytest.fixture(scope="module")
-def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[chromium.Page]:
-    """All figures in one page of a browser, and some with frames."""
-    shown = [*map(drawn, SHIPPED), *(reference_figure(SHIPPED[name]) for name in FRAMED)]
-    file = tmp_path_factory.mktemp("figures") / "figures.html"
-    file.write_text("<!doctype html><meta charset=utf-8>" + "".join(shown), encoding="utf-8")
-    with chromium.blank_page() as page:
-        page.open(file.as_uri())
-        page.wait_for(f"document.querySelectorAll('svg').length == {len(shown)}")
-        yield page
-
-
 # Every pair of texts of one figure whose boxes overlap, and every text beyond its figure's edge.
-MISPLACED = """[[...document.querySelectorAll('svg')].flatMap(svg => {
+MISPLACED = """[...document.querySelectorAll('svg')].flatMap(svg => {
     const edge = svg.getBoundingClientRect(), title = svg.querySelector('title').textContent
     const texts = [...svg.querySelectorAll('text')]
         .map(each => [each.textContent, each.getBoundingClientRect()])
@@ -73,15 +60,21 @@ MISPLACED = """[[...document.querySelectorAll('svg')].flatMap(svg => {
                 box.top + 4 < its.bottom - 4 && its.top + 4 < box.bottom - 4)
             .map(([other]) => [title, text, other])
     ])
-})]"""
+})"""
 
 
-@pytest.mark.skipif(chromium.FOUND is None or sys.platform == "win32", reason="needs a Chromium")
-def test_no_two_labels_overlap_as_a_browser_sets_them(page: chromium.Page) -> None:
+def test_no_two_labels_overlap_as_a_browser_sets_them(
+    visit: Callable[..., Visit], tmp_path: Path
+) -> None:
     """A box is as high as the type's tallest letter and deepest stroke; 4 pixels of it are air."""
-    [misplaced] = page.wait_for(MISPLACED)
-    assert misplaced == []
-    assert page.wait_for("document.querySelectorAll('text').length > 100")
+    shown = [*map(drawn, SHIPPED), *(reference_figure(SHIPPED[name]) for name in FRAMED)]
+    file = tmp_path / "figures.html"
+    file.write_text("<!doctype html><meta charset=utf-8>" + "".join(shown), encoding="utf-8")
+    page = visit().page
+    page.goto(file.as_uri())
+    assert page.locator("svg").count() == len(shown)
+    assert page.evaluate(MISPLACED) == []
+    assert page.locator("text").count() > 100
 
 
 @pytest.mark.parametrize("name", SHIPPED)

@@ -1,11 +1,11 @@
 import re
-import sys
-from collections.abc import Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from playwright.sync_api import expect
 
-from tests import chromium
+from tests.browser.fixtures import APPEARANCES, Visit
 from tests.formats.html_reader import PageReader
 from tests.formats.submissions import HOSTILE, cases, document
 
@@ -46,42 +46,40 @@ def test_nothing_is_fetched() -> None:
     assert "default-src 'none'; style-src 'sha256-" in page
 
 
-@pytest.fixture
-def page() -> Iterator[chromium.Page]:
-    with chromium.blank_page() as page:
-        yield page
+# Those of the page: behind the text, and of the text.
+COLOURS = """() => {
+  const style = getComputedStyle(document.body);
+  return [style.backgroundColor, style.color];
+}"""
 
 
-@pytest.mark.skipif(chromium.FOUND is None or sys.platform == "win32", reason="needs a Chromium")
-def test_a_browser_shows_it_light_dark_and_on_paper(page: chromium.Page, tmp_path: Path) -> None:
+def test_a_browser_shows_it_light_dark_and_on_paper(
+    visit: Callable[..., Visit], tmp_path: Path
+) -> None:
     file = tmp_path / "page.html"
     file.write_text(document("html", *cases().values()), encoding="utf-8")
-    page.open(file.as_uri())
-    page.wait_for("document.querySelectorAll('article').length === 8")
-    colours = {}
-    for media, scheme in (("screen", "light"), ("screen", "dark"), ("print", "dark")):
-        page.show_as(media, scheme)
-        matches = f"matchMedia('{media} and (prefers-color-scheme: {scheme})').matches"
-        page.wait_for(matches)
-        colours[media, scheme] = [
-            page.wait_for(f"getComputedStyle(document.body).{name}")
-            for name in ("backgroundColor", "color")
-        ]
-    light, dark, paper = (list(map(brightness, pair)) for pair in colours.values())
+    opened = visit()
+    page = opened.page
+    page.goto(file.as_uri())
+    expect(page.locator("article")).to_have_count(8)
+    colours = []
+    for media, scheme in APPEARANCES:
+        page.emulate_media(media=media, color_scheme=scheme)
+        colours.append(page.evaluate(COLOURS))
+    light, dark, paper = (list(map(brightness, pair)) for pair in colours)
     assert light[0] - light[1] > 180
     assert dark[1] - dark[0] > 180
     assert paper[0] == 255
     assert paper[1] < 60
-    page.show_as("screen")
+    page.emulate_media(media="screen")
     # What is wider than its card can be scrolled to.
     scrolls = "every(each => getComputedStyle(each).overflowX === 'auto')"
-    assert page.wait_for(f"[...document.querySelectorAll('.cells')].{scrolls}")
+    assert page.evaluate(f"[...document.querySelectorAll('.cells')].{scrolls}")
     # Nothing of a student was run, and nothing was asked for but the page.
-    assert page.complaints == []
-    assert page.requests == [file.as_uri()]
-    assert page.wait_for("document.scripts.length === 0")
+    assert opened.requests == [file.as_uri()]
+    assert page.locator("script").count() == 0
     # Long texts widen no page.
-    assert page.wait_for("document.documentElement.scrollWidth <= innerWidth")
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
 
 
 def brightness(colour: str) -> float:

@@ -211,7 +211,7 @@ def test_several_are_summed_up() -> None:
     summary = page[page.index("4 submissions: ") :]
     assert "1 of 3 graded passed (pass mark 80 %), 1 not graded" in summary
     # The twist of link 2 is a quarter turn off; it is counted in submissions, and told in words.
-    assert "   2  α is not right: compare the two z axes. (quarter_turn in table)" in summary
+    assert "   2  α is not right: compare z1 and z2. (quarter_turn in table)" in summary
 
 
 def test_a_class_has_a_line_each() -> None:

@@ -8,13 +8,13 @@ from tests.frame_choice.robots import POLICIES
 
 @pytest.fixture(scope="module")
 def sample() -> Counts:
-    return run(range(2), seed=1, seeds=2)
+    return run(range(1), seed=1, seeds=2)
 
 
 @pytest.mark.parametrize("policy", [policy.name for policy in POLICIES])
 def test_no_table_is_misjudged(sample: Counts, policy: str) -> None:
     for truth in (VALID, WRONG):
-        assert sample.of(truth, "", policy) >= 2
+        assert sample.of(truth, "", policy) >= 1
         assert sample.of(truth, MISJUDGED, policy) == 0, "\n".join(sample.misses)
 
 

@@ -16,8 +16,8 @@ from tests.frame_choice.robots import GIVEN, POLICIES, ROBOTS, conventions
 from tests.frame_choice.trials import Tally, run
 
 # For each robot and convention: how many tables, and how many of them also with slips.
-GIVEN_TABLES, GIVEN_SLIPS = 6, 4
-FREE_TABLES, FREE_SLIPS = 4, 2
+GIVEN_TABLES, GIVEN_SLIPS = 4, 3
+FREE_TABLES, FREE_SLIPS = 2, 1
 
 
 def tallied(only_given: bool) -> Tally:
@@ -55,7 +55,7 @@ def first_misses(tally: Tally, chosen: Callable[[str], bool]) -> str:
 
 
 def test_every_valid_table_gets_full_marks_and_no_word_of_an_error(either: Tally) -> None:
-    assert either.counts["valid"] >= 120
+    assert either.counts["valid"] >= 60
     assert either.counts["valid accepted"] == either.counts["valid"], first_misses(
         either, lambda what: what.startswith("valid")
     )
@@ -64,7 +64,7 @@ def test_every_valid_table_gets_full_marks_and_no_word_of_an_error(either: Tally
 def test_no_table_with_a_slip_gets_full_marks(either: Tally) -> None:
     wrong = either.counts["slip"] + either.counts["two slips"]
     caught = either.counts["slip caught"] + either.counts["two caught"]
-    assert wrong >= 100
+    assert wrong >= 60
     assert caught == wrong, first_misses(either, lambda what: what.startswith("wrong"))
 
 
@@ -98,5 +98,5 @@ def test_of_slips_that_could_be_repaired_elsewhere_the_likeliest_is_blamed(given
     """Ties and all. Of 31,000 tables 98.7 % and 90.5 %; the bounds are three deviations below."""
     assert given.counts["skew"] >= 30
     assert given.share("skew exact", "skew") >= 0.95
-    assert given.counts["two slips"] >= 90
+    assert given.counts["two slips"] >= 80
     assert given.share("two found", "two slips") >= 0.85

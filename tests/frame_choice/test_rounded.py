@@ -17,6 +17,6 @@ def test_rounded_tables() -> None:
 
 
 def test_rounded_tables_with_free_ends() -> None:
-    found = run(range(2, 3), seed=3, policies=POLICIES[1:])
+    found = run(range(2, 3), seed=3, policies=POLICIES[1::2])
     assert found.misses == []
-    assert sum(found.counts.values()) >= 12
+    assert sum(found.counts.values()) >= 6

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from service.catalogue import Exercise
@@ -292,7 +292,6 @@ ROWS = st.lists(
 MATRICES = st.lists(st.lists(JSON_VALUES, min_size=3, max_size=5) | JSON_VALUES, max_size=5)
 
 
-@settings(max_examples=60)
 @given(
     table_answer=st.builds(lambda rows: {"rows": rows}, ROWS) | JSON_VALUES,
     pose_answer=MATRICES | JSON_VALUES,

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Mapping
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from service.catalogue import Exercise
@@ -31,7 +31,6 @@ def pastes(draw: st.DrawFn) -> str:
     return text
 
 
-@settings(max_examples=80)
 @given(text=pastes() | st.text(max_size=80), level=st.sampled_from(list(FeedbackLevel)))
 def test_any_paste_gets_a_report(
     catalogue: Mapping[str, Exercise], text: str, level: FeedbackLevel
@@ -52,7 +51,6 @@ def test_any_paste_gets_a_report(
     assert all(0 <= m.span[0] <= m.span[1] <= len(text) for m in messages if m.span)
 
 
-@settings(max_examples=60)
 @given(text=pastes() | st.text(max_size=80), part=st.sampled_from(["table", "pose"]))
 def test_any_paste_has_a_preview(catalogue: Mapping[str, Exercise], text: str, part: str) -> None:
     shown = preview_pasted(text, catalogue[RRRP.exercise], part)

@@ -12,7 +12,8 @@ from service.grading import Verdict
 from tests.grading.support.robots import EXACT, PLANAR_RRR, ROBOTS, RRRP, SCARA, STANFORD, Robot
 from tests.grading.support.submitting import cell, graded_pose, graded_table, not_correct
 
-TIMES = 80  # for each of the four robots
+# How often, for each of the four robots.
+TIMES = [25, pytest.param(500, marks=pytest.mark.campaign)]
 
 # The poses in closed form; of the Stanford arm only the bottom row.
 POSES: dict[str, tuple[tuple[str, ...], ...]] = {
@@ -55,40 +56,44 @@ def pose_with(exercise: str, text: str, time: int) -> list[list[object]]:
     return matrix
 
 
+@pytest.mark.parametrize("times", TIMES)
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.exercise)
 def test_a_zero_written_as_an_identity_is_always_right_in_a_pose(
-    robot: Robot, catalogue: Mapping[str, Exercise], figure: Callable[[str], None]
+    robot: Robot, times: int, catalogue: Mapping[str, Exercise], figure: Callable[[str], None]
 ) -> None:
     right = 0
-    for time in range(TIMES):
+    for time in range(times):
         report = graded_pose(catalogue[robot.exercise], pose_with(robot.exercise, ZERO, time))
         wrong = not_correct(report)
         right += not any((str(i + 1), str(j + 1)) in wrong for i, j in ZEROS[robot.exercise])
-    figure(f"{robot.exercise}: {ZERO} for an expected 0 is right in {right} of {TIMES} gradings")
-    assert right == TIMES
+    figure(f"{robot.exercise}: {ZERO} for an expected 0 is right in {right} of {times} gradings")
+    assert right == times
 
 
+@pytest.mark.parametrize("times", TIMES)
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.exercise)
 def test_a_zero_written_as_an_identity_is_always_right_in_a_table(
-    robot: Robot, catalogue: Mapping[str, Exercise]
+    robot: Robot, times: int, catalogue: Mapping[str, Exercise]
 ) -> None:
     right = 0
-    for time in range(TIMES):
+    for time in range(times):
         rows = [[ZERO if text == "0" else text for text in row] for row in EXACT.rows(robot)]
         rows[0][3] = f"{robot.joints[0]} + {time} - {time}"
         right += not not_correct(graded_table(catalogue[robot.exercise], rows))
-    assert right == TIMES
+    assert right == times
 
 
+@pytest.mark.parametrize("times", TIMES)
 @pytest.mark.parametrize("small", ["0.05", "1e-4", "-0.000002"])
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.exercise)
 def test_a_small_number_for_a_zero_is_always_wrong_in_a_pose(
     robot: Robot,
     small: str,
+    times: int,
     catalogue: Mapping[str, Exercise],
     figure: Callable[[str], None],
 ) -> None:
-    times = TIMES if small == "0.05" else TIMES // 10
+    times = times if small == "0.05" else times // 5
     wrong = 0
     for time in range(times):
         report = graded_pose(catalogue[robot.exercise], pose_with(robot.exercise, small, time))

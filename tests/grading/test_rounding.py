@@ -16,6 +16,7 @@ from tests.grading.support.submitting import (
     graded_table,
     not_correct,
 )
+from tests.together import together
 
 # An arm whose pose holds constants: sqrt(2)/2 in row 3, 2/3 as a length.
 ARM = """
@@ -251,3 +252,106 @@ def test_a_decimal_that_is_divided_by_zero_is_wrong_without_a_warning(arm: Exerc
     rows = [["2/3", "0.125/0", "2", "q1 + pi/2"], ["0", "pi", "1000", "q2"]]
     report = graded_table(arm, rows)
     assert cell(report, "1", "alpha").verdict is Verdict.INCORRECT
+
+
+# One cell of a robot, what may be written for it, and what may not: a decimal of three figures or
+# more is within half a unit of its last place, or was cut off, which leaves less than a whole unit.
+EDGES = [
+    ("a", "0.9", ["0.9", "0.90", "0.900"], ["0.899", "0.8999", "0.901", "0.9001", "0.8995"]),
+    ("a", "0.8995", ["0.899", "0.900", "0.8995"], ["0.898", "0.901", "0.8994", "0.8996", "0.90"]),
+    ("a", "0.89949", ["0.899", "0.8995", "0.8994"], ["0.900", "0.8993", "0.8996"]),
+    ("a", "0.89951", ["0.899", "0.900", "0.8995"], ["0.8994", "0.8996"]),
+    ("a", "-0.8995", ["-0.899", "-0.900"], ["-0.898", "-0.901", "0.899"]),
+    ("a", "0.001", ["0.001", "0.00100"], ["0.00101", "0.000999", "0.00"]),
+    ("d", "12.345", ["12.3", "12.34", "12.35", "12.345"], ["12.4", "12.33", "12.36", "12.344"]),
+    ("alpha", "90deg", ["1.57", "1.570", "1.571", "1.5707", "1.5708"], ["1.5706", "1.5709"]),
+    ("alpha", "90deg", ["90.0deg", "90deg"], ["89.9deg", "90.1deg", "1.569", "1.572"]),
+    ("alpha", "0.5", ["28.6deg", "28.64deg", "28.65deg"], ["28.5deg", "28.7deg", "28.66deg"]),
+    ("theta", "120deg", ["2.094", "2.0943", "2.0944"], ["2.093", "2.095", "2.0942", "2.0945"]),
+]
+ONE_LINK = """
+title = "Two joints"
+source = "made for this test"
+statement = "Two joints."
+[robot]
+structure = "RR"
+convention = "standard"
+joints = ["q1", "q2"]
+table = [["{a}", "{alpha}", "{d}", "q1 + {theta}"], ["0.3", "0", "0", "q2"]]
+[[parts]]
+id = "table"
+kind = "dh_table"
+title = "Table"
+points = 8
+convention = "standard"
+frames = "{frames}"
+"""
+LINK = {"a": "0.5", "alpha": "90deg", "d": "0.4", "theta": "30deg"}
+
+
+@pytest.mark.parametrize("frames", ["given", "free"])
+@together(("column", "true", "right", "wrong"), EDGES)
+def test_the_edge_of_rounding(
+    column: str,
+    true: str,
+    right: list[str],
+    wrong: list[str],
+    frames: str,
+    make_exercise: Callable[[str], Exercise],
+) -> None:
+    exercise = make_exercise(ONE_LINK.format(**{**LINK, column: true}, frames=frames))
+    for text in [*right, *wrong]:
+        written = {**LINK, column: text}
+        first = [written["a"], written["alpha"], written["d"], f"q1 + {written['theta']}"]
+        report = graded_table(exercise, [first, ["0.3", "0", "0", "q2"]])
+        is_right = report.points == report.max_points
+        assert is_right == (text in right), text
+
+
+# A joint that slides has its axis anywhere: a turn of all that follows by a hundredth of a degree
+# makes up for a length.
+SLIDING = """
+title = "A sliding joint"
+source = "made for this test"
+statement = "Two joints turn, and one slides."
+[robot]
+structure = "RPR"
+convention = "standard"
+joints = ["q1", "q2", "q3"]
+table = [
+    ["{length}", "90deg", "0.9", "q1 + 90deg"], ["1.2", "180deg", "q2", "90deg"],
+    ["1.2", "0", "0.4", "q3 + 30deg"],
+]
+[[parts]]
+id = "table"
+kind = "dh_table"
+title = "Table"
+points = 8
+convention = "standard"
+frames = "free"
+"""
+
+
+@together(
+    ("length", "text", "is_right"),
+    [
+        *(("0.9", text, True) for text in ("0.9", "0.900", "9/10")),
+        *(("0.9", text, False) for text in ("0.899", "0.901", "0.8999", "0.9001", "0.8991")),
+        *(("0.89949", text, True) for text in ("0.899", "0.8995", "0.8994")),
+        *(("0.89949", text, False) for text in ("0.900", "0.8993", "0.8996", "0.898")),
+    ],
+)
+def test_no_rounded_right_angle_makes_up_for_a_wrong_length(
+    length: str, text: str, is_right: bool, make_exercise: Callable[[str], Exercise]
+) -> None:
+    exercise = make_exercise(SLIDING.format(length=length))
+    report = graded_table(
+        exercise,
+        [
+            [text, "1.5708", "0.9", "q1 + 1.5708"],
+            ["1.2", "3.1416", "q2", "1.5708"],
+            ["1.2", "0", "0.4", "q3 + 0.5236"],
+        ],
+    )
+    wrong = set(not_correct(report))
+    assert wrong == (set() if is_right else {("1", "a")})

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from service.grids import GRID_LIMITS, Grid, GridError, NamedGrid, read_grid, read_grids, read_robot
@@ -96,7 +96,6 @@ def check_places(
     assert all(0 <= start <= end <= len(text) for start, end in places)
 
 
-@settings(max_examples=150)
 @given(st.text(max_size=200) | st.lists(st.sampled_from(FRAGMENTS), max_size=60).map("".join))
 @example("list(" * 3000)
 @example("[" * 16_000)
@@ -117,7 +116,6 @@ def mutations(draw: st.DrawFn) -> str:
     return text
 
 
-@settings(max_examples=200)
 @given(mutations())
 def test_mutations_of_each_format(text: str) -> None:
     check(text)

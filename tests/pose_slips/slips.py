@@ -1,7 +1,11 @@
-"""Single slips of a table: sign, zero, quarter turn, wrong index, standing still, the wrong way."""
+"""Slips of a table: in one cell, or in whole rows and columns.
+
+In a cell: sign, zero, quarter turn, wrong index, standing still, the wrong way.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import combinations
 
 import sympy as sp
 
@@ -14,7 +18,8 @@ A, ALPHA, D, THETA = range(4)
 class TableSlip:
     """A cell that is wrong: its row and column, what stands in it, and the codes of the slip.
 
-    ``joint`` is the number of the row's joint or the last, ``label`` that of the row.
+    ``joint`` is the number of the row's joint or the last, ``label`` that of the row. With ``rows``
+    it is the whole table that is wrong.
     """
 
     row: int
@@ -23,10 +28,40 @@ class TableSlip:
     codes: frozenset[str]
     joint: int
     label: str
+    rows: tuple[tuple[sp.Expr, ...], ...] = ()
 
 
 def slips_of(robot: SpoiltRobot) -> Iterator[TableSlip]:
     """All single slips of a robot's table."""
+    yield from _of_cells(robot)
+    for codes, rows in _of_rows(robot):
+        yield TableSlip(0, 0, sp.Integer(0), frozenset(codes.split()), 0, "", rows)
+
+
+def _of_rows(robot: SpoiltRobot) -> Iterator[tuple[str, tuple[tuple[sp.Expr, ...], ...]]]:
+    """Whole tables: a and d or two rows exchanged, all α negated, the other convention's."""
+    rows, none = robot.rows, (sp.Integer(0), sp.Integer(0))
+    for i, ((a, alpha, d, theta), joint) in enumerate(zip(rows, robot.joints, strict=True)):
+        moving = joint[1] if joint and d.has(joint[1]) else 0
+        swapped = (d - moving, alpha, a + moving, theta)
+        yield "columns_swapped", (*rows[:i], swapped, *rows[i + 1 :])
+    negated = tuple((a, -alpha, d, theta) for a, alpha, d, theta in rows)
+    yield "parameter_sign sign row_sign column_sign", negated
+    links = [row[:2] for row in rows]
+    if robot.convention == "standard" or not any(links[0]):
+        is_standard = robot.convention == "standard"
+        moved = [none, *links[:-1]] if is_standard else [*links[1:], none]
+        other = [(*link, *row[2:]) for link, row in zip(moved, rows, strict=True)]
+        if is_standard and any(links[-1]):
+            other.append((*links[-1], *none))
+        yield "other_convention", tuple(other)
+    for i, j in combinations(range(len(rows)), 2):
+        exchanged = list(rows)
+        exchanged[i], exchanged[j] = rows[j], rows[i]
+        yield "row_order reversed_product", tuple(exchanged)
+
+
+def _of_cells(robot: SpoiltRobot) -> Iterator[TableSlip]:
     numbers = [joint[0] for joint in robot.joints if joint]
     for i, (row, joint) in enumerate(zip(robot.rows, robot.joints, strict=True)):
         number, label = (joint[0], str(joint[0])) if joint else (numbers[-1], "e")

@@ -1,14 +1,16 @@
 """`python -m tests.server.impatient`: the service with little patience, so that tests need none.
 
-`GET /hanging` there never comes to an answer. The variable ``PATIENCE`` lets it wait longer for the
-rest of a request; at its end it stays impatient.
+`GET /hanging` there never comes to an answer, nor does `GET /working`, in a thread. The variable
+``PATIENCE`` lets it wait longer for the rest of a request; at its end it stays impatient.
 """
 
 import asyncio
 import os
+import time
 
 from fastapi import FastAPI
 
+from service.api import health
 from service.cli import main
 from service.server import crowd, process, protocol, start
 from service.server.installed import installed_app
@@ -21,9 +23,14 @@ async def _hanging() -> None:
     await asyncio.sleep(600)
 
 
+async def _working() -> None:
+    await asyncio.to_thread(time.sleep, 600)
+
+
 def _with_hanging(settings: Settings, host: str) -> FastAPI:
     app = installed_app(settings, host)
     app.add_api_route("/hanging", _hanging)
+    app.add_api_route("/working", _working)
     return app
 
 
@@ -33,6 +40,7 @@ if __name__ == "__main__":
         (protocol, "LINGER", 0.3),
         (crowd, "SWEEP", 0.05),
         (process, "GRACE", PATIENCE / 2),
+        (health, "_PATIENCE", PATIENCE / 2),
     ):
         vars(module)[name] = seconds
     vars(start)["installed_app"] = _with_hanging

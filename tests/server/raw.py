@@ -8,7 +8,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,12 @@ ROOT = Path(__file__).parents[2]
 TEXT = b'{"text": "l1c1", "exercise": "planar-rrr"}'
 HOST = b"Host: x\r\n"
 HEALTH = b"GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n"
+
+
+def until(holds: Callable[[], bool]) -> None:
+    """Wait for a condition; the test's own timeout bounds that."""
+    while not holds():
+        time.sleep(0.02)
 
 
 def preview(body: bytes = TEXT, *headers: bytes) -> bytes:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import pytest
 
 from service.server import crowd as crowd_module
-from service.server.crowd import Crowd, Room, client_key, room_here
+from service.server.crowd import Crowd, Room, room_here
 from service.server.limits import RESERVE
 
 
@@ -105,21 +105,6 @@ def test_time_is_up_for_whoever_is_late(
 
     loop.run_until_complete(until_expired())
     assert (late.ended[0], early.ended) == ("expired", [])
-
-
-@pytest.mark.parametrize(
-    ("one", "other", "same"),
-    [
-        ("10.0.0.1", "10.0.0.2", False),
-        ("2001:db8:1:2::1", "2001:db8:1:2:ffff::9", True),
-        ("2001:db8:1:2::1", "2001:db8:1:3::1", False),
-        ("fe80::1%eth0", "fe80::2%eth0", True),
-        ("testclient", "testclient", True),
-        ("no:address", "no:other", False),
-    ],
-)
-def test_a_network_of_ipv6_is_one_client(one: str, other: str, same: bool) -> None:
-    assert (client_key(one) == client_key(other)) is same
 
 
 def test_there_is_room_for_as_many_as_files_may_be_open(monkeypatch: pytest.MonkeyPatch) -> None:

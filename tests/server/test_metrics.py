@@ -17,8 +17,8 @@ from service.settings import Settings
 from service.submissions.strict_json import MAX_BODY_SIZE
 from tests.attempts.databases import new_file
 from tests.attempts.recorded import NO_TWIST, RIGHT
-from tests.server.raw import Service, service
-from tests.server.test_process import until, workers
+from tests.server.raw import Service, service, until
+from tests.server.test_process import workers
 
 ROUTE = "/v1/exercises/{exercise_id}/attempts"
 Samples = Mapping[tuple[str, frozenset[str]], float]

@@ -98,7 +98,7 @@ def test_slips_and_those_who_have_them(counted: ClassStatistics) -> None:
     assert [slip.count for slip in counted.slips.counted()] == [2, 1, 1]
     quarter = counted.slips.counted()[0]
     assert quarter.parts == {TABLE: 2}
-    assert quarter.sentence == "α is not right: compare the two z axes."
+    assert quarter.sentence == "α is not right: compare z1 and z2."
 
 
 def test_what_could_not_be_read_is_no_slip(counted: ClassStatistics) -> None:

@@ -53,6 +53,7 @@ def test_a_page_is_small_and_loads_files_that_never_change(client: Client, path:
         assert re.search(r"-[0-9a-f]{12}\.(js|css|svg)$", address)
         assert "immutable" in file.headers["cache-control"]
         assert file.headers["x-content-type-options"] == "nosniff"
+        assert file.headers["cross-origin-resource-policy"] == "cross-origin"
     # The style of the element is loaded by its script.
     style = load_assets().name("element.css")
     figure = client.get("/v1/exercises/stanford-arm/figure.svg")

@@ -3,12 +3,13 @@
 The parser calls each method once the rule's operands are built.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 from service.expressions.errors import Note, UnreadableError, shortened
 from service.expressions.limits import LIMITS
 from service.expressions.parsing.built import built
+from service.expressions.parsing.literal_notes import on_call, on_shorthand, on_sum
 from service.expressions.parsing.tokens import Token
 from service.expressions.tree import (
     Binary,
@@ -23,18 +24,32 @@ from service.expressions.tree import (
     children,
 )
 from service.expressions.vocabulary.functions import ARITY, BUILT, INVERSE, OF_DEGREES
+from service.expressions.vocabulary.symbols import Symbol
 
 _LOOKED_AT: Final = 64
+# Notes that a number was read in radians.
+_ON_RADIANS: Final = frozenset({"bare_radians", "mixed_units"})
 
 
 class Builder:
     """Builds the tree of one text from the bottom up."""
 
-    __slots__ = ("barred", "degree_functions", "degrees", "grouped", "notes", "source")
+    __slots__ = (
+        "barred", "degree_functions", "degrees", "grouped", "notes", "source", "turning",
+    )  # fmt: skip
 
-    def __init__(self, source: str, notes: list[Note], *, degrees: bool = False) -> None:
+    def __init__(
+        self,
+        source: str,
+        notes: list[Note],
+        turning: Mapping[int, Symbol],
+        *,
+        degrees: bool = False,
+    ) -> None:
+        """``turning`` are the variables of the joints that turn, by joint."""
         self.source = source
         self.notes = notes
+        self.turning = turning
         self.degrees = degrees
         # The ids of nodes in brackets, and of fractions with a bar.
         self.grouped: set[int] = set()
@@ -44,6 +59,9 @@ class Builder:
     def add(self, operator: Operator, left: Node, right: Node) -> Node:
         """Build left + right or left - right."""
         self._note_degrees(left, right)
+        self._add_note(on_sum(left, right, degrees=self.degrees))
+        if operator == "+":
+            self._add_note(on_shorthand(self.source, left, right, self.turning))
         return Binary(operator, left, right, left.start, right.end)
 
     def multiply(self, left: Node, right: Node) -> Node:
@@ -155,7 +173,13 @@ class Builder:
 
     def _called(self, function: Token, arguments: tuple[Node, ...], end: int) -> Node:
         _, (name, power), start, _ = function
-        self.degree_functions = self.degree_functions or name in OF_DEGREES
+        if name in OF_DEGREES:
+            self.degree_functions = True
+            # Numbers inside are in degrees after all.
+            inside = (each for each in self.notes if each.span[0] >= start)
+            untrue = [each for each in inside if each.code in _ON_RADIANS]
+            self.notes[:] = [each for each in self.notes if each not in untrue]
+        self._add_note(on_call(name, arguments[0], self.turning, degrees=self.degrees))
         call: Node = Call(name, arguments, start, end)
         if name in BUILT:
             call = built(name, arguments, start, end)
@@ -216,8 +240,11 @@ class Builder:
         return shortened(self.source[node.start : node.end])
 
     def _note(self, code: str, message: str, start: int, end: int) -> None:
-        if len(self.notes) < LIMITS.notes:
-            self.notes.append(Note(code, message, (start, end)))
+        self._add_note(Note(code, message, (start, end)))
+
+    def _add_note(self, note: Note | None) -> None:
+        if note is not None and len(self.notes) < LIMITS.notes:
+            self.notes.append(note)
 
     def _note_argument(self, start: int, end: int) -> None:
         text = shortened(self.source[start:end])

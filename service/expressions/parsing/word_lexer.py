@@ -18,7 +18,6 @@ from service.expressions.parsing.tokens import OPERAND_ENDS, TokenWriter
 from service.expressions.parsing.words import LONGEST_RUN, Piece, split
 from service.expressions.tree import Binary, Call, Node, Number, Pi, SymbolNode
 from service.expressions.vocabulary.functions import IN_DEGREES, MODULES, UNIT_FUNCTIONS
-from service.expressions.vocabulary.symbols import Symbol
 
 _FUNCTION_POWER: Final = re.compile(r"\s*(?:\^|\*\*)\s*")
 _EXPONENT: Final = re.compile(
@@ -40,9 +39,10 @@ class WordLexer(TokenWriter):
             if self._is_float_suffix(run, start):
                 return end
             pieces, end = self._unsplit(run, start, end)
+        in_place = self.starts is None
         for piece in pieces:
-            kind, stop = piece.kind, start + piece.end
-            a, b = self._span(start + piece.start, stop)
+            kind, a, stop = piece.kind, start + piece.start, start + piece.end
+            a, b = (a, stop) if in_place else self._span(a, stop)
             if kind == "symbol":
                 symbol = piece.symbols[0]
                 self._operand("NAME", SymbolNode(symbol, a, b), a, b)
@@ -151,7 +151,10 @@ class WordLexer(TokenWriter):
                     raise UnreadableError("index", span, reason="mixed")
 
     def _shorthand(self, piece: Piece, last: bool, end: int, a: int, b: int) -> None:
-        total = _sum_of(piece.symbols, a, b)
+        first, *others = piece.symbols
+        total: Node = SymbolNode(first, a, b)
+        for symbol in others:
+            total = Binary("+", total, SymbolNode(symbol, a, b), a, b)
         if piece.ambiguous:
             goes_on = not last or self.text[end : end + 1] in {"(", "[", "{", ".", "°", "√", "^"}
             if self.degrees or goes_on:
@@ -206,10 +209,3 @@ class WordLexer(TokenWriter):
             return UnreadableError("not_finite", span)
         called = self.text[end : end + 1] == "("
         return UnreadableError("name", span, run=run, called=called, before=self.last)
-
-
-def _sum_of(symbols: tuple[Symbol, ...], a: int, b: int) -> Node:
-    total: Node = SymbolNode(symbols[0], a, b)
-    for symbol in symbols[1:]:
-        total = Binary("+", total, SymbolNode(symbol, a, b), a, b)
-    return total

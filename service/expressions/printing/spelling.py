@@ -114,9 +114,25 @@ def _added_joints(node: Node) -> list[int]:
 # --- the spelling that formulas have in common
 
 
-def spelling_of(
-    formulas: Iterable[TypedFormula], vocabulary: Vocabulary, *, degrees: bool
-) -> Spelling:
+class Habits(NamedTuple):
+    """What one formula shows of its writer's spelling.
+
+    ``unit`` is what constant angles are written with, None where it shows none, ``names`` those of
+    its symbols as typed, by their canonical names.
+    """
+
+    unit: str | None
+    names: Mapping[str, str]
+    has_shorthand: bool
+
+
+def habits_of(formula: TypedFormula, vocabulary: Vocabulary) -> Habits:
+    """Return what one formula shows of its writer's spelling."""
+    has_shorthand = any(_is_short(node, formula) for node in _nodes(formula.tree))
+    return Habits(_unit(formula), _names(formula, vocabulary), has_shorthand)
+
+
+def spelling_of(formulas: Iterable[Habits], vocabulary: Vocabulary, *, degrees: bool) -> Spelling:
     """The spelling of formulas: what most of them do, of equals the first.
 
     ``degrees`` says that bare angles are degrees where no formula shows a unit.
@@ -125,11 +141,10 @@ def spelling_of(
     angles: Counter[str] = Counter()
     shorthand = False
     for formula in formulas:
-        if (unit := _unit(formula)) is not None:
-            angles[unit] += 1
-        names = _names(formula, vocabulary) | names
-        calls = () if shorthand else _nodes(formula.tree)
-        shorthand = shorthand or any(_is_short(node, formula) for node in calls)
+        if formula.unit is not None:
+            angles[formula.unit] += 1
+        names = {**formula.names, **names}
+        shorthand = shorthand or formula.has_shorthand
     shorthand = shorthand and not any(map(_SHORT_NAME.fullmatch, vocabulary.by_name))
     names |= _likewise(names, vocabulary)
     most = angles.most_common(1)

@@ -27,14 +27,14 @@ from service.expressions.repairs.failure import Failure, RepairRule
 # answers everything.
 RULES: Final[tuple[RepairRule, ...]] = (
     beyond_limits, not_a_number, dash, empty, comment, quotes, equation, plus_minus, prose,
-    interval, not_finite, invisible_character, look_alike_character, mixed_number, transpose,
-    cube_root, unknown_command, subscript, braced_stem, raised_zero, function_of_time, length_unit,
-    letter_x, detached_index, unknown_joint, index, wrong_case, euler_and_imaginary, tan_of_two,
-    unknown_function, unknown_symbol, not_revolute, repeated_joint, ambiguous_shorthand,
+    interval, not_finite, invisible_character, look_alike_character, mixed_number, decimal_comma,
+    transpose, cube_root, unknown_command, subscript, braced_stem, raised_zero, function_of_time,
+    length_unit, letter_x, detached_index, unknown_joint, index, wrong_case, euler_and_imaginary,
+    tan_of_two, unknown_function, unknown_symbol, not_revolute, repeated_joint, ambiguous_shorthand,
     ambiguous_number, ambiguous_star, ambiguous_unit, degrees_function, unit_on_variable, two_units,
     function_power, wrong_number_of_arguments, mismatched_bracket, function_without_argument,
-    decimal_comma, trailing_punctuation, trailing_operator, unbalanced_bracket, chained_power,
-    missing_operand, malformed_number, two_values, unexpected_character,
+    trailing_punctuation, trailing_operator, unbalanced_bracket, chained_power, missing_operand,
+    malformed_number, two_values, unexpected_character,
 )  # fmt: skip
 
 

@@ -5,6 +5,9 @@ import re
 from service.expressions.repairs.failure import Failure, Repair, error
 
 _COMMENT = re.compile(r"(?<!\\)%|#|//|/\*|\(\*")
+# A word of prose.
+_WORD = re.compile(r"(?!(?:deg|rad|sin|cos|tan)\b)[^\W\d_]{3,}")
+_OPERATOR = re.compile(r"[-+*/^=(,]")
 
 
 def repair(failure: Failure) -> Repair:
@@ -22,5 +25,9 @@ def repair(failure: Failure) -> Repair:
             "For a fraction, write one slash."
         )
         return error(failure, "comment", message, division, match.span())
+    span = match.start(), len(failure.source)
+    # Behind the sign stands no comment, but a part of the formula.
+    if not _WORD.search(behind) or _OPERATOR.match(behind) or _OPERATOR.match(before[-1:]):
+        before = ""
     message = f"The text after {match.group()} looks like a comment. Write only the formula."
-    return error(failure, "comment", message, before, (match.start(), len(failure.source)))
+    return error(failure, "comment", message, before or None, span)

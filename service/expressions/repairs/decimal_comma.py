@@ -1,15 +1,21 @@
-"""1,5 for 1.5."""
+"""1,5 and 1’5 for 1.5."""
 
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 _THOUSANDS = re.compile(r"(?<![0-9.,])[1-9][0-9]{0,2}(?:,000)+(?![0-9])")
+# A number whose decimal mark is an apostrophe, and one in which it may part thousands.
+_APOSTROPHE = re.compile(r"(?<![\w.,'’‘´`′°])[0-9]+(['’‘´`′])[0-9]+(?![0-9.,'’‘´`′])")
+_IN_THOUSANDS = re.compile(r"[1-9][0-9]{0,2}\W[0-9]{3}")
+_POINT = "Write one number with a point."
 
 
-@answers("grammar")
+@answers("grammar", "transpose")
 def repair(failure: Failure) -> Repair:
     """Offer a point; for 1,000, which may be a thousand, name both readings."""
+    if failure.cause == "transpose":
+        return _apostrophe(failure)
     start, end = failure.span
     left, right = failure.source[start - 1 : start], failure.source[end : end + 1]
     if failure.terminal() != "COMMA" or not (left.isdigit() and right.isdigit()):
@@ -17,6 +23,17 @@ def repair(failure: Failure) -> Repair:
     if any(match.start() < start < match.end() for match in _THOUSANDS.finditer(failure.source)):
         message = "A comma separates values. Write a thousand as 1000 and one as 1."
         return error(failure, "decimal_comma", message)
-    message = "A comma separates values. Write one number with a point."
+    message = f"A comma separates values. {_POINT}"
     point = re.sub(r"(?<=[0-9]),(?=[0-9])", ".", failure.source)
+    return error(failure, "decimal_comma", message, point)
+
+
+def _apostrophe(failure: Failure) -> Repair:
+    """Offer a point for 1’5; 1’000 may be a thousand, too."""
+    numbers = _APOSTROPHE.finditer(failure.source)
+    number = next((match for match in numbers if match.span(1) == failure.span), None)
+    if number is None:
+        return None
+    message = f"An apostrophe is no decimal point. {_POINT}"
+    point = None if _IN_THOUSANDS.fullmatch(number.group()) else failure.replaced(".")
     return error(failure, "decimal_comma", message, point)

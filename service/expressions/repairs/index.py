@@ -24,6 +24,9 @@ def repair(failure: Failure) -> Repair:
         return error(failure, "index", message, failure.replaced(f"*{details['digits']}"))
     run, digits = details["run"], details["digits"]
     message = f"{_COUNTING[details['style']]} {written} would be {run}{digits}"
+    if details["reason"] == "shorthand" and run == "S":
+        message = f"{written} is a number in SymPy, and may be a sine. Write {digits} or s{digits}."
+        return error(failure, "index", message)
     if details["reason"] == "shorthand":
         message += ". Write the shorthand without brackets."
         return error(failure, "index", message, failure.replaced(f"{run}{digits}"))

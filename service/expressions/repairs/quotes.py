@@ -7,12 +7,14 @@ from service.expressions.repairs.failure import Failure, Repair, error
 _QUOTED = re.compile(
     r"(?:\b(?:\w+\.)?(?:Symbol|symbols|sym|var|syms)\(\s*)?([\"'“”‘’])([^\"'“”‘’]*)[\"'“”‘’](\s*\))?"
 )
+# 1’5 is no name in quotation marks.
+_BETWEEN_DIGITS = re.compile(r"[0-9][\"'“”‘’]+[0-9]")
 
 
 def repair(failure: Failure) -> Repair:
     """Offer the text without them."""
     match = _QUOTED.search(failure.source)
-    if match is None:
+    if match is None or _BETWEEN_DIGITS.search(failure.source):
         return None
     suggestion = _QUOTED.sub(_inside, failure.source).strip()
     message = "Write names without quotation marks."

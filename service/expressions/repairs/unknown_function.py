@@ -1,6 +1,8 @@
 """Functions that no answer needs, and other names of known ones: log, sinh, max, cosine."""
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+import re
+
+from service.expressions.repairs.failure import Failure, Repair, absent, answers, error, quoted
 from service.expressions.vocabulary.functions import ARITY, REFUSED
 
 _RENAMED = {
@@ -11,6 +13,8 @@ _RENAMED = {
     "tangens": "tan", "tangente": "tan", "tang": "tan", "ArcCosine": "acos", "ArcSine": "asin",
     "c": "cos", "s": "sin", "t": "tan", "C": "cos", "S": "sin",
 }  # fmt: skip
+# The places of MATLAB's arrays, and SymPy's numbers: c(1, 2) is no cosine, S(1) is 1.
+_OF_NUMBERS = re.compile(r"\(\s*[0-9]+(?:\s*[,;]\s*[0-9]+)*\s*\)")
 
 
 @answers("name")
@@ -21,7 +25,13 @@ def repair(failure: Failure) -> Repair:
         written = quoted(failure.written)
         message = f"{written} is not needed here. The functions are {_listed()}."
         return error(failure, "unknown_function", message)
-    renamed = _RENAMED.get(failure.details["run"])
+    run = failure.details["run"]
+    if len(run) == 1 and _OF_NUMBERS.match(failure.source, failure.span[1]):
+        if not failure.vocabulary.joints:
+            return None
+        message = f"{absent(failure)} Write the shorthand without brackets, as in c12."
+        return error(failure, "unknown_function", message)
+    renamed = _RENAMED.get(run)
     if renamed is None or not failure.details["called"]:
         return None
     message = f"{quoted(failure.written)} is no function here. Did you mean {renamed}?"

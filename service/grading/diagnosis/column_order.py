@@ -1,4 +1,7 @@
-"""Tables without headers whose columns stand in another order: θ, d, a, α, or α, a, d, θ."""
+"""Tables whose columns stand in another order: θ, d, a, α, or α, a, d, θ.
+
+They have no headers, or their cells were typed one by one under the headers a, α, d, θ.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -59,7 +62,8 @@ def in_other_orders(table: StudentTable, grading: Grading) -> Iterator[IntendedT
         if len(tried) > _MOST:
             return
         tried.append(intended)
-        yield IntendedTable(intended, _finding(order), _moved(intended, table))
+        finding = _finding(order, named=table.named)
+        yield IntendedTable(intended, finding, _moved(intended, table))
 
 
 def _suits(table: StudentTable, grading: Grading) -> bool:
@@ -151,11 +155,16 @@ def _moved(intended: StudentTable, table: StudentTable) -> frozenset[tuple[int, 
     return frozenset((i, column) for i, column in np.argwhere(error > INTENDED_CELL).tolist())
 
 
-def _finding(order: Order) -> Finding:
+def _finding(order: Order, *, named: bool) -> Finding:
     written = ", ".join(SYMBOLS[column] for column in order)
+    advice = (
+        "A table without headers has the order a, α, d, θ: put headers above the columns, or "
+        "change their order."
+    )
+    if named:
+        advice = "Write each parameter under its own header: a, α, d, θ."
     return Finding(
         "columns_permuted",
-        f"The columns stand in the order {written}. A table without headers has the order a, α, d, "
-        f"θ: put headers above the columns, or change their order.",
+        f"The columns stand in the order {written}. {advice}",
         "Write the columns in the order a, α, d, θ.",
     )

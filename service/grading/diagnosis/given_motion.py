@@ -35,10 +35,14 @@ IN_NUMBERS = Displacement((), ())
 
 @dataclass(frozen=True)
 class GivenMotion:
-    """The formulas of a position (one row), a rotation or a transform, and what is in them."""
+    """The formulas of a position (one row), a rotation or a transform, and what is in them.
+
+    ``values`` are those of the symbols at ``count`` samples.
+    """
 
     grid: FormulaGrid
     values: Mapping[str, Numbers]
+    count: int
     angles: tuple[str, ...]
     lengths: tuple[str, ...]
 
@@ -54,7 +58,7 @@ class GivenMotion:
             for kind in ("angle", "length")
         }
         angles = of_kind["angle"] if len(of_kind["angle"]) <= MAX_TURNS else ()
-        return cls(grid, samples.values, angles, of_kind["length"])
+        return cls(grid, samples.values, samples.count, angles, of_kind["length"])
 
     def position(self, zeros: Iterable[str] = ()) -> Numbers:
         """The position ``(n, samples)`` with 0 for some symbols."""
@@ -66,10 +70,9 @@ class GivenMotion:
         return self._numbers([row[:3] for row in self.grid[:3]], zeros)
 
     def _numbers(self, grid: Sequence[Sequence[Expression]], zeros: Iterable[str]) -> Numbers:
-        count = len(next(iter(self.values.values())))
-        values = {**self.values, **{name: np.zeros(count) for name in zeros}}
+        values = {**self.values, **{name: np.zeros(self.count) for name in zeros}}
         with np.errstate(all="ignore"):
-            return grid_values(tuple(map(tuple, grid)), values, count)
+            return grid_values(tuple(map(tuple, grid)), values, self.count)
 
     def part(self, displacement: Displacement, straight: Sequence[str] = ()) -> Numbers:
         """A part of the position, not turned by the angles ``straight``."""
@@ -137,8 +140,7 @@ class GivenMotion:
         if self.order is None or len(self.displacements) > len(self.order) + 1:
             return None
         places = {frozenset(self.order[:i]): i for i in range(len(self.order) + 1)}
-        count = len(next(iter(self.values.values())))
-        steps = [np.tile(np.eye(4), (count, 1, 1)) for _ in places]
+        steps = [np.tile(np.eye(4), (self.count, 1, 1)) for _ in places]
         for step, angle in zip(steps, self.order, strict=False):
             step[:, :3, :3] = self._turns[angle]
         for displacement in self.displacements:

@@ -36,7 +36,7 @@ def joint_slips(moved: Sequence[Joint], joints: Sequence[Joint], axis: Axis) -> 
             yield from _starts_elsewhere(joint)
 
 
-def counts_the_wrong_way(joint: Joint, axis: Axis, cell: CellChange | None = None) -> Slip:
+def counts_the_wrong_way(joint: Joint, axis: Axis, *cells: CellChange) -> Slip:
     """The joint was taken to move in the negative sense of its axis."""
     verb = "slides" if joint.prismatic else "counts"
     return Slip(
@@ -45,11 +45,11 @@ def counts_the_wrong_way(joint: Joint, axis: Axis, cell: CellChange | None = Non
         f"check the sign of its variable. {axis(joint)}",
         f"Change the sign of {{{joint.variable}}} throughout.",
         symbols=(SymbolChange(joint.variable, joint.variable, -1.0),),
-        cell=cell,
+        cells=cells,
     )
 
 
-def stands_still(joint: Joint, cell: CellChange | None = None) -> Slip:
+def stands_still(joint: Joint, *cells: CellChange) -> Slip:
     """The joint's variable was left out, as if the joint could not move."""
     verb = "moves" if joint.prismatic else "turns"
     return Slip(
@@ -58,7 +58,7 @@ def stands_still(joint: Joint, cell: CellChange | None = None) -> Slip:
         f"check what must change with {{{joint.variable}:its variable}}.",
         f"Joint {joint.index} {verb} with {{{joint.variable}}}.",
         symbols=(SymbolChange(joint.variable, joint.variable, 0.0),),
-        cell=cell,
+        cells=cells,
     )
 
 

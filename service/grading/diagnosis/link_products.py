@@ -163,8 +163,35 @@ def premultiplied(chain: Chain) -> Iterator[LinkPose]:
     yield Written(compound(chain.misread_links[::-1]), throughout)
 
 
+def row_order(chain: Chain) -> Iterator[LinkPose]:
+    """One row of the table, or its link transform, stands at another place.
+
+    Two that are next to each other are exchanged, which is a slip of the table
+    (``rows_and_columns``); and one in front of all was multiplied from the left.
+    """
+    count = len(chain.links)
+    orders = [
+        [*rest[:place], row, *rest[place:]]
+        for row in range(count)
+        for place in range(1, count)
+        if abs(place - row) > 1
+        for rest in [[i for i in range(count) if i != row]]
+    ]
+    if not orders:
+        return
+    poses = compound(np.swapaxes(chain.links[orders], 0, 1))
+    for order, pose in zip(orders, poses, strict=True):
+        finding = Finding(
+            "row_order",
+            f"the product in the order {chain.product(order)}. Check which joint each row of the "
+            "table belongs to.",
+            f"Multiply {chain.product(range(count))}.",
+        )
+        yield Written(pose, finding)
+
+
 OF_FRAMES = (wrong_frame, wrong_base)
-OF_FACTORS = (missing_link, premultiplied)
+OF_FACTORS = (missing_link, premultiplied, row_order)
 MISCONCEPTIONS = (reversed_product, other_convention, *OF_FRAMES, *OF_FACTORS)
 
 

@@ -98,7 +98,7 @@ def turn_reversed(motion: GivenMotion) -> Hypotheses:
     """A turn goes the wrong way."""
     for angle in motion.angles:
         values = {**motion.values, angle: -motion.values[angle]}
-        rotation = GivenMotion(motion.grid, values, motion.angles, motion.lengths).rotation()
+        rotation = replace(motion, values=values).rotation()
         finding = Finding(
             "turn_sign",
             f"The turn by {angle} goes the wrong way: check the signs of its sines.",

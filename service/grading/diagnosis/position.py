@@ -6,7 +6,7 @@ from itertools import permutations
 import numpy as np
 
 from service.grading.diagnosis.link_products import Chain, named, other_poses
-from service.grading.diagnosis.slip_search import SlipSearch
+from service.grading.diagnosis.slip_search import BEHIND_SIGNS, SlipSearch
 from service.grading.diagnosis.wrong_value import Hypotheses, WrongNumbers
 from service.grading.feedback import Finding
 from service.grading.misconception import Written, diagnosed
@@ -65,6 +65,6 @@ def explain_position(case: WrongPosition, slips: SlipSearch | None) -> Finding |
     if whole is None or whole.code == "reversed_position":
         slip = slips and slips.finding(np.ones(len(case.axes), dtype=np.bool_))
         # A position that is reversed is half a turn off, too; a length says more.
-        if slip and (whole is None or slip.code != "half_turn"):
+        if slip and (whole is None or slip.code not in BEHIND_SIGNS):
             return slip
     return whole or diagnosed(case, (other_pose,))

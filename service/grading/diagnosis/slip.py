@@ -27,20 +27,30 @@ class SymbolChange:
 
 @dataclass(frozen=True, slots=True)
 class CellChange:
-    """A cell of which the constant part counts ``factor`` times, and to which a number is added."""
+    """A cell whose constant part becomes ``factor`` times that of another cell, plus ``offset``.
+
+    ``source`` is the other cell's row and column; without it, it is the cell itself. With
+    ``moving`` the joint variables in the cells change along with their constants.
+    """
 
     row: int
     column: int
     factor: float = 1.0
     offset: float = 0.0
+    source: tuple[int, int] | None = None
+    moving: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Change:
-    """What the right answer is worked out again with: other symbols, another cell."""
+    """What the right answer is worked out again with: other symbols, other cells.
+
+    With ``misread`` the table is multiplied out with the link transform of the other convention.
+    """
 
     symbols: tuple[SymbolChange, ...] = ()
-    cell: CellChange | None = None
+    cells: tuple[CellChange, ...] = ()
+    misread: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +72,8 @@ class Slip(Change):
 def changed_values(changes: Sequence[Change], values: SymbolValues) -> dict[str, Numbers]:
     """The values ``(K · samples,)`` that K changes leave each symbol, those of one in a row."""
     names = list(values)
+    if not names:
+        return {}
     places = {name: i for i, name in enumerate(names)}
     right = np.array([values[name] for name in names])
     stacked = np.repeat(right[:, None], len(changes), axis=1)
@@ -76,20 +88,30 @@ def changed_values(changes: Sequence[Change], values: SymbolValues) -> dict[str,
 
 
 def change_cells(
-    changes: Sequence[Change], tables: Table, constants: Table, first_row: int = 0
+    changes: Sequence[Change],
+    tables: Table,
+    right: Table,
+    constants: Table,
+    first_row: int = 0,
 ) -> None:
-    """Change the cells of ``tables`` ``(rows, 4, K, count)``, one for each change, in place.
+    """Change the cells of ``tables`` ``(rows, 4, K, count)``, some for each change, in place.
 
-    ``constants`` ``(rows, 4, count)`` is the right table with all joint variables 0. Both may begin
-    with another than the table's ``first_row``.
+    ``right`` ``(rows, 4, count)`` is the right table, ``constants`` the same with all joint
+    variables 0. All may begin with another than the table's ``first_row``.
     """
-    changed = [(k, change.cell) for k, change in enumerate(changes) if change.cell is not None]
-    if changed:
-        rows, columns = (
-            [cell.row - first_row for _, cell in changed],
-            [cell.column for _, cell in changed],
-        )
-        factors = np.array([[cell.factor - 1.0] for _, cell in changed])
-        offsets = np.array([[cell.offset] for _, cell in changed])
-        added = factors * constants[rows, columns] + offsets
-        tables[rows, columns, [k for k, _ in changed]] += added
+    cells = [(k, cell) for k, change in enumerate(changes) for cell in change.cells]
+    if not cells:
+        return
+    written = np.stack([constants, right])
+    numbers = np.array(
+        [
+            (k, cell.moving, cell.row, cell.column, *(cell.source or (cell.row, cell.column)))
+            for k, cell in cells
+        ]
+    ).T
+    ways, moving, rows, columns, source_rows, source_columns = numbers
+    rows, source_rows = rows - first_row, source_rows - first_row
+    factors = np.array([[cell.factor] for _, cell in cells])
+    offsets = np.array([[cell.offset] for _, cell in cells])
+    sources = written[moving, source_rows, source_columns]
+    tables[rows, columns, ways] += factors * sources - written[moving, rows, columns] + offsets

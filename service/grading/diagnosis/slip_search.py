@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from service.grading.comparison import nearly_equal
 from service.grading.diagnosis.joint_slips import HOME_POSITION
+from service.grading.diagnosis.rows_and_columns import MISSING_LINK, ROW_ORDER
 from service.grading.diagnosis.slip import Slip
 from service.grading.diagnosis.slipped_answers import SlippedAnswers
 from service.grading.diagnosis.wrong_value import Mask
@@ -24,15 +25,29 @@ LIKELIEST = (
     "sign",
     "distance_left_out",
     "quarter_turn",
+    "columns_swapped",
+    "parameter_sign",
+    "other_convention",
     "lengths_exchanged",
     "other_length",
     "joint_variable_index",
     "angle_left_out",
     "half_turn",
     "joint_variable_doubled",
+    ROW_ORDER,
+    MISSING_LINK,
 )
-# An axis that is turned moves several entries; of one alone, the sign is wrong or a term.
-OF_SEVERAL_ENTRIES = {"quarter_turn", "half_turn"}
+# An axis that is turned moves several entries, and so do wrong signs throughout a table; of one
+# entry alone, the sign is wrong or a term.
+OF_SEVERAL_ENTRIES = {"quarter_turn", "half_turn", "parameter_sign"}
+# Slips that are far-fetched where signs explain the answer itself: it is reversed, or a column is.
+BEHIND_SIGNS = {"half_turn", "parameter_sign"}
+# A slip of rows or columns, and those that are a part of it: they are all that is sure.
+PARTS_OF = {
+    "columns_swapped": {"distance_left_out"},
+    "parameter_sign": {"sign"},
+    ROW_ORDER: {"lengths_exchanged"},
+}
 # More slips that lead to the same answer are not told one by one.
 MOST_TOLD = 4
 
@@ -91,7 +106,8 @@ class SlipSearch:
         sure = np.flatnonzero(fits[:, read].all(axis=1) & changes[:, read].any(axis=1))
         found_slips = sorted((slips[k] for k in sure), key=lambda slip: LIKELIEST.index(slip.code))
         # Where all joints stand still, no single one of them is to blame.
-        return [slip for slip in found_slips if slip.code == HOME_POSITION] or found_slips
+        at_home = [slip for slip in found_slips if slip.code == HOME_POSITION]
+        return at_home or _sure(found_slips)
 
     @cached_property
     def _at_first(self) -> tuple[Mask, Mask]:
@@ -107,6 +123,19 @@ class SlipSearch:
         fits = nearly_equal(self.actual[..., some], answers, self.scale, self.angle)
         same = nearly_equal(self.expected[..., some], answers, self.scale, self.angle)
         return fits, ~same
+
+
+def _sure(slips: list[Slip]) -> list[Slip]:
+    """The slips without those of which another is a part.
+
+    A link that is missing in the product is told here only beside rows in another order. By itself
+    it is told as such a product (``link_products``).
+    """
+    codes = {slip.code for slip in slips}
+    covered = {code for code in codes if PARTS_OF.get(code, set()) & codes}
+    if codes != {ROW_ORDER, MISSING_LINK}:
+        covered.add(MISSING_LINK)
+    return [slip for slip in slips if slip.code not in covered]
 
 
 def _finding(

@@ -66,7 +66,7 @@ def _of_table(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Slipp
     """The poses ``(K, 4, 4, samples)`` of a robot with a table."""
     robot = exercise.robot
     table = robot.tables[robot.convention]
-    start, to = robot.frame_number(part.start), robot.frame_number(part.to)
+    start, to, last = *map(robot.frame_number, (part.start, part.to)), len(table.rows)
 
     def values_at(samples: Samples) -> SymbolValues:
         values = samples.values
@@ -75,21 +75,31 @@ def _of_table(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Slipp
     def at(changes: Sequence[Change], samples: Samples) -> Numbers:
         tables = slipped_tables(table, changes, values_at(samples), samples.count)
         reached = frames(tables, table.convention)
-        return as_entries(inverse(reached[start]) @ reached[to])
+        # A slip may add a row at the end.
+        return as_entries(inverse(reached[start]) @ reached[to if to < last else -1])
 
     few = samples.subset(1)
     constants = table.values(at_home(robot.joints, few.values, few.count), few.count)
-    slips = table_slips(table, constants, axis_direction(exercise, few), home=part.home)
+    axis, whole = axis_direction(exercise, few), (start, to) == (0, last)
+    slips = table_slips(table, constants, axis, home=part.home, whole=whole)
     return SlippedAnswers(tuple(slips), at)
 
 
 def slipped_tables(
     table: ReferenceTable, changes: Sequence[Change], values: SymbolValues, count: int
 ) -> Table:
-    """The tables ``(rows, 4, K, count)`` that K changes lead to."""
+    """The tables ``(rows, 4, K, count)`` that K changes lead to, with as many rows as they need."""
     changed = changed_values(changes, values)
     tables = table.values(changed, len(changes) * count).reshape(len(table.rows), 4, -1, count)
-    change_cells(changes, tables, table.values(at_home(table.joints, values, count), count))
+    right = table.values(values, count)
+    constants = table.values(at_home(table.joints, values, count), count)
+    added = max((cell.row + 1 for each in changes for cell in each.cells), default=0) - len(tables)
+    if added > 0:
+        tables, right, constants = (
+            np.concatenate([cells, np.zeros((added, *cells.shape[1:]))])
+            for cells in (tables, right, constants)
+        )
+    change_cells(changes, tables, right, constants)
     return tables
 
 

@@ -20,7 +20,7 @@ from service.grading.part import Grading
 from service.grading.reading.table import IS_ANGLE
 from service.grading.samples import SAMPLES, Samples
 from service.grading.tolerances import SAME_MOTION
-from service.kinematics.chain import links
+from service.kinematics.chain import COLUMNS, Table, links
 from service.kinematics.dh import Convention
 from service.kinematics.dh_row import row as dh_row
 from service.kinematics.transforms import Matrices, Numbers
@@ -76,12 +76,28 @@ def _of_own_row(
         count = samples.count
         fixed = constants if count == SAMPLES else Samples.subset_of(constants, count // 2)
         moved = _motion(senses, joint, changed_values(changes, samples.values))
+        right = fixed + _motion(senses, joint, samples.values)
         rows = np.repeat(fixed[:, None], len(changes), axis=1)
         rows += moved.reshape(4, -1, count) if joint else 0.0
-        change_cells(changes, rows[None], fixed[None], first_row=row)
+        change_cells(changes, rows[None], right[None], fixed[None], first_row=row)
         return as_entries(links(rows[None], convention)[0])
 
     return at
+
+
+def constants_and_motion(
+    right: Matrices, convention: Convention, joints: Sequence[Joint], samples: Samples
+) -> tuple[Table, Table]:
+    """The table ``(rows, 4, SAMPLES)`` of right link transforms ``(rows, SAMPLES, 4, 4)``.
+
+    Its constants, and by how much the joints move each cell.
+    """
+    constants, motions = np.empty((2, len(right), len(COLUMNS), samples.count))
+    for i, link in enumerate(right):
+        joint, cells = joints[i] if i < len(joints) else None, dh_row(link, convention)
+        motions[i] = _motion(_senses(cells, joint, samples), joint, samples.values)
+        constants[i] = cells - motions[i]
+    return constants, motions
 
 
 def _motion(senses: Numbers, joint: Joint | None, values: SymbolValues) -> Numbers:

@@ -1,5 +1,6 @@
 """Slips in a single table cell."""
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
@@ -9,7 +10,7 @@ from service.catalogue import Joint
 from service.expressions.printing.spelling import PLAIN, spelling_for
 from service.grading.comparison import Match
 from service.grading.diagnosis.quantity import quantity_of
-from service.grading.diagnosis.wording import POSITIVE, listed
+from service.grading.diagnosis.wording import POSITIVE, axes_of_row, listed
 from service.grading.diagnosis.wrong_value import (
     Hypotheses,
     WrongCell,
@@ -26,7 +27,7 @@ from service.grading.part import Grading
 from service.grading.reading.absent_variables import absent_names, joint_counted
 from service.grading.reading.table import IS_ANGLE
 from service.grading.tolerances import ROUNDED_VALUE
-from service.kinematics.chain import ALPHA, THETA, D
+from service.kinematics.chain import THETA, D
 from service.kinematics.factors import CellIndex
 from service.kinematics.transforms import Numbers
 
@@ -46,12 +47,16 @@ ROUNDED_TURN = ROUNDED_VALUE * np.pi
 
 
 def joint_variable_absent(case: WrongCell) -> Finding | None:
-    """The cell contains a joint variable that the robot does not have."""
+    """The cell contains a joint variable that the robot does not have, or a length like d1."""
     absent = sorted(absent_names([case.expression], case.samples))
     if not absent:
         return None
     known = {joint.index: joint for joint in case.joints}
     joint = known.get(joint_counted(absent[0]))
+    if joint is not None and not joint.prismatic:
+        lengths = [name for name in case.samples.values if re.fullmatch(r"d_?\d+", name)]
+        has = f" It has {', '.join(lengths)}." if lengths else ""
+        return finding_on(case, "unknown_symbol", f"This exercise has no {absent[0]}.{has}")
     why = f"its joints are {min(known)} to {max(known)}"
     if joint is not None:
         why = f"joint {joint.index} {_motion(joint)}, and its variable is {case.name(joint)}"
@@ -239,10 +244,12 @@ def quarter_turn(case: WrongCell) -> Hypotheses:
 
 
 def _compare_axes(case: WrongCell) -> str:
-    if case.column == ALPHA:
-        return "α is not right: compare the two z axes."
-    where = " in the home position" if case.joint else ""
-    return f"{case.symbol} is not right: compare the two x axes{where}."
+    axis, where = "z", ""
+    if case.column == THETA:
+        axis, where = "x", " in the home position" if case.joint else ""
+    last = max((joint.index for joint in case.joints), default=0)
+    axes = axes_of_row(axis, case.label, last)
+    return f"{case.symbol} is not right: compare {axes}{where}."
 
 
 def half_turn(case: WrongCell) -> Hypotheses:
@@ -362,6 +369,7 @@ def wrong_cells(judgement: Judgement, grading: Grading) -> dict[CellIndex, Wrong
             required=_by_joint(required, joints) or {},
             shared=judged.shared,
             joints=joints,
+            label=judged.label,
         )
     return cases
 

@@ -67,7 +67,7 @@ def explained(
 
     An explanation must not contradict the findings on single cells. So it stands if its cells are
     those that were found wrong; or else if its table lies nearer to the reference's frames than the
-    judgement's: then the cells are judged by that table.
+    judgement's, or as near if it is the other convention: then the cells are judged by that table.
     """
     values = values_of([role.row for role in roles if role.row is not None])
     if len(values) < len(roles) or not np.isfinite(values).all():
@@ -81,6 +81,9 @@ def explained(
         intended.append(_intended(repaired, case.written, roles, grading))
         findings, table = intended[-1].findings, intended[-1].table
         if table is not None and not np.array_equal(intended[-1].changed, wrong):
+            # A whole table that is right in the other convention is no accident of its cells.
+            if _is_other_convention(intended[-1], judgement):
+                break
             continue
         if table is None or _OF_UNIT.intersection(finding.code for finding in findings):
             # Converted numbers are rounded: they tell nothing of the frames.
@@ -89,9 +92,18 @@ def explained(
         chosen = judged_by_intended(table, roles, convention, grading).findings
         return findings, replace(judgement, findings=chosen)
     nearest = min(intended, key=lambda each: each.departures, default=None)
-    if nearest is None or nearest.table is None or nearest.departures >= judgement.departures:
+    if nearest is None or nearest.table is None:
+        return (), judgement
+    is_nearer = nearest.departures < judgement.departures
+    if not (is_nearer or _is_other_convention(nearest, judgement)):
         return (), judgement
     return nearest.findings, judged_by_intended(nearest.table, roles, convention, grading)
+
+
+def _is_other_convention(intended: _Intended, judgement: Judgement) -> bool:
+    """Whether the slip is the other convention, in frames as near as those of the judgement."""
+    codes = [finding.code for finding in intended.findings]
+    return codes == ["other_convention"] and intended.departures <= judgement.departures
 
 
 def _wrong_table(

@@ -17,8 +17,9 @@ from service.grading.diagnosis.joint_slips import (
     length_slips,
     stands_still,
 )
+from service.grading.diagnosis.rows_and_columns import TableRows, exchanged_in_row, slips_of_rows
 from service.grading.diagnosis.slip import CellChange, Slip
-from service.grading.diagnosis.wording import MEASURED, POSITIVE, SYMBOLS
+from service.grading.diagnosis.wording import MEASURED, POSITIVE, SYMBOLS, axes_of_row
 from service.grading.reading.table import IS_ANGLE
 from service.grading.tolerances import CONSTANT
 from service.kinematics.chain import ALPHA, THETA, A, D, Table
@@ -30,21 +31,31 @@ NOUNS = ("length", "twist", "offset", "angle")
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A cell of a table: where it is, what it measures in words, and the right formula in words."""
+    """A cell of a table: where it is, what it measures in words, and the right formula in words.
+
+    ``axes`` are the two that an angle lies between.
+    """
 
     row: int
     column: int
     parameter: str
     link: str
+    axes: str
     correction: str = ""
 
 
 def table_slips(
-    table: ReferenceTable, constants: Table, axis: Axis, *, home: bool = False
+    table: ReferenceTable,
+    constants: Table,
+    axis: Axis,
+    *,
+    home: bool = False,
+    whole: bool = True,
 ) -> Iterator[Slip]:
     """All single slips; ``constants`` ``(rows, 4, samples)`` is the table at home.
 
-    An answer ``home`` has no joint variables: all slips are in constants.
+    An answer ``home`` has no joint variables: all slips are in constants. The rows and columns of
+    the table are tried where the answer follows from the ``whole`` of it.
     """
     if not home:
         yield from joint_slips(table.joints, table.joints, axis)
@@ -52,6 +63,9 @@ def table_slips(
     for i in range(len(table.rows)):
         yield from row_slips(table, i, constants[i, :, 0].tolist(), axis, home=home)
     yield from length_slips(*lengths_of(table))
+    if whole:
+        rows = TableRows(constants[..., 0], table.joints, table.labels, table.convention, home)
+        yield from slips_of_rows(rows)
 
 
 def lengths_of(table: ReferenceTable) -> tuple[list[str], list[str]]:
@@ -87,6 +101,8 @@ def row_slips(
         if moves and joint is not None and abs(constant) > CONSTANT:
             yield counts_the_wrong_way(joint, axis, CellChange(row, column, -1.0))
             yield stands_still(joint, CellChange(row, column, 0.0))
+    slides = joint is not None and joint.prismatic
+    yield from exchanged_in_row(row, table.labels[row], constants, slides=slides)
 
 
 def _angle_slips(cell: Cell, constant: float, *, moves: bool) -> Iterator[Slip]:
@@ -112,7 +128,7 @@ def _sign(cell: Cell) -> Slip:
         f"{cell.parameter} has the wrong sign",
         f"it is measured {MEASURED[column]}, positive {POSITIVE[column]}.",
         cell.correction,
-        cell=CellChange(cell.row, column, -1.0),
+        cells=(CellChange(cell.row, column, -1.0),),
     )
 
 
@@ -122,18 +138,17 @@ def _left_out(cell: Cell, code: str) -> Slip:
         f"{cell.parameter} is left out",
         f"check {cell.link}.",
         cell.correction,
-        cell=CellChange(cell.row, cell.column, 0.0),
+        cells=(CellChange(cell.row, cell.column, 0.0),),
     )
 
 
 def _turned(cell: Cell, code: str, turn: float, error: str) -> Slip:
-    axes = "z" if cell.column == ALPHA else "x"
     return Slip(
         code,
         f"{cell.parameter} is not right",
-        f"compare the two {axes} axes in the home position.",
+        f"compare {cell.axes} in the home position.",
         f"{cell.correction} It is off by {error}.".strip(),
-        cell=CellChange(cell.row, cell.column, 1.0, turn),
+        cells=(CellChange(cell.row, cell.column, 1.0, turn),),
     )
 
 
@@ -143,7 +158,8 @@ def _cell(table: ReferenceTable, row: int, column: int, *, own_frames: bool) -> 
     letter = f"{{{min(letters)}:{symbol}}}" if len(letters) == 1 and not own_frames else symbol
     right = f"{symbol} in row {label} is {table.rows[row][column].text()}."
     parameter = f"the {NOUNS[column]} {letter} {_place(table, row, column)}"
-    return Cell(row, column, parameter, f"A{label}", "" if own_frames else right)
+    axes = axes_of_row("z" if column == ALPHA else "x", label, table.joints[-1].index)
+    return Cell(row, column, parameter, f"A{label}", axes, "" if own_frames else right)
 
 
 def _letters(table: ReferenceTable, row: int, column: int) -> frozenset[str]:

@@ -15,7 +15,7 @@ from service.grading.judging.value_list import ComparedValues
 from service.grading.part import Grading
 
 # The work of all that may explain a whole list of values, as the budget counts it.
-SEARCH_WORK = 12.0
+SEARCH_WORK = 15.0
 
 
 def search_of(

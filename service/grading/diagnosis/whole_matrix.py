@@ -21,6 +21,7 @@ from service.grading.diagnosis.matrix_case import (
     MatrixCase,
     as_explanations,
 )
+from service.grading.diagnosis.slip_search import BEHIND_SIGNS
 from service.grading.diagnosis.wording import listed
 from service.grading.diagnosis.wrong_value import UNEXPLAINED, Hypotheses, Mask
 from service.grading.feedback import Finding
@@ -269,22 +270,24 @@ def _of_block(
 def _of_slips(case: MatrixCase, block: Block) -> list[Explanation]:
     """The slips of the table that explain a block.
 
-    A turned frame, of which only axes have the wrong sign, is left to ``line_sign``. So is a single
+    A frame of which only axes have the wrong sign is left to ``line_sign``. So is a single
     wrong entry to itself, unless the slip explains the whole matrix.
     """
     entries = case.mask(block)
     if case.slips is None or (case.wrong[block].sum() == 1 and block != UPPER_ROWS):
         return []
     finding = case.slips.finding(entries)
-    if finding is None or (finding.code == "half_turn" and _is_of_signs(case, entries)):
-        return []
-    return [Explanation(finding, entries)]
+    if finding is not None and finding.code in BEHIND_SIGNS:
+        signs = _signs_alone(case, entries)
+        if signs:
+            return signs if block == UPPER_ROWS else []
+    return [Explanation(finding, entries)] if finding else []
 
 
-def _is_of_signs(case: MatrixCase, entries: Mask) -> bool:
-    """Whether the wrong signs of whole lines explain all that is wrong in these entries."""
-    signs = explanation(case, (line_sign,))
-    return signs is not None and not (case.wrong & entries & ~case.mask(signs.entries)).any()
+def _signs_alone(case: MatrixCase, entries: Mask) -> list[Explanation]:
+    """The wrong signs of whole lines, where they explain all that is wrong in these entries."""
+    signs = as_explanations(case, explanation(case, (line_sign,)))
+    return signs if signs and not (unexplained(case, signs) & entries).any() else []
 
 
 def unexplained(case: MatrixCase, explained: Sequence[Explanation]) -> Mask:

@@ -21,6 +21,8 @@ from service.grading.tolerances import INTENDED_CELL, INTENDED_POSE
 from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D, Table
 from service.kinematics.dh import Convention
 
+_OF_LINK = slice(A, ALPHA + 1)
+
 Misconception = Callable[[WrittenTable], Iterator[RepairedTable]]
 
 
@@ -57,9 +59,11 @@ def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
     """
     rows = list(range(len(table.constants)))
     up, down = [*rows[1:], rows[0]], [rows[-1], *rows[:-1]]
-    for columns in (slice(A, ALPHA + 1), slice(A, A + 1), slice(ALPHA, ALPHA + 1)):
+    for columns in (_OF_LINK, slice(A, A + 1), slice(ALPHA, ALPHA + 1)):
         for late, order, end in ((True, up, -1), (False, down, 0)):
-            finding = partial(_shifted, " and ".join(SYMBOLS[columns]), late)
+            of_other = late == (table.convention is Convention.STANDARD)
+            other = table.convention.other if of_other and columns == _OF_LINK else None
+            finding = partial(_shifted, " and ".join(SYMBOLS[columns]), late, other)
             constants = table.constants.copy()
             constants[:, columns] = table.constants[order, columns]
             yield Repaired(table.changed(constants), finding)
@@ -71,11 +75,13 @@ def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
                 yield Repaired(table.changed(completed), finding)
 
 
-def _shifted(named: str, late: bool) -> Finding:
+def _shifted(named: str, late: bool, other: Convention | None) -> Finding:
+    """``other`` is the convention in which they stand there, if it is so in one."""
+    in_other = f" In the {other} convention they stand there." if other else ""
     return Finding(
         "link_columns_shifted",
         f"{named} stand one row too {'late' if late else 'early'}: check which link each of them "
-        f"describes.",
+        f"describes.{in_other}",
         f"Move {named} {'up' if late else 'down'} by one row.",
     )
 

@@ -100,6 +100,7 @@ class WrongCell(WrongValue):
     ``contained`` says how often the student's cell contains which joint variables, None if not
     linearly; ``required`` how often the expected one does. ``shared`` says that the joint's axis
     has a parallel neighbour, so that offsets along it add up. ``joints`` are all of the robot's.
+    ``label`` is that of the row, "" where it is the only one.
     """
 
     column: int
@@ -108,6 +109,7 @@ class WrongCell(WrongValue):
     required: Mapping[Joint, int]
     shared: bool = False
     joints: tuple[Joint, ...] = ()
+    label: str = ""
 
     @property
     def symbol(self) -> str:

@@ -303,7 +303,7 @@ def _of_the_whole(
         return judgement, (), ()
     roles = judgement.roles or roles_in(rows, convention, grading)
     found: tuple[Finding, ...] = ()
-    if judgement.wrong > 1:
+    if judgement.wrong + len(judgement.extra) > 1:
         combine = judgement.wrong >= WRONG_THROUGHOUT
         found, judgement = explained(part, roles, convention, judgement, grading, combine=combine)
     # An explained table is not the one that the student intended, so its freedom says nothing.

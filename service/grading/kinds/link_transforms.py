@@ -7,6 +7,7 @@ import numpy as np
 
 from service.catalogue.formulas import HOMOGENEOUS
 from service.catalogue.parts.link_transforms import LinkTransformsSpec
+from service.grading.diagnosis.all_links import explain_links
 from service.grading.diagnosis.link_slips import LinkAmongOthers, explain_link
 from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
 from service.grading.diagnosis.matrix_entry import WORK_BUDGET
@@ -87,14 +88,19 @@ def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> J
     right = _expected(part, answer, grading)
     rows: list[RowReport] = []
     messages: list[Feedback] = []
-    expected = np.moveaxis(right, 1, -1)
+    expected = [
+        ExpectedMatrix(values, HOMOGENEOUS, rigid=True) for values in np.moveaxis(right, 1, -1)
+    ]
+    scale = expected[0].scale(grading.exercise.length_scale)
+    throughout = explain_links(answer.matrices, answer.values, right, scale, part, grading)
     for i, (label, matrix) in enumerate(zip(labels, answer.matrices, strict=True)):
+        by_others = partial(_by_other_links, right[: i + 1], part, grading)
         judged = matrix_rows(
             matrix,
-            ExpectedMatrix(expected[i], HOMOGENEOUS, rigid=True),
+            expected[i],
             grading,
             slipped=partial(slipped_link, i, right[i], part.convention, grading),
-            explanations=partial(_by_other_links, right[: i + 1], part, grading),
+            explanations=partial(_as_told, throughout) if throughout else by_others,
             work_budget=WORK_BUDGET / len(labels),
             name=f"A{label}",
         )
@@ -107,6 +113,11 @@ def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> J
         stands_still=stands_still(np.moveaxis(answer.values, 1, -1), HOMOGENEOUS, grading),
         chain=answer.chain,
     )
+
+
+def _as_told(finding: Finding, case: MatrixCase) -> list[Explanation]:
+    """The finding on all link transforms explains all of one."""
+    return [Explanation(finding, case.mask(...))]
 
 
 def _by_other_links(

@@ -28,8 +28,9 @@ from service.grading.samples import Samples
 
 # So many samples of each half tell whole matrices apart.
 SUBSET = 4
-# The work of all that may explain a whole matrix, as the budget counts it.
-MATRIX_WORK = 12.0
+# The work of all that may explain a whole matrix, as the budget counts it: of a single one, for
+# which the slips of a whole table are tried, and of one of several.
+MATRIX_WORK, LINK_WORK = 15.0, 12.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +82,7 @@ def matrix_rows(
     if (found >= Match.ROUNDED).all():
         rows = entry_rows(student.entries, found, {}, grading, labels=labels)
         return MatrixRows(rows, is_right=True)
-    if not grading.affords(MATRIX_WORK):
+    if not grading.affords(LINK_WORK if name else MATRIX_WORK):
         return MatrixRows(entry_rows(student.entries, found, {}, grading, labels=labels))
     scale = expected.scale(grading.exercise.length_scale)
     actual = Samples.subset_of(student.values, SUBSET)

@@ -92,7 +92,8 @@ class StudentTable:
     """A table as read: its rows, and the numbers of all of them, ``(rows, 4, SAMPLES)``.
 
     ``convention`` is what the answer itself says, if it says so. ``reread`` reads its columns in
-    another order, where nothing but their order says what they hold.
+    another order: where nothing but their order says what they hold, or where the cells are
+    ``named``, typed one by one under the heads of a grid.
     """
 
     rows: tuple[StudentRow, ...]
@@ -100,6 +101,7 @@ class StudentTable:
     convention: Convention | None
     findings: tuple[Finding, ...] = ()
     reread: "Reread | None" = field(default=None, compare=False)
+    named: bool = False
 
 
 # Reads a table with its columns in another order of "a", "alpha", "d" and "theta".
@@ -129,16 +131,8 @@ def read_table(
         table = _pasted(answer["rows"], reader, empty_is_zero=empty_is_zero)
         convention = convention or table.convention
         return replace(table, convention=convention, findings=(*findings, *table.findings))
-    written = answer
-
-    def reread(other: Sequence[str]) -> StudentTable:
-        try:
-            return read_table(written, _afresh(reader), other, empty_is_zero=empty_is_zero)
-        except UnreadableAnswerError:
-            return StudentTable((), _NO_ROWS, None)
-
     is_unnamed = has_unnamed_columns(answer)
-    answer = canonical_table(answer, order)
+    written, answer = answer, canonical_table(answer, order)
     if not isinstance(answer, Mapping) or not isinstance(answer.get("rows"), list):
         raise UnreadableAnswerError(_NO_TABLE if isinstance(answer, Mapping) else _NOT_ROWS)
     rows = answer["rows"]
@@ -146,8 +140,24 @@ def read_table(
         raise UnreadableAnswerError(_too_many_rows(len(rows)))
     convention, findings = _convention(answer.get("convention"))
     entries = [_with_empty_cells(row, empty_is_zero) for row in _entries(rows, reader)]
-    table = _table(entries, convention, findings, reader)
-    return replace(table, reread=reread) if is_unnamed else table
+
+    def reread(other: Sequence[str]) -> StudentTable:
+        again = written
+        if not is_unnamed:
+            again = {"rows": [_under_other_names(row, other) for row in rows]}
+        try:
+            return read_table(again, _afresh(reader), other, empty_is_zero=empty_is_zero)
+        except UnreadableAnswerError:
+            return StudentTable((), _NO_ROWS, None)
+
+    return _table(entries, convention, findings, reader, reread, named=not is_unnamed)
+
+
+def _under_other_names(row: object, other: Sequence[str]) -> object:
+    """A row whose cells, in the order a, α, d, θ, are named in another order."""
+    if not isinstance(row, Mapping):
+        return row
+    return {name: row.get(column) for name, column in zip(other, COLUMNS, strict=True)}
 
 
 def _afresh(reader: Reader) -> Reader:
@@ -206,11 +216,15 @@ def _table(
     convention: Convention | None,
     findings: tuple[Finding, ...],
     reader: Reader,
+    reread: Reread | None = None,
+    *,
+    named: bool = False,
 ) -> StudentTable:
     if not read:
         return StudentTable((), _NO_ROWS, convention, findings)
     values = _values(read, reader.samples)
-    return StudentTable(tuple(map(StudentRow, read, values)), values, convention, findings)
+    rows = tuple(map(StudentRow, read, values))
+    return StudentTable(rows, values, convention, findings, reread, named)
 
 
 # The cells of a table that are blank or hold a dash: the message is one for all of them.

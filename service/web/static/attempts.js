@@ -135,7 +135,8 @@ function confirm(found) {
 async function forget(learner) {
   try {
     const deleted = await send("v1/learners/forget", { learner, apply: true });
-    tell(forgetState, `Deleted of ${learner}: ${amounts(deleted)}.`);
+    const later = deleted.erased === false ? " Another program is reading the database: the text is overwritten in its files when that has ended." : "";
+    tell(forgetState, `Deleted of ${learner}: ${amounts(deleted)}.${later}`);
     byId("forgotten").value = "";
     await changed();
   } catch (error) {

@@ -9,7 +9,7 @@ CASES = [
     ("θ1*", [("joint_marker", (2, 3))]),
     (" q1 * ", [("joint_marker", (4, 5))]),
     ("θ₂* + 90°", [("joint_marker", (2, 3))]),
-    ("q1* - 90", [("marker_or_product", (2, 3))]),
+    ("q1* - 90", [("marker_or_product", (2, 3)), ("bare_radians", (6, 8))]),
     ("q1*-pi/2", [("marker_or_product", (2, 3))]),
     ("k + q1*+q2", [("joint_marker", (6, 7))]),
     ("q1*-q2", [("marker_or_product", (2, 3))]),
@@ -74,6 +74,38 @@ MORE: list[tuple[str, list[tuple[str, tuple[int, int]]]]] = [
     ("90 + 45°", [("mixed_units", (0, 2))]),
     ("45° - 90", [("mixed_units", (6, 8))]),
     ("0 + 45°", []),
+    ("θ1 +90", [("bare_radians", (4, 6))]),
+    ("-90 + q1", [("bare_radians", (1, 3))]),
+    ("q1 + q2 - 22.5", [("bare_radians", (10, 14))]),
+    ("cos(2q1 + 45)", [("bare_radians", (10, 12))]),
+    ("cos(90)", [("bare_radians", (4, 6))]),
+    ("sin 30", [("bare_radians", (4, 6))]),
+    ("l1cos(1)", [("bare_radians", (6, 7))]),
+    ("cos(-2)", [("bare_radians", (5, 6))]),
+    # No joint 3 turns, and these are angles that one writes in radians.
+    ("cos(3)", []),
+    ("q1 + 1.5708", []),
+    ("q1 + 7.854", []),
+    ("q1 + 90°", []),
+    ("d3 + 90", []),
+    ("l1 + 90", []),
+    ("cos(0)", []),
+    ("q1 + 90 rad", []),
+    ("sind(q1 + 90)", [("degrees_function", (0, 4))]),
+    ("sind(90 + 45°)", [("degrees_function", (0, 4))]),
+    ("q1 + 90 + sind(q2 + 90)", [("degrees_function", (10, 14)), ("bare_radians", (5, 7))]),
+    ("s1+2", [("shorthand", (0, 4))]),
+    ("l1c1 + l2c1+2", [("shorthand", (9, 13))]),
+    ("c_12+4", [("shorthand", (0, 6))]),
+    # Beside a space, or where no sum of joint angles is that one, 2 is a length.
+    ("s1 + 2", []),
+    ("s2+1", []),
+    ("s1+3", []),
+    ("s_{1}+2", []),
+    ("sin(q1)+2", []),
+    ("s1+2*l1", []),
+    ("s1+2c1", []),
+    ("s1-2", []),
     ("45° + 90°", []),
     ("atan2(c1, s1)", [("atan2_order", (0, 13))]),
     ("atan2(s1, c1)", []),
@@ -91,6 +123,16 @@ def test_notes_on_other_spellings(
 def test_a_number_beside_degrees_needs_no_note_where_all_are_degrees(arm: Vocabulary) -> None:
     expression = read("90 + 45°", arm, quantity="angle", angle_unit="degrees")
     assert expression.notes == ()
+
+
+def test_in_degrees_only_the_number_of_a_joint_is_noted(arm: Vocabulary) -> None:
+    notes = {
+        text: [note.code for note in read(text, arm, angle_unit="degrees").notes]
+        for text in ("q1 + 90", "cos(90)", "cos(q1 + 90)", "cos(1)")
+    }
+    assert notes == {
+        "q1 + 90": [], "cos(90)": [], "cos(q1 + 90)": [], "cos(1)": ["bare_radians"],
+    }  # fmt: skip
 
 
 def test_in_degrees_the_inverse_functions_of_degrees_are_read(arm: Vocabulary) -> None:

@@ -4,7 +4,7 @@ import pytest
 
 from service.expressions import AngleUnit, Symbol, Vocabulary, joint_variable, read
 from service.expressions.printing.latex import to_latex
-from service.expressions.printing.spelling import Spelling, spelling_for, spelling_of
+from service.expressions.printing.spelling import Spelling, habits_of, spelling_for, spelling_of
 from service.expressions.printing.text import to_text
 
 ARM = Vocabulary(
@@ -19,7 +19,8 @@ ARM = Vocabulary(
 
 def spelling(*typed: str, unit: AngleUnit = "radians") -> Spelling:
     read_as = [read(text, ARM, quantity="angle", angle_unit=unit).typed for text in typed]
-    return spelling_of(read_as, ARM, degrees=unit == "degrees")
+    habits = [habits_of(each, ARM) for each in read_as]
+    return spelling_of(habits, ARM, degrees=unit == "degrees")
 
 
 def printed(formula: str, *typed: str, unit: AngleUnit = "radians") -> str:
@@ -111,7 +112,7 @@ def test_shorthand_for_those_who_write_it(formula: str, text: str) -> None:
 
 def test_no_shorthand_where_it_names_a_symbol() -> None:
     words = Vocabulary([*ARM.symbols, Symbol("c2", "length")])
-    found = spelling_of([read("s1", words).typed], words, degrees=False)
+    found = spelling_of([habits_of(read("s1", words).typed, words)], words, degrees=False)
     assert not found.shorthand
 
 

@@ -7,7 +7,9 @@ a line, in the names of ``ROBOT``:
     text that is read | its meaning as normal text
 """
 
+import re
 from functools import partial
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -79,3 +81,38 @@ def _error(names: Vocabulary, text: str) -> ExpressionError | None:
 def test_accepted(repair: str, case: RepairCase) -> None:
     """A near text is read, so the rule leaves it alone."""
     assert read(case.text, vocabulary(repair)).text() == case.answer
+
+
+FORMULAS = [
+    *("90", "0.5", "12", "θ1+90°", "q1+90", "90+θ1", "-90°", "0.5*l1", "l1*c1+0.5", "q1-45°"),
+    *("d3+0.25", "cos(q1+90°)", "l1*cos(30°)", "1.25*l1+3", "180°-q2", "2*q1", "30+15", "s1"),
+]
+MARKS = [
+    *("'", "’", "´", "′", "‘", '"', "''", "’’", ".", ",", ";", ":", "_", "~", "!", "?", "%", "#"),
+    *("°", "º", "˚", "⁰", "^o", " deg", " rad", "//", " x ", "$", "&", "@", "|", " ", "<", "="),
+]
+SPOILT = [
+    f"{text[:i]}{mark}{text[i:]}"
+    for text in FORMULAS
+    for i in range(len(text) + 1)
+    for mark in MARKS
+]
+_DIGITS = re.compile(r"[0-9]+")
+_TERM = re.compile(r"(?<![\w.*/^])[0-9.]+(?=$|[-+)])")
+
+
+@together("text", SPOILT)
+def test_a_repaired_text_loses_nothing(text: str) -> None:
+    error = _error(ROBOT, text)
+    if error is None or error.suggestion is None:
+        return
+    repaired = error.suggestion
+    read(repaired, ROBOT)
+    written = _DIGITS.findall(text)
+    joined = {first + second for first, second in pairwise(written)} - set(written)
+    assert joined.isdisjoint(_DIGITS.findall(repaired)), repaired
+    if error.code not in {"raised_zero", "equation"}:
+        assert sum(map(len, _DIGITS.findall(repaired))) >= sum(map(len, written)), repaired
+    # A unit may go where it is behind a variable, but then no number may be left without one.
+    if error.code == "unit_on_variable" and "rad" not in text and "(" not in text:
+        assert not _TERM.search(repaired), repaired

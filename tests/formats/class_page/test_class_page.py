@@ -1,19 +1,19 @@
 """The overview of a class: its files, its figures, and whatever anybody wrote in it."""
 
 import re
-import sys
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from urllib.parse import unquote
 
 import pytest
+from playwright.sync_api import expect
 
 from service.formats import report_format
 from service.formats.shared.graded import GradedSubmission
 from service.grading import FeedbackLevel
-from tests import chromium
+from tests.browser.fixtures import APPEARANCES, Visit
 from tests.formats.class_of_seven import class_of_seven
 from tests.formats.html_reader import ALLOWED, PageReader
 from tests.formats.submissions import HOSTILE, cases, document, graded, setting
@@ -64,7 +64,7 @@ def test_the_index_tells_the_counts() -> None:
         "Submissions 7 1 not graded",
         "5 of 6 answered, 1 all right.",
         "2 100 % 5/5 60 % 3/5",  # row 2 of the table: a, alpha
-        "2 submissions α is not right: compare the two z axes. quarter_turn in Denavit-Hartenberg",
+        "2 submissions α is not right: compare z1 and z2. quarter_turn in Denavit-Hartenberg",
         "table (2) ben cleo 1 submission The fixed row",
         "1 submission Something is missing after the + at the end. trailing_operator",
         "2 submissions Denavit-Hartenberg table, 1 wrong cell row 2 alpha: pi/2 ben cleo",
@@ -149,15 +149,10 @@ def test_each_submission_is_written_before_the_next_is_graded() -> None:
         assert taken == min(written, 7)
 
 
-@pytest.fixture
-def page() -> Iterator[chromium.Page]:
-    with chromium.blank_page() as page:
-        yield page
-
-
 # The least contrast of any text with what is behind it, by the formula of WCAG 2.
 CONTRAST = """(() => {
-  const canvas = document.createElement('canvas').getContext('2d');
+  const canvas = document.createElement('canvas')
+    .getContext('2d', {willReadFrequently: true});
   const channels = colour => {
     canvas.clearRect(0, 0, 1, 1); canvas.fillStyle = colour; canvas.fillRect(0, 0, 1, 1);
     return [...canvas.getImageData(0, 0, 1, 1).data];
@@ -183,26 +178,22 @@ CONTRAST = """(() => {
 })()"""
 
 
-@pytest.mark.skipif(chromium.FOUND is None or sys.platform == "win32", reason="needs a Chromium")
 def test_a_browser_shows_it_readably_and_asks_for_nothing(
-    page: chromium.Page, tmp_path: Path
+    visit: Callable[..., Visit], tmp_path: Path
 ) -> None:
     file = tmp_path / "index.html"
     file.write_text(folder(*cases().values(), *class_of_seven())["index.html"], encoding="utf-8")
-    page.open(file.as_uri())
-    page.wait_for("document.querySelectorAll('section[id]').length === 7")
-    assert page.wait_for(
-        "[...document.querySelectorAll('details')].every(each => each.open = true)"
-    )
-    for media, scheme in (("screen", "light"), ("screen", "dark"), ("print", "dark")):
-        page.show_as(media, scheme)
-        page.wait_for(f"matchMedia('{media} and (prefers-color-scheme: {scheme})').matches")
-        assert page.wait_for(CONTRAST) >= 4.5, (media, scheme)
-    page.show_as("screen")
+    opened = visit()
+    page = opened.page
+    page.goto(file.as_uri())
+    expect(page.locator("section[id]")).to_have_count(7)
+    page.evaluate("document.querySelectorAll('details').forEach(each => each.open = true)")
+    for media, scheme in APPEARANCES:
+        page.emulate_media(media=media, color_scheme=scheme)
+        assert page.evaluate(CONTRAST) >= 4.5, (media, scheme)
+    page.emulate_media(media="screen")
     for width in (320, 360, 1280):
-        page.resize(width)
-        page.wait_for(f"innerWidth === {width}")
-        assert page.wait_for("document.documentElement.scrollWidth <= innerWidth"), width
-    assert page.complaints == []
-    assert page.requests == [file.as_uri()]
-    assert page.wait_for("document.scripts.length === 0")
+        page.set_viewport_size({"width": width, "height": 800})
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), width
+    assert opened.requests == [file.as_uri()]
+    assert page.locator("script").count() == 0

@@ -1,4 +1,4 @@
-"""Tables without headers with their columns in another order."""
+"""Tables with their columns in another order."""
 
 from collections.abc import Mapping, Sequence
 from itertools import permutations
@@ -93,10 +93,21 @@ def test_one_more_slip_is_told_in_its_own_column(catalogue: Mapping[str, Exercis
     assert report.points < 0.75 * report.max_points
 
 
-def test_columns_with_names_are_taken_by_their_names(catalogue: Mapping[str, Exercise]) -> None:
+@pytest.mark.parametrize("order", [TOOLBOX, CRAIG, (0, 1, 3, 2), (3, 0, 1, 2), (0, 3, 1, 2)])
+def test_cells_typed_under_other_headers_are_told_once(
+    catalogue: Mapping[str, Exercise], order: Sequence[int]
+) -> None:
     names = ("a", "alpha", "d", "theta")
-    rows = [dict(zip(names, row, strict=True)) for row in in_order(SCARA, TOOLBOX)]
-    assert "columns_permuted" not in told(graded(catalogue["scara"], rows))
+    rows = [dict(zip(names, row, strict=True)) for row in in_order(SCARA, order)]
+    report = graded(catalogue["scara"], {"rows": rows})
+    assert told(report) == ["columns_permuted"]
+    assert report.points == 0.75 * report.max_points
+    [message] = report.feedback
+    written = ", ".join(SYMBOLS[column] for column in order)
+    assert message.message == (
+        f"The columns stand in the order {written}. Write each parameter under its own header: a, "
+        "α, d, θ."
+    )
 
 
 def test_a_right_table_and_one_wrong_cell_are_left_alone(catalogue: Mapping[str, Exercise]) -> None:
@@ -104,6 +115,9 @@ def test_a_right_table_and_one_wrong_cell_are_left_alone(catalogue: Mapping[str,
     rows = [list(row) for row in SCARA]
     rows[1][1] = "0"
     assert "columns_permuted" not in told(graded(catalogue["scara"], rows))
+    names = ("a", "alpha", "d", "theta")
+    typed = [dict(zip(names, row, strict=True)) for row in rows]
+    assert told(graded(catalogue["scara"], {"rows": typed})) == ["half_turn"]
 
 
 def test_the_links_follow_from_the_table_as_it_was_meant(

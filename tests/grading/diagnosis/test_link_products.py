@@ -38,6 +38,7 @@ PAIRS = [
         (link_products.wrong_base, product(A3, A4), A3),
         (link_products.missing_link, product(A1, A2, A4), product(A1, A2, A3)),
         (link_products.premultiplied, product(A3, A1, A2, A4), product(A1, A3, A2, A4)),
+        (link_products.row_order, product(A2, A3, A1, A4), product(A2, A1, A3, A4)),
     )
 ]
 

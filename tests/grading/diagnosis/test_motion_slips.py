@@ -49,6 +49,7 @@ TRANSFORM = [
 MOTION = GivenMotion(
     tuple(tuple(read(text, WORDS) for text in row) for row in TRANSFORM),
     VALUES,
+    COUNT,
     ("phi", "psi"),
     ("a", "b", "l", "k"),
 )

@@ -20,12 +20,12 @@ LETTERS = {name: np.tile(RNG.uniform(0.2, 0.9, HALF), 2) for name in ("a1", "a2"
 VALUES = {joint.variable: RNG.uniform(-3, 3, SAMPLES) for joint in JOINTS} | LETTERS
 SAMPLE = Samples(VALUES)
 KINDS = {"q1": "angle", "q2": "angle", "d3": "length", "a1": "length", "a2": "length"}
-# The robot has no theta3, for its joint 3 slides; a table may contain it all the same.
+# The robot has no theta3, for its joint 3 slides, and no d1; a table may contain them all the same.
 WORDS = Vocabulary(
     [Symbol(name, kind) for name, kind in KINDS.items()]  # type: ignore[arg-type]
-    + [Symbol("theta3", "angle")]
+    + [Symbol("theta3", "angle"), Symbol("d1", "length")]
 )
-TYPED = SAMPLE.with_names({"theta3"}).values
+TYPED = SAMPLE.with_names({"theta3", "d1"}).values
 
 
 def wrong(column: str, number: int, written: str, right: str) -> WrongCell:
@@ -151,3 +151,11 @@ def test_a_number_for_a_length_is_asked_for_in_symbols(
 ) -> None:
     hint = diagnose(wrong(column, 3, written, right)).hint
     assert hint.endswith("Give it in the exercise's symbols.") is is_told, hint
+
+
+@pytest.mark.parametrize("right", ["a1", "0", "d3"])
+def test_a_length_that_the_exercise_does_not_have(right: str) -> None:
+    """Nobody means the variable of joint 1 by d1, for that joint turns."""
+    finding = diagnose(wrong("d", 3 if right == "d3" else 1, "d1", right))
+    assert finding.code == "unknown_symbol"
+    assert finding.hint == "This exercise has no d1. It has d3."

@@ -75,6 +75,18 @@ def test_links_one_row_too_late(
     assert report.points == 3
 
 
+def test_an_arm_of_two_joints_in_the_other_convention(catalogue: Mapping[str, Exercise]) -> None:
+    """Both wrong cells could be slips of their own; but the whole table is a modified one."""
+    modified = [("0", "0", "0", "theta1"), ("a1", "0", "0", "theta2"), ("a2", "0", "0", "0")]
+    report = graded_table(catalogue["planar-rr"], modified)
+    assert errors(report) == ["other_convention"]
+    assert report.points == report.max_points / 2
+    report = graded_table(catalogue["planar-rr"], modified[:2])
+    assert errors(report) == ["link_columns_shifted"]
+    [message] = [m for m in report.feedback if m.code == "link_columns_shifted"]
+    assert message.message.endswith("In the modified convention they stand there.")
+
+
 @pytest.mark.parametrize(
     ("name", "rows"),
     [

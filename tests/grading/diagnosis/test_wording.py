@@ -2,7 +2,7 @@
 
 import pytest
 
-from service.grading.diagnosis.wording import listed
+from service.grading.diagnosis.wording import axes_of_row, listed
 
 
 @pytest.mark.parametrize(
@@ -11,3 +11,17 @@ from service.grading.diagnosis.wording import listed
 )
 def test_words_in_a_list(words: list[str], text: str) -> None:
     assert listed(words) == text
+
+
+@pytest.mark.parametrize(
+    ("label", "axes"),
+    [
+        ("1", "z0 and z1"),
+        ("4", "z3 and z4"),
+        ("e", "z6 and the last z axis"),
+        ("e2", "the two z axes"),
+        ("", "the two z axes"),
+    ],
+)
+def test_the_axes_of_a_row(label: str, axes: str) -> None:
+    assert axes_of_row("z", label, last=6) == axes

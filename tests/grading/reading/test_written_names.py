@@ -364,9 +364,9 @@ def test_a_declared_name_is_no_index(make_exercise: Make) -> None:
 def test_a_name_full_of_blanks_is_read_at_once(gap: str, make_exercise: Make) -> None:
     """A pattern that tried every way to share out the blanks would take seconds."""
     answer = matrix_with(f"r_1{gap}_2 = 2")
-    start = time.perf_counter()
+    start = time.thread_time()
     graded(make_exercise(MATRIX), answer)
-    assert time.perf_counter() - start < 0.5
+    assert time.thread_time() - start < 0.5
 
 
 # --- notes that are told once

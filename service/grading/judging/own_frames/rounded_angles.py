@@ -33,13 +33,12 @@ def with_exact_angles(
 
     Where no angle was rounded, the result is ``roles`` itself.
     """
-    if not any(role.row.has_decimal for role in roles if role.row):
-        return roles
-    slack = slack_of_cells(roles, samples, IS_ANGLE)
-    if not slack.any() or not _turns_in_steps(exercise, samples):
+    slack = _slack_of_angles(roles, exercise, samples)
+    if slack is None:
         return roles
     values = handed_in_values(roles)
     error = _rounding_errors(values, variables_of(roles, samples), slack)
+    error = np.nan_to_num(error)
     exact = values - error[..., None]
     return tuple(
         replace(role, row=replace(role.row, values=exact[i], as_written=role.row.values))
@@ -47,6 +46,32 @@ def with_exact_angles(
         else role
         for i, role in enumerate(roles)
     )
+
+
+def known_angles(
+    roles: tuple[Role, ...], exercise: Exercise, samples: Samples
+) -> NDArray[np.bool_]:
+    """Which cells ``(rows, 4)`` are rounded angles of which the exact values are known.
+
+    These are all rounded angles, if each of them stands for a multiple of the step, and else none:
+    of frames in which one angle is no such multiple, another may only look like one.
+    """
+    slack = _slack_of_angles(roles, exercise, samples)
+    if slack is None:
+        return np.zeros((len(roles), len(COLUMNS)), dtype=np.bool_)
+    error = _rounding_errors(handed_in_values(roles), variables_of(roles, samples), slack)
+    is_rounded = slack > 0
+    return is_rounded & np.isfinite(error[is_rounded]).all()
+
+
+def _slack_of_angles(
+    roles: tuple[Role, ...], exercise: Exercise, samples: Samples
+) -> Numbers | None:
+    """The slack of the rounded angles; None if there are none, or they may be any angles."""
+    if not any(role.row.has_decimal for role in roles if role.row):
+        return None
+    slack = slack_of_cells(roles, samples, IS_ANGLE)
+    return slack if slack.any() and _turns_in_steps(exercise, samples) else None
 
 
 def slack_of_cells(
@@ -65,14 +90,14 @@ def slack_of_cells(
 def _rounding_errors(values: Numbers, variables: Numbers, slack: Numbers) -> Numbers:
     """By how much rounding took each cell ``(rows, 4, SAMPLES)`` off a multiple of the step.
 
-    0 where the cell is off by more than rounding, or is not its joint's variable and a constant.
+    NaN where it is off by more, or the cell is not its joint's variable and a constant.
     """
     signs = np.sign((changes(values) * changes(variables)).sum(axis=-1))
     constants = values - signs[..., None] * variables
     exact = STEP * np.round(constants[..., 0] / STEP)
     error = constants[..., 0] - exact
     is_rounded = (np.abs(error) <= slack) & (np.ptp(constants, axis=-1) < MULTIPLE_OF_STEP)
-    return np.where(is_rounded, error, 0.0)
+    return np.where(is_rounded, error, np.nan)
 
 
 def _turns_in_steps(exercise: Exercise, samples: Samples) -> bool:

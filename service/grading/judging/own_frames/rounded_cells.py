@@ -26,6 +26,7 @@ from service.grading.judging.own_frames.base_frame import possible_bases
 from service.grading.judging.own_frames.constants import row_constants
 from service.grading.judging.own_frames.few_cells import NearestTable, frames_from_reference
 from service.grading.judging.own_frames.reference import mechanism_at, regrouped, tool_pose
+from service.grading.judging.own_frames.rounded_angles import known_angles, with_exact_angles
 from service.grading.judging.own_frames.row_roles import FrameFreedom, Role, handed_in_values
 from service.grading.judging.own_frames.validity import targets_of
 from service.grading.part import Grading
@@ -147,10 +148,10 @@ def with_true_numbers(
     ``as_written`` of the rows has the others. ``roles`` themselves where the table is valid already
     (or its angles were made exact, ``rounded_angles``), or no shifts make it valid.
     """
-    decimals = _decimals(roles, grading)
+    written, known = _with_known_angles(roles, grading)
+    decimals = _decimals(written, grading, known)
     if decimals is None or _has_pose(roles, convention, grading):
         return roles
-    written = _as_written(roles)
     for chain in _chains(written, roles, convention, freedom, decimals, grading):
         found = chain.fit()
         if found is not None:
@@ -166,14 +167,16 @@ def with_rounded_cells(
     It was computed from the numbers as written, so that the right cells, too, seem a little off.
     """
     roles = nearest.roles
-    if nearest.cost < WRONG_CELL or _decimals(roles, grading) is None:
+    if nearest.cost < WRONG_CELL:
         return nearest
-    written = _as_written(roles)
+    written, known = _with_known_angles(roles, grading)
+    if _decimals(written, grading, known) is None:
+        return nearest
     handed_in, scale = handed_in_values(written), grading.exercise.length_scale
     scales = np.where(IS_ANGLE, 1.0, scale)
     near = nearly_equal(handed_in, nearest.expected, scales, IS_ANGLE[:, None])
     unknown = [(i, column) for i, column in np.argwhere(~near).tolist()]
-    decimals = _decimals(roles, grading, unknown)
+    decimals = _decimals(written, grading, [*known, *unknown])
     if decimals is None:
         return nearest
     if len(unknown) > MOST_UNKNOWN:
@@ -202,7 +205,7 @@ def with_rounded_cells(
 
 
 def _decimals(
-    roles: tuple[Role, ...], grading: Grading, left_out: Sequence[CellIndex] = ()
+    roles: tuple[Role, ...], grading: Grading, left_out: Sequence[CellIndex]
 ) -> SharedDecimals | None:
     """The rounded decimals of a whole table; None where it has none, or is not whole."""
     rows = [role.row for role in roles if role.row is not None]
@@ -223,6 +226,16 @@ def _has_pose(roles: tuple[Role, ...], convention: Convention, grading: Grading)
     reached = pose(handed_in_values(roles)[..., 0], convention)
     error = np.abs(reached - tool_pose(grading.exercise, grading.samples)[0])
     return bool(error.max() < SAME_POSE * max(1.0, grading.exercise.length_scale))
+
+
+def _with_known_angles(
+    roles: tuple[Role, ...], grading: Grading
+) -> tuple[tuple[Role, ...], list[CellIndex]]:
+    """The roles as they were written, but for the rounded angles that must be exact, and these."""
+    exercise, samples = grading.exercise, grading.samples
+    written = _as_written(roles)
+    known = [(i, column) for i, column in np.argwhere(known_angles(written, exercise, samples))]
+    return (with_exact_angles(written, exercise, samples) if known else written), known
 
 
 def _as_written(roles: tuple[Role, ...]) -> tuple[Role, ...]:
@@ -283,7 +296,7 @@ def _moved(roles: tuple[Role, ...], decimals: SharedDecimals, shifts: Numbers) -
     """The roles with their decimals shifted; ``as_written`` of their rows has the others."""
     values = _shifted(decimals, shifts, handed_in_values(roles))
     return tuple(
-        replace(role, row=replace(role.row, values=moved, as_written=role.row.values))
+        replace(role, row=replace(role.row, values=moved, as_written=role.row.handed_in))
         if role.row and np.abs(moved - role.row.values).max() > 0
         else role
         for role, moved in zip(roles, values, strict=True)

@@ -1,0 +1,103 @@
+"""Notes on formulas that are read to the letter where something else is likely to be meant.
+
+``θ1 + 90`` adds 90 radians, ``cos(1)`` is the cosine of 1 radian, ``s1+2`` is a sine and 2.
+"""
+
+import math
+import re
+from collections.abc import Mapping
+from typing import Final
+
+from service.expressions.errors import Note
+from service.expressions.tree import Binary, Call, Negation, Node, Number, SymbolNode
+from service.expressions.vocabulary.functions import TRIGONOMETRIC
+from service.expressions.vocabulary.symbols import Symbol
+
+# A larger angle is a whole turn or more: 90, 180 or 22.5 radians are hardly meant.
+_WHOLE_TURN: Final = 2 * math.pi
+_SHORTHAND: Final = re.compile(r"(?:[cCsS]|cos|sin)_?[0-9₀-₉]+")
+_WORDS: Final = {"sin": "sine", "cos": "cosine"}
+_DIGIT: Final = re.compile(r"[1-9]")
+
+
+def on_sum(left: Node, right: Node, *, degrees: bool) -> Note | None:
+    """The note on θ1 + 90, where a bare number of radians is added to an angle."""
+    for one, other in ((left, right), (right, left)):
+        number = _number(other)
+        if number is not None and not degrees and _is_large(number) and _is_angle(one):
+            return _radians(number)
+    return None
+
+
+def on_shorthand(
+    source: str, left: Node, right: Node, turning: Mapping[int, Symbol]
+) -> Note | None:
+    """The note on s1+2, written without spaces, where 2 may belong to the index: s12."""
+    if type(right) is not Number or not _DIGIT.fullmatch(right.literal):
+        return None
+    last, digit = left, right.literal
+    while type(last) is Binary and last.right.end == last.end:
+        last = last.right
+    written = source[last.start : last.end]
+    if type(last) is not Call or source[last.end : right.start] != "+":
+        return None
+    joint = _last_joint(last.arguments[0])
+    if joint is None or not joint < int(digit) or int(digit) not in turning:
+        return None
+    if not _SHORTHAND.fullmatch(written):
+        return None
+    message = (
+        f"This was read as {written} + {digit}. For the {_WORDS[last.function]} of a sum of joint "
+        f"angles, write {written}{digit}."
+    )
+    return Note("shorthand", message, (last.start, right.end))
+
+
+def on_call(
+    function: str, argument: Node, turning: Mapping[int, Symbol], *, degrees: bool
+) -> Note | None:
+    """The note on cos(1) and cos(90), where the angle of joint 1 or 90° may be meant."""
+    number = _number(argument)
+    if number is None or function not in TRIGONOMETRIC:
+        return None
+    joint = turning.get(int(number.literal)) if _DIGIT.fullmatch(number.literal) else None
+    if joint is not None:
+        unit = "degrees" if degrees else "radians"
+        message = (
+            f"{number.literal} was read as a number of {unit}. For the joint angle, write "
+            f"{function}({joint.name})."
+        )
+        return Note("bare_radians", message, (number.start, number.end))
+    return _radians(number) if not degrees and _is_large(number) else None
+
+
+def _radians(number: Number) -> Note:
+    text = number.literal
+    message = f"{text} was read as {text} radians. For degrees, write {text}°."
+    return Note("bare_radians", message, (number.start, number.end))
+
+
+def _number(node: Node) -> Number | None:
+    """A number with or without a sign."""
+    node = node.operand if type(node) is Negation else node
+    return node if type(node) is Number else None
+
+
+def _is_large(number: Number) -> bool:
+    """Whether a number has at most the decimal .5, and is no angle that one writes in radians."""
+    return number.value > _WHOLE_TURN and (2 * number.value).is_integer()
+
+
+def _is_angle(node: Node) -> bool:
+    """Whether a node is an angle's symbol, or its last or first part is one."""
+    parts: list[Node] = [node]
+    if type(node) is Binary:
+        parts += [node.left, node.right]
+    plain = (part.operand if type(part) is Negation else part for part in parts)
+    return any(type(part) is SymbolNode and part.symbol.kind == "angle" for part in plain)
+
+
+def _last_joint(argument: Node) -> int | None:
+    """The joint of the last angle in the sum that a shorthand stands for."""
+    last = argument.right if type(argument) is Binary else argument
+    return last.symbol.joint if type(last) is SymbolNode else None

@@ -1,0 +1,105 @@
+"""Slips that run through all link transforms of an answer: a column of the table, or two rows."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from service.catalogue.parts.link_transforms import LinkTransformsSpec
+from service.grading.comparison import nearly_equal
+from service.grading.diagnosis.joint_slips import length_slips
+from service.grading.diagnosis.rows_and_columns import (
+    TableRows,
+    slips_of_rows,
+)
+from service.grading.diagnosis.slip import Change, change_cells
+from service.grading.diagnosis.slip_search import SlipSearch
+from service.grading.diagnosis.slipped_answers import SlippedAnswers, slipped_tables
+from service.grading.diagnosis.slipped_link import constants_and_motion
+from service.grading.diagnosis.table_slips import lengths_of
+from service.grading.feedback import Finding
+from service.grading.part import Grading
+from service.grading.reading.matrix import StudentMatrix
+from service.grading.samples import SAMPLES, Samples
+from service.grading.tolerances import SAME_MOTION
+from service.kinematics.chain import Table, links
+from service.kinematics.transforms import Matrices, Numbers
+
+# So many samples of each half tell whole answers apart.
+SUBSET = 4
+# The work of all that may explain all links, as the budget counts it.
+LINKS_WORK = 6.0
+
+
+def explain_links(
+    matrices: Sequence[StudentMatrix],
+    written: Matrices,
+    right: Matrices,
+    scale: Numbers,
+    part: LinkTransformsSpec,
+    grading: Grading,
+) -> Finding | None:
+    """What explains all wrong link transforms at once.
+
+    ``written``, the numbers of the ``matrices``, and ``right`` are ``(rows, SAMPLES, 4, 4)``,
+    ``scale`` is ``(4, 4)``. None where the right ones follow from the student's own answer.
+    """
+    actual, expected = (
+        Samples.subset_of(np.moveaxis(each, 1, -1), SUBSET) for each in (written, right)
+    )
+    wrong = np.isfinite(actual).all(axis=-1) & ~nearly_equal(actual, expected, scale, False)
+    if grading.following or not wrong.any() or not grading.affords(LINKS_WORK):
+        return None
+    answers = _slipped_links(right, part, grading)
+    entries = [entry for matrix in matrices for row in matrix.entries for entry in row]
+    search = SlipSearch(
+        answers,
+        grading.samples,
+        actual,
+        expected,
+        wrong,
+        scale,
+        name=grading.symbol_names(entries),
+        unwritten=grading.unwritten(entries),
+    )
+    finding = search.finding(np.ones_like(wrong))
+    # Of one link transform alone, no other slip runs through all.
+    is_of_one = wrong.any(axis=(1, 2)).sum() == 1
+    return None if is_of_one and finding and finding.code != "other_convention" else finding
+
+
+def _slipped_links(right: Matrices, part: LinkTransformsSpec, grading: Grading) -> SlippedAnswers:
+    """The link transforms ``(K, rows, 4, 4, samples)``."""
+    table, samples = grading.exercise.robot.tables[part.convention], grading.samples
+    constants, motion = constants_and_motion(right, table.convention, table.joints, samples)
+    slips = list(
+        slips_of_rows(
+            TableRows(
+                constants[..., 0], table.joints, table.labels, table.convention, multiplied=False
+            )
+        )
+    )
+    reference = links(table.values(samples.values, SAMPLES), table.convention)
+    in_its_frames = np.abs(right - reference).max() < SAME_MOTION
+    if in_its_frames:
+        slips += [slip for slip in length_slips(*lengths_of(table)) if len(slip.symbols) == 2]
+
+    def tables(changes: Sequence[Change], samples: Samples) -> Table:
+        if in_its_frames:
+            return slipped_tables(table, changes, samples.values, samples.count)
+        fixed, moved = (
+            cells if samples.count == SAMPLES else Samples.subset_of(cells, samples.count // 2)
+            for cells in (constants, motion)
+        )
+        changed = np.repeat((fixed + moved)[:, :, None], len(changes), axis=2)
+        change_cells(changes, changed, fixed + moved, fixed)
+        return changed
+
+    def at(changes: Sequence[Change], samples: Samples) -> Numbers:
+        changed = tables(changes, samples)
+        found = links(changed, table.convention)
+        misread = [k for k, change in enumerate(changes) if change.misread]
+        if misread:
+            found[:, misread] = links(changed[:, :, misread], table.convention.other)
+        return np.moveaxis(found, (1, 2), (0, -1))
+
+    return SlippedAnswers(tuple(slips), at, by_symbols=False)

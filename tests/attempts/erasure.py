@@ -1,0 +1,26 @@
+"""The bytes of a text in the files of an SQLite database, and a program that keeps them there."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from service.attempts.database import open_database
+
+
+def files_with(text: str, path: str) -> list[str]:
+    """The endings of the files of a database that hold a text."""
+    name = Path(path).name
+    found = Path(path).parent.glob(f"{name}*")
+    return sorted(
+        file.name.removeprefix(name) for file in found if text.encode() in file.read_bytes()
+    )
+
+
+@contextmanager
+def reader(path: str) -> Iterator[None]:
+    """Another program that is reading the database."""
+    other = open_database(path, create=False)
+    with other.connect() as connection:
+        assert connection.exec_driver_sql("SELECT count(*) FROM attempts").scalar_one() >= 0
+        yield
+    other.dispose()

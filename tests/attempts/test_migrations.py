@@ -1,0 +1,226 @@
+"""Migrations that are killed, meet each other, or meet another version of the program."""
+
+import multiprocessing
+import os
+import random
+import shutil
+import signal
+import threading
+import time
+from collections.abc import Callable, Mapping
+from functools import cache
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+import pytest
+from sqlalchemy import Engine, event, inspect, select, text
+
+from service.attempts import database
+from service.attempts.database import open_database
+from service.attempts.errors import UnusableDatabaseError
+from service.attempts.store import AttemptStore
+from service.attempts.tables import attempts, metadata
+from service.catalogue import Exercise
+from tests.attempts.databases import KINDS, new_database, new_file
+from tests.attempts.recorded import RIGHT, recorded
+from tests.attempts.test_upgrade import FIXED, INSERT, REPORT, ROWS, make_old
+from tests.guards import ANSWER
+
+REVISIONS = ("0001", "0002", "0003")
+# The statements before which a migration from the oldest revision is killed; it has over 25.
+SOME = (2, 15, 25)
+EVERY = range(1, 40)
+_number = count()
+
+OldDatabase = Callable[[str], str]
+
+
+@pytest.fixture(params=KINDS)
+def old(request: pytest.FixtureRequest, tmp_path: Path) -> OldDatabase:
+    """Makes databases of a revision, with two attempts."""
+    if request.param == "sqlite":
+
+        @cache
+        def file(revision: str) -> str:
+            (folder := tmp_path / revision).mkdir()
+            make_old(found := new_file(folder), revision)
+            return found
+
+        return lambda revision: str(shutil.copy(file(revision), tmp_path / f"{next(_number)}.db"))
+    server = request.getfixturevalue("postgresql")
+
+    @cache
+    def template(revision: str) -> str:
+        name = f"old{revision}_{next(_number)}"
+        make_old(new_database(server, name), revision)
+        return name
+
+    return lambda revision: new_database(server, f"old{next(_number)}", template(revision))
+
+
+def _open(url: str, killed_at: int, barrier: Any = None) -> None:
+    """Open the database, and so migrate it; die before a statement or the commit."""
+    steps = count(1)
+
+    def step(*_: object) -> None:
+        if next(steps) == killed_at:
+            os.kill(os.getpid(), signal.SIGKILL)
+
+    event.listen(Engine, "before_cursor_execute", step)
+    event.listen(Engine, "commit", step)
+    if barrier is not None:
+        barrier.wait(ANSWER)
+    open_database(url).dispose()
+
+
+def check_whole(url: str) -> None:
+    """Open the database; it has all tables as they are today, and the attempts as they were."""
+    engine = open_database(url)
+    with engine.connect() as connection:
+        found = inspect(connection)
+        columns = {
+            name: {each["name"] for each in found.get_columns(name)}
+            for name in found.get_table_names()
+            if name != "alembic_version"
+        }
+        kept = connection.execute(
+            select(attempts.c.id, attempts.c.learner, attempts.c.report).order_by(attempts.c.id)
+        ).all()
+    engine.dispose()
+    assert columns == {
+        name: {column.name for column in table.columns} for name, table in metadata.tables.items()
+    }
+    assert kept == [(row["id"], row["learner"], REPORT) for row in ROWS]
+
+
+def kill_before(url: str, statement: int, killable: Any) -> bool:
+    """Have a process migrate that dies before a statement; False where it has none so late."""
+    process = killable(target=_open, args=(url, statement))
+    process.start()
+    process.join(ANSWER)
+    assert process.exitcode in (0, -signal.SIGKILL)
+    return bool(process.exitcode)
+
+
+def test_a_killed_migration_is_finished_by_the_next_start(old: OldDatabase, killable: Any) -> None:
+    killed = []
+    for statement in SOME:
+        url = old("0001")
+        killed.append(kill_before(url, statement, killable))
+        check_whole(url)
+    assert killed == [True] * len(SOME)
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("revision", REVISIONS)
+def test_a_migration_that_is_killed_before_any_statement(
+    old: OldDatabase, killable: Any, revision: str
+) -> None:
+    for statement in EVERY:
+        url = old(revision)
+        if not kill_before(url, statement, killable):
+            break
+        check_whole(url)
+    assert statement > 5
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("revision", REVISIONS)
+def test_a_migration_that_is_killed_at_any_moment(
+    old: OldDatabase, killable: Any, revision: str
+) -> None:
+    dice = random.Random(revision)
+    ends = set()
+    for _ in range(20):
+        url = old(revision)
+        process = killable(target=_open, args=(url, 0))
+        process.start()
+        time.sleep(dice.uniform(0.0, 0.3))
+        process.kill()
+        process.join(ANSWER)
+        ends.add(process.exitcode)
+        check_whole(url)
+    assert -signal.SIGKILL in ends
+
+
+def test_several_processes_migrate_at_once(old: OldDatabase, killable: Any) -> None:
+    barrier = multiprocessing.get_context("forkserver").Barrier(3)
+    url = old("0001")
+    processes = [killable(target=_open, args=(url, 0, barrier)) for _ in range(3)]
+    for process in processes:
+        process.start()
+    for process in processes:
+        process.join(ANSWER)
+    assert [process.exitcode for process in processes] == [0, 0, 0]
+    check_whole(url)
+
+
+def test_an_older_program_records_on_while_a_newer_one_migrates(
+    old: OldDatabase, catalogue: Mapping[str, Exercise]
+) -> None:
+    url = old("0001")
+    told: list[str] = []
+    failures: list[Exception] = []
+    over = threading.Event()
+    # An engine that knows nothing of newer tables: its statement is that of the first version.
+    engine = _bare(url)
+    insert = INSERT.format(zone="" if engine.dialect.name == "sqlite" else "+00")
+
+    def record() -> None:
+        for number in count():
+            row = ROWS[1] | FIXED | {"id": f"{number:032}", "learner": "carl", "key": f"c{number}"}
+            try:
+                with engine.connect() as connection:
+                    connection = connection.execution_options(writes=True)
+                    with connection.begin():
+                        connection.execute(text(insert), row)
+            except Exception as error:  # noqa: BLE001 - whatever stops it, the test says so
+                failures.append(error)
+                return
+            told.append(row["id"])
+            # A file is locked by one at a time, and not in turn.
+            if over.wait(0.01):
+                return
+
+    thread = threading.Thread(target=record)
+    thread.start()
+    while not told and not failures:
+        time.sleep(0.01)
+    store = AttemptStore.open(url)
+    recorded(store, catalogue["scara"], "dora", RIGHT)
+    known = len(told)
+    while len(told) == known and not failures:
+        time.sleep(0.01)
+    over.set()
+    thread.join(ANSWER)
+    engine.dispose()
+    assert failures == []
+    with store.engine.connect() as connection:
+        found = set(connection.scalars(select(attempts.c.id).where(attempts.c.learner == "carl")))
+        assert connection.scalar(select(attempts.c.ordinal).where(attempts.c.learner == "dora"))
+    store.close()
+    assert found == set(told)
+
+
+def _bare(url: str) -> Engine:
+    engine: Engine = database._engine(url)
+    return engine
+
+
+def test_a_newer_version_s_database_is_refused_and_stays_as_it_is(old: OldDatabase) -> None:
+    url = old("0003")
+    check_whole(url)
+    newer = _bare(url)
+    with newer.begin() as connection:
+        connection.execute(text("ALTER TABLE attempts ADD COLUMN newer INTEGER"))
+        connection.execute(text("UPDATE alembic_version SET version_num = '9999'"))
+    for opening in (open_database, AttemptStore.open):
+        with pytest.raises(UnusableDatabaseError, match="those of a newer version of the program"):
+            opening(url)
+    with newer.connect() as connection:
+        names = {each["name"] for each in inspect(connection).get_columns("attempts")}
+        assert "newer" in names
+        assert connection.scalars(text("SELECT version_num FROM alembic_version")).all() == ["9999"]
+        assert len(connection.execute(text("SELECT * FROM attempts")).all()) == len(ROWS)
+    newer.dispose()

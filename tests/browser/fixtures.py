@@ -1,0 +1,130 @@
+"""One browser for all tests of a process, and visits with it."""
+
+import asyncio
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any, Final, Literal
+
+import pytest
+from playwright.sync_api import (
+    Browser,
+    BrowserContext,
+    ConsoleMessage,
+    Page,
+    Request,
+    expect,
+    sync_playwright,
+)
+
+from tests.browser.chromium import ABSENT, OPTIONS, Chromium, find_chromium
+
+# A guard against a hang, in milliseconds: what is waited for takes a hundredth of it.
+GUARD: Final = 60_000
+expect.set_options(timeout=GUARD)
+# Where a page and all that it needs may come from: a server of the tests, or a file.
+OURS: Final = ("http://127.0.0.1:", "file:", "data:")
+# A light screen, a dark screen, and paper.
+APPEARANCES: Final[tuple[tuple[Literal["screen", "print"], Literal["light", "dark"]], ...]] = (
+    ("screen", "light"),
+    ("screen", "dark"),
+    ("print", "dark"),
+)
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Chromium:
+    """The Chromium of this machine. Without one, the tests fail in continuous integration."""
+    found = find_chromium()
+    if found is None:
+        if os.environ.get("CI"):
+            pytest.fail(ABSENT)
+        pytest.skip(ABSENT)
+    return found
+
+
+@dataclass
+class Started:
+    """A browser, and the event loop of Playwright."""
+
+    browser: Browser
+    loop: asyncio.AbstractEventLoop
+
+
+@pytest.fixture(scope="session")
+def started_browser(chromium: Chromium) -> Iterator[Started]:
+    with sync_playwright() as playwright:
+        launched = playwright.chromium.launch(
+            executable_path=chromium.program,
+            args=OPTIONS,
+            env={**os.environ, **chromium.environment},
+        )
+        started = Started(launched, asyncio.get_running_loop())
+        asyncio._set_running_loop(None)
+        yield started
+        asyncio._set_running_loop(started.loop)
+        launched.close()
+
+
+@pytest.fixture
+def browser(started_browser: Started) -> Iterator[Browser]:
+    """The browser.
+
+    Playwright leaves its event loop marked as running in this thread, so that no other loop could
+    be run there: the mark is taken away while tests without a browser run.
+    """
+    asyncio._set_running_loop(started_browser.loop)
+    yield started_browser.browser
+    asyncio._set_running_loop(None)
+
+
+@dataclass
+class Visit:
+    """A page, and what the browser complained about."""
+
+    page: Page
+    complaints: list[str] = field(default_factory=list)
+    requests: list[str] = field(default_factory=list)
+
+
+# Said where the processor draws the page: it has to fetch each picture from WebGL.
+READBACK: Final = "GPU stall due to ReadPixels"
+
+
+def complaint(line: ConsoleMessage) -> list[str]:
+    """What the browser or a script says in the console, if it is a complaint."""
+    is_complaint = line.type in ("error", "warning") and READBACK not in line.text
+    return [line.text] if is_complaint else []
+
+
+def failure(request: Request) -> list[str]:
+    """The failure of a request, if it is none that a visitor made by going on to another page."""
+    return [] if request.failure == "net::ERR_ABORTED" else [f"{request.failure}: {request.url}"]
+
+
+@pytest.fixture
+def visit(browser: Browser) -> Iterator[Callable[..., Visit]]:
+    """Opens a page in a context of its own; at the end nothing may have gone wrong in any."""
+    contexts: list[BrowserContext] = []
+    visits: list[Visit] = []
+
+    def opened(**options: Any) -> Visit:
+        context = browser.new_context(**{"reduced_motion": "reduce", **options})
+        context.set_default_timeout(GUARD)
+        contexts.append(context)
+        made = Visit(context.new_page())
+        visits.append(made)
+        page, told = made.page, made.complaints
+        page.on("console", lambda line: told.extend(complaint(line)))
+        page.on("pageerror", lambda error: told.append(str(error)))
+        page.on("requestfailed", lambda request: told.extend(failure(request)))
+        page.on("request", lambda request: made.requests.append(request.url))
+        return made
+
+    yield opened
+    for context in contexts:
+        context.close()
+    for each in visits:
+        assert each.complaints == []
+        asked = [url.removeprefix("blob:") for url in each.requests]
+        assert [url for url in asked if not url.startswith(OURS)] == []

@@ -1,0 +1,60 @@
+"""Slips that run through all link transforms of an answer."""
+
+import pytest
+
+from tests.pose_slips.unseen.algebra import STANDARD, Table
+from tests.pose_slips.unseen.arms import NONE, Arm
+from tests.pose_slips.unseen.slips import ArmSlip
+from tests.pose_slips.unseen.trials import answer_to, exercise_of, said_of
+
+UP, DOWN = {"": 1.0}, {"": -1.0}
+ROWS = (
+    (NONE, DOWN, {"d1": 1.0}, {"q1": 1.0}),
+    ({"a2": 1.0}, UP, NONE, {"q2": 1.0}),
+    ({"a3": 1.0}, NONE, {"d3": 1.0}, {"q3": 1.0}),
+)
+ARM = Arm(ROWS, "RRR", STANDARD)
+EXERCISE = exercise_of(ARM)
+NEGATED = (
+    (NONE, UP, *ROWS[0][2:]),
+    (*ROWS[1][:1], DOWN, *ROWS[1][2:]),
+    ROWS[2],
+)
+
+
+def said(table: Table, convention: str = STANDARD) -> tuple[tuple[str, str], ...]:
+    slip = ArmSlip("", frozenset(), table, convention, tuple(range(len(table))))
+    return said_of(EXERCISE, "links", answer_to("links", slip))
+
+
+@pytest.mark.parametrize(
+    ("table", "convention", "code", "words"),
+    [
+        (NEGATED, STANDARD, "parameter_sign", "All twists α have the wrong sign: "),
+        (
+            (ROWS[2], ROWS[1], ROWS[0]),
+            STANDARD,
+            "row_order",
+            "Rows 1 and 3, or their link transforms, are exchanged: ",
+        ),
+        (
+            ROWS,
+            "modified",
+            "other_convention",
+            (
+                "The link transform of the modified convention is used with a table of the "
+                "standard one: use the same convention for both."
+            ),
+        ),
+    ],
+)
+def test_it_is_told_once(table: Table, convention: str, code: str, words: str) -> None:
+    [(found, message)] = said(table, convention)
+    assert found == code
+    assert message.startswith(words)
+
+
+def test_one_wrong_link_has_the_slip_of_its_row() -> None:
+    [(code, message)] = said((ROWS[0], (*ROWS[1][:1], DOWN, *ROWS[1][2:]), ROWS[2]))
+    assert code == "sign"
+    assert message.startswith("The twist α between the axes of joints 2 and 3 has the wrong sign")
