@@ -16,6 +16,7 @@ from service.grading.diagnosis.slip_search import SlipSearch
 from service.grading.diagnosis.slipped_answers import SlippedAnswers, slipped_tables
 from service.grading.diagnosis.slipped_link import constants_and_motion
 from service.grading.diagnosis.table_slips import lengths_of
+from service.grading.diagnosis.wrong_value import Mask
 from service.grading.feedback import Finding
 from service.grading.part import Grading
 from service.grading.reading.matrix import StudentMatrix
@@ -43,28 +44,61 @@ def explain_links(
     ``written``, the numbers of the ``matrices``, and ``right`` are ``(rows, SAMPLES, 4, 4)``,
     ``scale`` is ``(4, 4)``. None where the right ones follow from the student's own answer.
     """
-    actual, expected = (
-        Samples.subset_of(np.moveaxis(each, 1, -1), SUBSET) for each in (written, right)
-    )
-    wrong = np.isfinite(actual).all(axis=-1) & ~nearly_equal(actual, expected, scale, False)
+    wrong = _wrong(written, right, scale)
     if grading.following or not wrong.any() or not grading.affords(LINKS_WORK):
         return None
-    answers = _slipped_links(right, part, grading)
+    found = _explained(matrices, written, right, scale, part, grading)
+    is_of_one = wrong.any(axis=(1, 2)).sum() == 1
+    if is_of_one:
+        # No other slip of one link transform runs through all.
+        return found if found and found.code == "other_convention" else None
+    if found is None and part.frames == "free" and grading.affords(LINKS_WORK):
+        # A slip that runs through all may bring other frames nearer than those it was made in.
+        reference = _reference(part, grading)
+        found = _explained(matrices, written, reference, scale, part, grading)
+    return found
+
+
+def _explained(
+    matrices: Sequence[StudentMatrix],
+    written: Matrices,
+    right: Matrices,
+    scale: Numbers,
+    part: LinkTransformsSpec,
+    grading: Grading,
+) -> Finding | None:
+    """The finding on the slips that lead from these ``right`` link transforms to the answer."""
     entries = [entry for matrix in matrices for row in matrix.entries for entry in row]
+    wrong = _wrong(written, right, scale)
     search = SlipSearch(
-        answers,
+        _slipped_links(right, part, grading),
         grading.samples,
-        actual,
-        expected,
+        _at_subset(written),
+        _at_subset(right),
         wrong,
         scale,
         name=grading.symbol_names(entries),
         unwritten=grading.unwritten(entries),
     )
-    finding = search.finding(np.ones_like(wrong))
-    # Of one link transform alone, no other slip runs through all.
-    is_of_one = wrong.any(axis=(1, 2)).sum() == 1
-    return None if is_of_one and finding and finding.code != "other_convention" else finding
+    return search.finding(np.ones_like(wrong))
+
+
+def _wrong(written: Matrices, right: Matrices, scale: Numbers) -> Mask:
+    """The entries ``(rows, 4, 4)`` that were read and are wrong."""
+    actual, expected = _at_subset(written), _at_subset(right)
+    is_read = np.isfinite(actual).all(axis=-1)
+    return np.asarray(is_read & ~nearly_equal(actual, expected, scale, False))
+
+
+def _at_subset(transforms: Matrices) -> Numbers:
+    """The entries ``(rows, 4, 4, L)`` of ``(rows, SAMPLES, 4, 4)`` at some samples."""
+    return Samples.subset_of(np.moveaxis(transforms, 1, -1), SUBSET)
+
+
+def _reference(part: LinkTransformsSpec, grading: Grading) -> Matrices:
+    """The link transforms of the exercise's own table, ``(rows, SAMPLES, 4, 4)``."""
+    table = grading.exercise.robot.tables[part.convention]
+    return links(table.values(grading.samples.values, SAMPLES), table.convention)
 
 
 def _slipped_links(right: Matrices, part: LinkTransformsSpec, grading: Grading) -> SlippedAnswers:
@@ -78,8 +112,7 @@ def _slipped_links(right: Matrices, part: LinkTransformsSpec, grading: Grading) 
             )
         )
     )
-    reference = links(table.values(samples.values, SAMPLES), table.convention)
-    in_its_frames = np.abs(right - reference).max() < SAME_MOTION
+    in_its_frames = np.abs(right - _reference(part, grading)).max() < SAME_MOTION
     if in_its_frames:
         slips += [slip for slip in length_slips(*lengths_of(table)) if len(slip.symbols) == 2]
 

@@ -5,7 +5,7 @@ import pytest
 from tests.pose_slips.unseen.algebra import STANDARD, Table
 from tests.pose_slips.unseen.arms import NONE, Arm
 from tests.pose_slips.unseen.slips import ArmSlip
-from tests.pose_slips.unseen.trials import answer_to, exercise_of, said_of
+from tests.pose_slips.unseen.trials import answer_to, exercise_of, loaded, said_of
 
 UP, DOWN = {"": 1.0}, {"": -1.0}
 ROWS = (
@@ -58,3 +58,13 @@ def test_one_wrong_link_has_the_slip_of_its_row() -> None:
     [(code, message)] = said((ROWS[0], (*ROWS[1][:1], DOWN, *ROWS[1][2:]), ROWS[2]))
     assert code == "sign"
     assert message.startswith("The twist α between the axes of joints 2 and 3 has the wrong sign")
+
+
+def test_a_slip_made_in_the_frames_of_the_exercise_is_told_where_frames_are_free() -> None:
+    """Other frames may come nearer to such matrices; the student did not think of them."""
+    free = ARM.text.replace('id = "links"\n', 'id = "links"\nframes = "free"\n')
+    slip = ArmSlip("", frozenset(), (ROWS[1], ROWS[0], ROWS[2]), STANDARD, (0, 1, 2))
+    [(code, _)] = said_of(loaded(free), "links", answer_to("links", slip))
+    assert code == "row_order"
+    right = ArmSlip("", frozenset(), ROWS, STANDARD, (0, 1, 2))
+    assert said_of(loaded(free), "links", answer_to("links", right)) == ()

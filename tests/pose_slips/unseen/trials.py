@@ -61,9 +61,14 @@ class ArmTrial:
 
 def exercise_of(arm: Arm) -> Exercise:
     """The exercise with a part of each kind."""
+    return loaded(arm.text)
+
+
+def loaded(text: str) -> Exercise:
+    """The exercise of a file with this text."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "unseen.toml"
-        file.write_text(arm.text, encoding="utf-8")
+        file.write_text(text, encoding="utf-8")
         return load_exercise(file)
 
 
