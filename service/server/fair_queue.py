@@ -13,8 +13,8 @@ from typing import Any, Final
 from service.api.turns import Client
 from service.time_slices import SLICE
 
-# Seconds that a step of a request counts at least, so that connections with tiny ones take turns.
-LEAST: Final = 0.0001
+# Seconds that a step of a request counts at least: about what HTTP takes around it.
+LEAST: Final = 0.0003
 # Seconds that a connection may have used less than others and still make up for it: an answer that
 # takes long to explain need not wait for clients that send one request after the other.
 CREDIT: Final = 0.1
@@ -83,12 +83,15 @@ class FairQueue:
 
     def enter(self, ticket: Ticket) -> None:
         """Note that a request has come."""
-        account = self._accounts.pop(ticket.key, None) or _Account(self._now)
+        requests = self._clients.setdefault(ticket.client.name, _Requests())
+        # Of many new connections that come at once, one for each share of a client is first.
+        later = SLICE * requests.waiting / ticket.client.most_shares
+        account = self._accounts.pop(ticket.key, None) or _Account(self._now + later)
         # The latest at the end.
         self._accounts[ticket.key] = account
         account.used = max(account.used, self._now - CREDIT)
         account.present += 1
-        self._clients.setdefault(ticket.client.name, _Requests()).present += 1
+        requests.present += 1
         if len(self._accounts) > 2 * _ACCOUNTS:
             idle = [key for key, each in self._accounts.items() if not each.present]
             for key in idle[:-_ACCOUNTS]:
@@ -106,9 +109,7 @@ class FairQueue:
         """Let a request wait that has come."""
         account = self._accounts[ticket.key]
         if not account.queue:
-            # Of many that come at once, one for each share of a client is first.
-            waiting = self._clients[ticket.client.name].waiting
-            self._wait(account, SLICE * waiting / ticket.client.most_shares)
+            self._wait(account)
         account.queue.append(ticket)
         self._count(ticket, 1)
 
@@ -148,9 +149,9 @@ class FairQueue:
         # By half of a fair share: so no request waits for ever for connections that are all new.
         self._now += seconds / (2 + 2 * len(self._order))
 
-    def _wait(self, account: _Account, later: float = 0.0) -> None:
+    def _wait(self, account: _Account) -> None:
         self._came += 1
-        heapq.heappush(self._order, (account.used + later, self._came, account))
+        heapq.heappush(self._order, (account.used, self._came, account))
 
     def _count(self, ticket: Ticket, sign: int) -> None:
         requests = self._clients[ticket.client.name]
