@@ -18,7 +18,7 @@ from service.access.key_lookups import KeyLookups, KeyPlace
 from service.access.key_table import any_key, fits, keys_at, note_use
 from service.access.key_text import PREFIX, is_spelt_right
 from service.access.keys import CredentialError, Key, KeysUnreachableError, Secret
-from service.attempts.database import in_transaction
+from service.attempts.storage.database import in_transaction
 
 R = TypeVar("R")
 

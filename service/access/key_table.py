@@ -12,7 +12,7 @@ from sqlalchemy import Connection, Row, delete, exists, or_, select
 from service.access.caller import Scope
 from service.access.keys import Key, Secret
 from service.attempts.recording import insert_or_ignore
-from service.attempts.tables import key_secrets, keys
+from service.attempts.storage.tables import key_secrets, keys
 
 
 def any_key(connection: Connection) -> bool:

@@ -10,35 +10,35 @@ from fastapi.routing import APIRoute
 from starlette.middleware.cors import CORSMiddleware
 from starlette.types import ASGIApp
 
-from service.api import (
-    attempts,
-    exercises,
-    figures,
-    frames,
-    grading,
-    health,
-    preview,
-    problems,
-    recorded,
-    reference,
-    tokens,
-    tutoring,
-)
-from service.api import solutions as model_solutions
-from service.api.access import Access
-from service.api.boundary import (
+from service.api.document.openapi import HEADING, completed, other_failures, work_out_schemas
+from service.api.http import problems
+from service.api.http.boundary import (
     EXPOSED_HEADERS,
     BoundaryMiddleware,
     NamingMiddleware,
     RefusalNoting,
     RouteNoting,
 )
-from service.api.compression import PackedGets
-from service.api.door import DoorMiddleware, RequestRates
-from service.api.lookup import Catalogue
+from service.api.http.compression import PackedGets
+from service.api.http.lookup import Catalogue
+from service.api.http.request_context import HEADER
 from service.api.monitor import Monitor
-from service.api.openapi import HEADING, completed, other_failures, work_out_schemas
-from service.api.request_context import HEADER
+from service.api.permissions.access import Access
+from service.api.permissions.authentication import DoorMiddleware, RequestRates
+from service.api.recording import listing as recorded
+from service.api.recording import managing as tutoring
+from service.api.recording import new_attempts as attempts
+from service.api.routes import (
+    exercises,
+    figures,
+    frames,
+    grading,
+    health,
+    preview,
+    reference,
+    tokens,
+)
+from service.api.routes import solutions as model_solutions
 from service.api.web_pages import WebPages
 from service.catalogue import FeedbackLevel
 from service.submissions.strict_json import MAX_BODY_SIZE

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from fastapi import APIRouter
 
-from service.api.problems import ProblemPage
+from service.api.http.problems import ProblemPage
 
 
 class WebPages(NamedTuple):

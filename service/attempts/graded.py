@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from service.attempts.outcome import Outcome, outcome_of
 from service.catalogue import Exercise, FeedbackLevel
-from service.formats.json import rendered
+from service.formats.documents.json import rendered
 from service.grading import GradedAnswers, Report, graded_answers
 from service.submissions.body import GradeRequest
 

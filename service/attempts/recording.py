@@ -9,7 +9,7 @@ from sqlalchemy.dialects import postgresql, sqlite
 
 from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
 from service.attempts.outcome import Outcome
-from service.attempts.tables import attempts, outcomes
+from service.attempts.storage.tables import attempts, outcomes
 
 # The statements are built once: that takes longer than they do.
 _WRITTEN: Final = tuple(NewAttempt.__dataclass_fields__)

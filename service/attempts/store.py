@@ -18,21 +18,21 @@ from service.attempts.attempt import (
     RecordedAttempt,
     Standing,
 )
-from service.attempts.database import open_database, reason, safe_url
-from service.attempts.erasure import finish_overwriting, overwrite_deleted
 from service.attempts.errors import StoreDownError, UnusableDatabaseError
-from service.attempts.grades import Counting, graded_attempts, written
-from service.attempts.reading import AttemptHistory, history, page
 from service.attempts.recording import AttemptAfter, record_next, standing
-from service.attempts.statistics import exercise_statistics
-from service.attempts.tables import attempts
+from service.attempts.results.grades import Counting, graded_attempts, written
+from service.attempts.results.listing import AttemptHistory, history, page
+from service.attempts.results.statistics import exercise_statistics
+from service.attempts.storage.database import open_database, reason, safe_url
+from service.attempts.storage.erasure import finish_overwriting, overwrite_deleted
+from service.attempts.storage.tables import attempts
+from service.attempts.storage.writer import AttemptWriter
 from service.attempts.tutoring import (
     LearnerData,
     data_of,
     forget,
     override,
 )
-from service.attempts.writer import AttemptWriter
 from service.contract.statistics import ExerciseStatistics
 
 R = TypeVar("R")

@@ -8,7 +8,7 @@ from sqlalchemy import Connection, delete, func, insert, select, update
 from sqlalchemy.exc import IntegrityError
 
 from service.attempts.errors import UnknownAttemptError, UnusablePointsError
-from service.attempts.tables import attempts, earlier_reports, overrides, regrade_queue
+from service.attempts.storage.tables import attempts, earlier_reports, overrides, regrade_queue
 
 # So often others may write of a learner in PostgreSQL while the learner is forgotten.
 _TRIES: Final = 4

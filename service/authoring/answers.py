@@ -10,8 +10,8 @@ import numpy as np
 
 from service.authoring.remarks import Remark, failed, warning
 from service.catalogue import CheckSpec, Exercise, PartSpec, PosePartSpec, grid_values
-from service.catalogue.schema import ExpectSpec
-from service.catalogue.variables import TRIALS, trial_values
+from service.catalogue.files.schema import ExpectSpec
+from service.catalogue.robots.variables import TRIALS, trial_values
 from service.expressions import LIMITS, AngleUnit
 from service.grading import FeedbackLevel, PartReport, Submission, Verdict, grade
 from service.grading.report import messages_of

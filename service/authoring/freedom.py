@@ -6,8 +6,8 @@ import numpy as np
 
 from service.authoring.remarks import Remark, warning
 from service.catalogue import Exercise
-from service.catalogue.screw_robot import Reference
-from service.catalogue.variables import TRIALS, trial_values
+from service.catalogue.robots.screw_robot import Reference
+from service.catalogue.robots.variables import TRIALS, trial_values
 from service.kinematics.jacobian import coincident, rank
 from service.kinematics.screws import exponential, moved
 from service.kinematics.transforms import Numbers, identity

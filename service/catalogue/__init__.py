@@ -2,7 +2,9 @@
 
 from service.catalogue.exercise import Exercise
 from service.catalogue.feedback_level import FeedbackLevel, least
-from service.catalogue.formulas import FormulaGrid, grid_values
+from service.catalogue.files.regular_file import read_regular
+from service.catalogue.files.schema import CheckSpec
+from service.catalogue.files.toml_file import CatalogueError, Fault
 from service.catalogue.live import open_catalogue
 from service.catalogue.load import (
     ID_ADVICE,
@@ -14,12 +16,10 @@ from service.catalogue.load import (
     shipped_folder,
 )
 from service.catalogue.part import PartSpec, PosePartSpec
-from service.catalogue.regular_file import read_regular
-from service.catalogue.robot import Joint, ReferenceTable, Robot
-from service.catalogue.schema import CheckSpec
-from service.catalogue.screw_robot import ScrewRobot
-from service.catalogue.toml_file import CatalogueError, Fault
-from service.catalogue.variables import Variable
+from service.catalogue.robots.formulas import FormulaGrid, grid_values
+from service.catalogue.robots.robot import Joint, ReferenceTable, Robot
+from service.catalogue.robots.screw_robot import ScrewRobot
+from service.catalogue.robots.variables import Variable
 
 __all__ = [
     "ID_ADVICE",

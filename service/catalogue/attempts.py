@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import AwareDatetime, Field, model_validator
 
-from service.catalogue.fields import StrictModel
+from service.catalogue.files.fields import StrictModel
 
 Worth = Annotated[float, Field(ge=0, le=1)]
 

@@ -13,8 +13,16 @@ import numpy as np
 
 from service.catalogue.exercise import Exercise
 from service.catalogue.feedback_level import FeedbackLevel
-from service.catalogue.fields import Four
-from service.catalogue.formulas import (
+from service.catalogue.files.fields import Four
+from service.catalogue.files.schema import (
+    CheckSpec,
+    ExerciseSpec,
+    RobotSpec,
+    ScrewRobotSpec,
+    SymbolSpec,
+)
+from service.catalogue.part import PartSpec
+from service.catalogue.robots.formulas import (
     EXACT,
     FieldError,
     FormulaGrid,
@@ -22,17 +30,15 @@ from service.catalogue.formulas import (
     screws_of,
     transform_of,
 )
-from service.catalogue.part import PartSpec
-from service.catalogue.robot import (
+from service.catalogue.robots.robot import (
     ROW_QUANTITIES,
     FormulaRow,
     Joint,
     Robot,
     tables_in_both_conventions,
 )
-from service.catalogue.schema import CheckSpec, ExerciseSpec, RobotSpec, ScrewRobotSpec, SymbolSpec
-from service.catalogue.screw_robot import Reference, ScrewRobot
-from service.catalogue.variables import Variable
+from service.catalogue.robots.screw_robot import Reference, ScrewRobot
+from service.catalogue.robots.variables import Variable
 from service.expressions import Expression, Kind, Symbol, Vocabulary
 from service.kinematics.chain import COLUMNS, A, D
 

@@ -6,12 +6,12 @@ from typing import Final
 
 from service.catalogue.attempts import AttemptsSpec
 from service.catalogue.feedback_level import FeedbackLevel
-from service.catalogue.formulas import FormulaField, FormulaGrid, fields_of
+from service.catalogue.files.schema import CheckSpec, ViewSpec
 from service.catalogue.part import PartSpec
-from service.catalogue.robot import Joint, Robot
-from service.catalogue.schema import CheckSpec, ViewSpec
-from service.catalogue.screw_robot import Reference
-from service.catalogue.variables import Variable
+from service.catalogue.robots.formulas import FormulaField, FormulaGrid, fields_of
+from service.catalogue.robots.robot import Joint, Robot
+from service.catalogue.robots.screw_robot import Reference
+from service.catalogue.robots.variables import Variable
 from service.expressions import Vocabulary
 
 _ANY_TIME: Final = AttemptsSpec()

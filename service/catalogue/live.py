@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Final
 
 from service.catalogue.exercise import Exercise
+from service.catalogue.files.toml_file import CatalogueError
 from service.catalogue.load import exercise_files, load_catalogue, load_exercise
-from service.catalogue.toml_file import CatalogueError
 
 # The seconds between two looks at the disk.
 REFRESH_SECONDS: Final = 1.0

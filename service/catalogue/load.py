@@ -7,10 +7,16 @@ from typing import Any
 
 from service.catalogue.compile import compile_exercise
 from service.catalogue.exercise import Exercise
-from service.catalogue.fields import IDENTIFIER
-from service.catalogue.refusals import exercise_table
-from service.catalogue.schema import ExerciseSpec
-from service.catalogue.toml_file import CatalogueError, Fault, fault_reason, load_toml, read_toml
+from service.catalogue.files.fields import IDENTIFIER
+from service.catalogue.files.refusals import exercise_table
+from service.catalogue.files.schema import ExerciseSpec
+from service.catalogue.files.toml_file import (
+    CatalogueError,
+    Fault,
+    fault_reason,
+    load_toml,
+    read_toml,
+)
 
 ID_ADVICE = "write small letters and digits, with - or _ between them, such as elbow-arm"
 _LONGEST_ID = 60

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, StrictBool, model_validator
 
-from service.catalogue.fields import (
+from service.catalogue.files.fields import (
     FrameName,
     Identifier,
     LooseText,
@@ -17,9 +17,9 @@ from service.catalogue.fields import (
     StrictModel,
     Text,
 )
-from service.catalogue.formulas import FieldError, WrittenFormulas
-from service.catalogue.robot import Robot
-from service.catalogue.screw_robot import Reference
+from service.catalogue.robots.formulas import FieldError, WrittenFormulas
+from service.catalogue.robots.robot import Robot
+from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import AnswerShape
 from service.kinematics.dh import Convention
 

@@ -13,7 +13,7 @@ def main() -> None:
 
         run()
     except KeyboardInterrupt:
-        from service.cli.interrupts import INTERRUPTED
+        from service.cli.running.interrupts import INTERRUPTED
 
         raise SystemExit(INTERRUPTED) from None
 

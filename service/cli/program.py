@@ -9,7 +9,7 @@ from typing import Annotated, Any, Final
 import typer
 from typer.core import TyperGroup
 
-# Each is a file of this package whose ``commands`` are loaded when the command is called: the help
+# Each is a file of ``commands/`` whose ``commands`` are loaded when the command is called: the help
 # of the program needs neither the grader nor the web framework.
 COMMANDS: Final = {
     "serve": "Start the service; the environment variables DH_GRADER_… set it up.",
@@ -28,7 +28,7 @@ class _Commands(TyperGroup):
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         name, _, rest = super().resolve_command(ctx, args)
-        commands: typer.Typer = import_module(f"service.cli.{name}").commands
+        commands: typer.Typer = import_module(f"service.cli.commands.{name}").commands
         if not gc.isenabled():
             gc.freeze()
             gc.enable()
@@ -37,7 +37,7 @@ class _Commands(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         # Only here, for the same reason.
         from service.catalogue import CatalogueError
-        from service.cli.interrupts import INTERRUPTED
+        from service.cli.running.interrupts import INTERRUPTED
         from service.cli.terminal import BROKEN_PIPE, complain, give_up
         from service.kinds_check import check_kinds
         from service.settings import SettingsError

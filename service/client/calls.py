@@ -16,7 +16,7 @@ from service.contract.exercises import ExerciseList, ExerciseSummary, ExerciseVi
 from service.contract.grading import GradeManyResponse, GradeResult
 from service.contract.preview import PreviewAnswer, PreviewRequest
 from service.expressions import AngleUnit
-from service.formats.json import read_report
+from service.formats.documents.json import read_report
 from service.grading import Report
 from service.submissions.body import MAX_SUBMISSIONS, ExerciseSubmission, GradeRequest
 from service.submissions.strict_json import MAX_BODY_SIZE, MAX_BRACKETS, MAX_COMMAS

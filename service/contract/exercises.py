@@ -3,7 +3,7 @@
 from pydantic import BaseModel, Field
 
 from service.catalogue import FeedbackLevel
-from service.catalogue.fields import Marking
+from service.catalogue.files.fields import Marking
 from service.catalogue.parts import AnyShape
 from service.expressions import Kind
 

@@ -5,8 +5,8 @@ from typing import Annotated, Any, Final, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.contract.preview import PreviewError
-from service.figures.style import Theme
-from service.figures.table_frames import LARGEST
+from service.figures.drawing.style import Theme
+from service.figures.tables.table_frames import LARGEST
 from service.kinematics.dh import Convention
 
 # Joint values in one request: a second of a motion at 30 pictures a second.

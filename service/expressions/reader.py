@@ -14,7 +14,7 @@ from service.expressions.evaluation.samples import SampleArray, SymbolValues, co
 from service.expressions.limits import LIMITS
 from service.expressions.parsing.degrees import in_degrees, without_degree_functions
 from service.expressions.parsing.equation import right_side
-from service.expressions.parsing.lexer import Lexer
+from service.expressions.parsing.lexing.lexer import Lexer
 from service.expressions.parsing.parser import parse
 from service.expressions.parsing.tree_builder import Builder
 from service.expressions.printing.latex import to_latex

@@ -6,11 +6,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from service.catalogue import Exercise, Joint, Variable
-from service.catalogue.screw_robot import Reference
-from service.figures.dimensions import dimension
-from service.figures.frame_axes import frame_axes
-from service.figures.lengths import NamedLength, named_lengths
-from service.figures.mechanism import (
+from service.catalogue.robots.screw_robot import Reference
+from service.figures.drawing.dimensions import dimension
+from service.figures.drawing.frame_axes import frame_axes
+from service.figures.drawing.mechanism_solids import mechanism_solids
+from service.figures.drawing.motion_arrows import sliding_arrow, turning_arrow
+from service.figures.drawing.names import Label, name_label, sum_label
+from service.figures.drawing.placing import around
+from service.figures.drawing.sheet import Caption, Sheet, camera_for
+from service.figures.drawing.style import Theme
+from service.figures.geometry.lengths import NamedLength, named_lengths
+from service.figures.geometry.mechanism import (
     JOINT_LENGTH,
     JOINT_RADIUS,
     Configuration,
@@ -18,15 +24,9 @@ from service.figures.mechanism import (
     mechanism_of,
     one_by_one,
 )
-from service.figures.mechanism_solids import mechanism_solids
-from service.figures.motion_arrows import sliding_arrow, turning_arrow
-from service.figures.names import Label, name_label, sum_label
-from service.figures.path import path_of
-from service.figures.placing import around
-from service.figures.sheet import Caption, Sheet, camera_for
-from service.figures.style import Theme
-from service.figures.symbol_numbers import drawing_numbers
-from service.figures.view import View, best_view
+from service.figures.geometry.path import path_of
+from service.figures.geometry.symbol_numbers import drawing_numbers
+from service.figures.geometry.view import View, best_view
 from service.kinematics.transforms import Matrices, Numbers
 
 

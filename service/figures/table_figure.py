@@ -12,19 +12,19 @@ from typing import Final
 import numpy as np
 
 from service.catalogue import Joint
-from service.figures.frame_axes import frame_axes
-from service.figures.mechanism import Configuration, MovableMechanism, distinct
-from service.figures.mechanism_solids import (
+from service.figures.drawing.frame_axes import frame_axes
+from service.figures.drawing.mechanism_solids import (
     ground_solid,
     joint_solid,
     link_solid,
     mechanism_solids,
 )
-from service.figures.placing import TakenRoom
-from service.figures.sheet import Caption, Sheet, camera_for
-from service.figures.solids import in_order, polyline
-from service.figures.style import Theme
-from service.figures.view import View
+from service.figures.drawing.placing import TakenRoom
+from service.figures.drawing.sheet import Caption, Sheet, camera_for
+from service.figures.drawing.solids import in_order, polyline
+from service.figures.drawing.style import Theme
+from service.figures.geometry.mechanism import Configuration, MovableMechanism, distinct
+from service.figures.geometry.view import View
 from service.kinematics.chain import joint_frames
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices, Numbers

@@ -1,21 +1,25 @@
 """Reports in the forms that people and programs take them in: one file for each format.
 
-A format ``<name>.py`` has a ``FORMAT``; it is found here by its name, and loaded when it is asked
-for. What formats share stands in ``shared/``.
+A format is a file ``<name>.py`` with a ``FORMAT`` in ``documents/`` or ``platforms/``. It is found
+by its name, and loaded when somebody asks for it. ``shared/`` has what formats share.
 """
 
 from importlib import import_module
 from pkgutil import iter_modules
 from typing import Final
 
+from service.formats import documents, platforms
 from service.formats.shared.report_format import ReportFormat
 
-FORMAT_NAMES: Final[tuple[str, ...]] = tuple(
-    name for _, name, is_package in iter_modules(__path__) if not is_package
-)
+_PACKAGES: Final = {
+    module.name: package.__name__
+    for package in (documents, platforms)
+    for module in iter_modules(package.__path__)
+}
+FORMAT_NAMES: Final[tuple[str, ...]] = tuple(sorted(_PACKAGES))
 
 
 def report_format(name: str) -> ReportFormat:
-    """The format of this name, one of ``FORMAT_NAMES``."""
-    found: ReportFormat = import_module(f"{__name__}.{name}").FORMAT
+    """Return the format of this name, one of ``FORMAT_NAMES``."""
+    found: ReportFormat = import_module(f"{_PACKAGES[name]}.{name}").FORMAT
     return found

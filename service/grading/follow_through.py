@@ -12,11 +12,11 @@ import numpy as np
 from service.catalogue import PartSpec
 from service.expressions import Kind
 from service.grading.feedback import Finding
-from service.grading.joint_motion import changes
+from service.grading.numerics.joint_motion import changes
+from service.grading.numerics.samples import HALF, SAMPLES, Samples
+from service.grading.numerics.tolerances import MOVES, NO_MOTION, NOT_RIGID, SAME_AXIS
 from service.grading.part import Grading, StudentChain
 from service.grading.report import Severity
-from service.grading.samples import HALF, SAMPLES, Samples
-from service.grading.tolerances import MOVES, NO_MOTION, NOT_RIGID, SAME_AXIS
 from service.kinematics.jacobian import rank
 from service.kinematics.screws import exponential, sliding_axis, turning_axis
 from service.kinematics.transforms import Matrices, Numbers, inverse, is_rigid

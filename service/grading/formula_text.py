@@ -9,11 +9,11 @@ from service.expressions.printing.latex import to_latex
 from service.expressions.printing.spelling import Spelling
 from service.expressions.printing.text import to_text
 from service.expressions.tree import Binary, Negation, Node, Number, Pi, SymbolNode, Unit
-from service.grading.comparison import difference
-from service.grading.joint_motion import coefficients
+from service.grading.numerics.comparison import difference
+from service.grading.numerics.joint_motion import coefficients
+from service.grading.numerics.samples import HALF, Samples
+from service.grading.numerics.tolerances import CONSTANT, PRINTED_NUMBER, WHOLE_MULTIPLE
 from service.grading.report import Correction
-from service.grading.samples import HALF, Samples
-from service.grading.tolerances import CONSTANT, PRINTED_NUMBER, WHOLE_MULTIPLE
 from service.kinematics.transforms import Numbers
 
 # A term of a sum and its sign.

@@ -12,10 +12,10 @@ from service.grading.follow_through import STANDS_STILL, can_carry, follows_from
 from service.grading.judging.marks import has_earned, part_report, unjudged_report
 from service.grading.judging.own_frames.remarks import OWN_FRAME_CHOICE
 from service.grading.kinds import KINDS
+from service.grading.numerics.samples import draw
 from service.grading.part import Grading, Judged, StudentChain
 from service.grading.reading.entry import Reader
 from service.grading.report import PartReport, Report, Severity, Verdict, rounded_points
-from service.grading.samples import draw
 from service.grading.work_budget import WorkBudget
 from service.version import VERSION
 

@@ -9,9 +9,9 @@ from service.catalogue import Exercise
 from service.expressions import Expression, Vocabulary
 from service.expressions.printing.spelling import Habits, Spelling, habits_of, spelling_of
 from service.grading.feedback import Finding
+from service.grading.numerics.samples import Samples
 from service.grading.reading.entry import Entry, Reader
 from service.grading.report import Feedback, Place, RowReport, Verdict
-from service.grading.samples import Samples
 from service.kinematics.transforms import Matrices, inverse
 
 # So many entries show how a student names symbols.

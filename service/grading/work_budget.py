@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Self
 
 from service.expressions.reading_work import reading_cost
-from service.grids.limits import GRID_LIMITS
+from service.grids.cutting.limits import GRID_LIMITS
 from service.time_slices import checkpoint
 
 # The pose of a seven-joint arm, multiplied out, not simplified and printed as LaTeX or JavaScript,

@@ -3,13 +3,13 @@
 Knows nothing of robots, and of expressions only spans, errors and the names of functions.
 """
 
-from service.grids.given_values import ASSIGNMENT
-from service.grids.grid import Grid, GridCell, GridError
-from service.grids.limits import GRID_LIMITS, GridLimits
+from service.grids.cutting.grid import Grid, GridCell, GridError
+from service.grids.cutting.limits import GRID_LIMITS, GridLimits
+from service.grids.cutting.source_text import SourceText
 from service.grids.registry import FORMATS, read_grid, read_robot
-from service.grids.robot_table import RobotTable
+from service.grids.scripts.given_values import ASSIGNMENT
+from service.grids.scripts.robot_table import RobotTable
 from service.grids.several import NamedGrid, read_grids
-from service.grids.source_text import SourceText
 
 __all__ = [
     "ASSIGNMENT",

@@ -3,18 +3,17 @@
 from dataclasses import replace
 from typing import Final
 
-from service.grids import (  # isort: skip
-    bracketed, columns, csv, drawn_matrix, html, latex, markdown, matlab_rows, semicolons, tsv,
-)  # fmt: skip
-from service.grids.given_values import without_given_values
-from service.grids.grid import Grid, GridError, GridFormat
-from service.grids.limits import GRID_LIMITS
-from service.grids.named_columns import describes_columns, read_columns
-from service.grids.program_text import without_title
-from service.grids.robot_script import describes_robot, read_script
-from service.grids.robot_table import RobotTable
-from service.grids.session import printed
-from service.grids.source_text import SourceText
+from service.grids.cutting.grid import Grid, GridError, GridFormat
+from service.grids.cutting.limits import GRID_LIMITS
+from service.grids.cutting.source_text import SourceText
+from service.grids.formats import columns, csv, html, latex, markdown, semicolons, tsv
+from service.grids.matrices import bracketed, drawn_matrix, matlab_rows
+from service.grids.scripts.given_values import without_given_values
+from service.grids.scripts.named_columns import describes_columns, read_columns
+from service.grids.scripts.program_text import without_title
+from service.grids.scripts.robot_script import describes_robot, read_script
+from service.grids.scripts.robot_table import RobotTable
+from service.grids.scripts.session import printed
 
 # The surest sign comes first: a tag, a command, a bracket; then separators, blanks last of all.
 FORMATS: Final[tuple[GridFormat, ...]] = (

@@ -9,14 +9,15 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import Final
 
-from service.grids import latex, latex_list
-from service.grids.grid import Grid, GridError, too_many_matrices
-from service.grids.limits import GRID_LIMITS
-from service.grids.lists import lines_of
-from service.grids.pairs import CLOSES, split, strict_pairs
-from service.grids.program_text import MAKERS, TAIL, without_harmless_lines, without_remarks
+from service.grids.cutting.grid import Grid, GridError, too_many_matrices
+from service.grids.cutting.limits import GRID_LIMITS
+from service.grids.cutting.pairs import CLOSES, split, strict_pairs
+from service.grids.cutting.source_text import SourceText, joined
+from service.grids.formats import latex
+from service.grids.matrices import latex_list
+from service.grids.matrices.lists import lines_of
 from service.grids.registry import grid_of, pasted_source
-from service.grids.source_text import SourceText, joined
+from service.grids.scripts.program_text import MAKERS, TAIL, without_harmless_lines, without_remarks
 
 _HIDDEN: Final = "\x01"
 # A name such as A_1, T(q1) or A{2}; what stands in its brackets is hidden.

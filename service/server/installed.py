@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING
 from fastapi import FastAPI
 
 from service.access.keys import WRONG_SECRET, Keys, KeysUnreachableError
-from service.api.access import Access, is_loopback
 from service.api.application import application
-from service.api.door import RequestRates
+from service.api.permissions.access import Access, is_loopback
+from service.api.permissions.authentication import RequestRates
 from service.attempts.errors import UnusableDatabaseError
 from service.catalogue import open_catalogue
-from service.server.access_log import set_up_access_log
-from service.server.admission import FairAdmission
+from service.server.turns.admission import FairAdmission
+from service.server.watching.access_log import set_up_access_log
 from service.settings import Settings, SettingsError
 from service.web import Tutoring, web_routes
 
@@ -37,7 +37,7 @@ def installed_app(settings: Settings, host: str | None = None) -> FastAPI:
     metrics = None
     if settings.metrics != "off":
         # Only here: who does not count loads nothing that counts.
-        from service.server.metrics import Metrics
+        from service.server.watching.metrics import Metrics
 
         metrics = Metrics(tells_all=settings.metrics == "all")
         if store is not None:

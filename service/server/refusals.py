@@ -6,8 +6,8 @@ from typing import Final
 from fastapi import Response
 from starlette.datastructures import Headers
 
-from service.api.problems import ProblemError
-from service.api.request_context import HEADER, begin_request
+from service.api.http.problems import ProblemError
+from service.api.http.request_context import HEADER, begin_request
 from service.server.limits import MAX_HEADERS, MAX_URL, PATIENCE
 
 _CLOSE: Final = {"Connection": "close"}

@@ -13,13 +13,13 @@ import uvicorn
 from fastapi import FastAPI
 
 from service.catalogue import CatalogueError
+from service.server.connections.protocol import GuardedProtocol
 from service.server.installed import installed_app
-from service.server.logs import log_config
-from service.server.metrics_folder import counting_together
-from service.server.process import Server
-from service.server.protocol import GuardedProtocol
-from service.server.shared_port import SharedPort
-from service.server.workers import Supervisor
+from service.server.processes.process import Server
+from service.server.processes.shared_port import SharedPort
+from service.server.processes.workers import Supervisor
+from service.server.watching.logs import log_config
+from service.server.watching.metrics_folder import counting_together
 from service.settings import Settings
 
 _log = logging.getLogger("uvicorn.error")

@@ -5,8 +5,8 @@ from itertools import chain
 import sympy
 
 from service.catalogue import Exercise, Robot, ScrewRobot
-from service.catalogue.fields import FrameName
-from service.catalogue.robot import FormulaRow
+from service.catalogue.files.fields import FrameName
+from service.catalogue.robots.robot import FormulaRow
 from service.kinematics.dh import Convention
 from service.solutions.algebra import Algebra
 from service.solutions.motions import Fixed, Motion, Shift, Turn, X, Z, inverse, multiplied

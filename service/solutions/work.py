@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import sympy
 
 from service.catalogue import Exercise, PartSpec, PosePartSpec
-from service.catalogue.robot import ROW_QUANTITIES, FormulaRow
+from service.catalogue.robots.robot import ROW_QUANTITIES, FormulaRow
 from service.expressions import Expression, Kind, read
 from service.expressions.printing.text import to_text
 from service.expressions.tree import Node

@@ -8,9 +8,9 @@ from typing import Annotated, Any, Final
 from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, model_validator
 
 from service.catalogue import FeedbackLevel, load_exercise
-from service.catalogue.fields import Identifier, NotBool, StrictModel, Text
-from service.catalogue.formulas import FieldError
-from service.catalogue.toml_file import load_toml
+from service.catalogue.files.fields import Identifier, NotBool, StrictModel, Text
+from service.catalogue.files.toml_file import load_toml
+from service.catalogue.robots.formulas import FieldError
 from service.submissions.lookup import UnknownExerciseError, nearest
 from service.submissions.outline import ExerciseOutline, SetExercise
 

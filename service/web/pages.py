@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from typing import Final
 from xml.etree.ElementTree import Element, fromstring, tostring
 
-from service.api.lookup import Catalogue
+from service.api.http.lookup import Catalogue
 from service.api.statement import statement_html
 from service.catalogue import Exercise, PartSpec
 from service.formats.shared.markup import Child, element

@@ -7,7 +7,7 @@ from typing import Final
 from fastapi import Request
 from starlette.responses import Response
 
-from service.api.problems import ProblemError, ProblemPage
+from service.api.http.problems import ProblemError, ProblemPage
 from service.formats.shared.markup import Child, element
 from service.web.assets import Assets
 from service.web.page_headers import PRIVATE_HEADERS

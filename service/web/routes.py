@@ -6,17 +6,17 @@ from typing import Final
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
-from service.api.access import Access
-from service.api.lookup import Catalogue, exercise_or_404
-from service.api.piecewise import PiecewiseResponse
-from service.api.problems import ProblemError
+from service.api.http.chunked_response import PiecewiseResponse
+from service.api.http.lookup import Catalogue, exercise_or_404
+from service.api.http.problems import ProblemError
+from service.api.permissions.access import Access
 from service.api.web_pages import WebPages
 from service.web.assets import Asset, load_assets
-from service.web.attempt_routes import attempt_routes
 from service.web.page_headers import PAGE_HEADERS
 from service.web.pages import catalogue_page, exercise_page, play_page
 from service.web.problem_pages import problem_page
-from service.web.tutor_routes import Tutoring, tutor_routes
+from service.web.tutor.attempt_routes import attempt_routes
+from service.web.tutor.tutor_routes import Tutoring, tutor_routes
 
 # Any page may load the element; what it may then ask the service is said by DH_GRADER_CORS_ORIGINS.
 _FILE_HEADERS: Final = {

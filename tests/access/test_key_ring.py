@@ -17,8 +17,8 @@ from service.access.key_ring import KeyRing
 from service.access.key_table import add_key, all_keys, keys_at, revoke_key
 from service.access.key_text import new_key_text
 from service.access.keys import CredentialError, Key, KeysBusyError, KeysUnreachableError, Secret
-from service.attempts.database import in_transaction, open_database
-from service.attempts.tables import keys
+from service.attempts.storage.database import in_transaction, open_database
+from service.attempts.storage.tables import keys
 from tests.guards import ANSWER
 
 SECRET = Secret("0123456789abcdef" * 4)

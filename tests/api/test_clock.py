@@ -22,9 +22,9 @@ from service.access.key_text import new_key_text
 from service.access.keys import Secret
 from service.access.open_access import OPEN_HERE
 from service.access.rates import Rates
-from service.api.access import Access
 from service.api.application import application
-from service.attempts.database import in_transaction
+from service.api.permissions.access import Access
+from service.attempts.storage.database import in_transaction
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
 from service.catalogue.attempts import AttemptsSpec

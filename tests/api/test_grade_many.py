@@ -154,7 +154,7 @@ def test_a_failure_of_the_program_costs_one_submission(
             raise ZeroDivisionError("a secret")
         return grade(exercise, submission)
 
-    monkeypatch.setattr("service.api.grading.grade", breaks)
+    monkeypatch.setattr("service.api.routes.grading.grade", breaks)
     first, broken, last = results(client, RIGHT, {**RIGHT, "answers": {}}, RIGHT)
     assert first == last == {"report": alone(client, RIGHT).json()}
     assert broken["problem"]["status"] == 500
@@ -181,7 +181,7 @@ def test_others_are_served_between_two_gradings(
             events.append("served")
             await many
 
-    monkeypatch.setattr("service.api.grading.grade", noted)
+    monkeypatch.setattr("service.api.routes.grading.grade", noted)
     asyncio.run(asked_meanwhile())
     assert events.count("grading") == 60
     assert events[-1] == "grading"
@@ -190,4 +190,5 @@ def test_others_are_served_between_two_gradings(
 def test_the_readme_s_example_is_the_documented_one() -> None:
     root = Path(__file__).parents[2]
     shown = (root / "docs" / "examples" / "many.json").read_text("utf-8")
-    assert shown == (root / "service/api/examples/grade-many-request.json").read_text("utf-8")
+    example = root / "service" / "api" / "document" / "examples" / "grade-many-request.json"
+    assert shown == example.read_text("utf-8")

@@ -25,11 +25,11 @@ from service.access.key_text import new_key_text
 from service.access.keys import Secret
 from service.access.open_access import OPEN_HERE, open_access
 from service.access.rates import Rates
-from service.api.access import Access
 from service.api.application import application
-from service.api.openapi import example
-from service.api.problems import ProblemError
-from service.attempts.database import in_transaction
+from service.api.document.openapi import example
+from service.api.http.problems import ProblemError
+from service.api.permissions.access import Access
+from service.attempts.storage.database import in_transaction
 from service.attempts.store import AttemptStore
 from service.attempts.tutoring import override
 from service.catalogue import Exercise, shipped_folder

@@ -12,7 +12,7 @@ from service.access.caller import Scope
 from service.access.key_table import add_key
 from service.access.key_text import new_key_text
 from service.access.keys import Secret
-from service.attempts.database import in_transaction, open_database
+from service.attempts.storage.database import in_transaction, open_database
 from tests.server.raw import Service
 
 # What is right by its shape is refused all the same where it names another exercise or part (404,

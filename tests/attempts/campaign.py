@@ -19,13 +19,13 @@ from rich.console import Console
 from sqlalchemy import Connection, insert
 
 from service.attempts.attempt import AttemptFilter
-from service.attempts.database import in_transaction
-from service.attempts.reading import page
 from service.attempts.recording import outcome_ids
-from service.attempts.regrading import Regrading
-from service.attempts.statistics import exercise_statistics
+from service.attempts.regrades.outdated import Regrading
+from service.attempts.results.listing import page
+from service.attempts.results.statistics import exercise_statistics
+from service.attempts.storage.database import in_transaction
+from service.attempts.storage.tables import attempts
 from service.attempts.store import AttemptStore
-from service.attempts.tables import attempts
 from service.catalogue import Exercise, FeedbackLevel, load_catalogue, shipped_folder
 from tests.attempts.recorded import NOON, new_attempt
 from tests.benchmarks.timing import floor_seconds

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from service.attempts.database import open_database
+from service.attempts.storage.database import open_database
 from service.attempts.store import AttemptStore
 from tests.attempts.databases import KINDS, new_database, new_file, postgresql_server
 
@@ -27,7 +27,7 @@ def killable() -> Any:
     """Makes processes that begin at once; one of its own imports what they need, for all."""
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(
-        ["service.attempts.regrading", "service.attempts.store", "service.server.start"]
+        ["service.attempts.regrades.outdated", "service.attempts.store", "service.server.start"]
     )
     return context.Process
 

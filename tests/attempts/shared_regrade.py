@@ -19,8 +19,8 @@ from pathlib import Path
 from rich.console import Console
 from sqlalchemy import func, select
 
+from service.attempts.storage.tables import attempts, earlier_reports, regrade_queue
 from service.attempts.store import AttemptStore
-from service.attempts.tables import attempts, earlier_reports, regrade_queue
 from service.catalogue import load_catalogue, shipped_folder
 from tests.api.serving import ROOT
 from tests.attempts.campaign import fill

@@ -17,10 +17,10 @@ from typing import Any
 import pytest
 from sqlalchemy import select
 
-from service.attempts.database import in_transaction, open_database
 from service.attempts.recording import record
+from service.attempts.storage.database import in_transaction, open_database
+from service.attempts.storage.tables import attempts
 from service.attempts.store import AttemptStore
-from service.attempts.tables import attempts
 from service.catalogue import Exercise
 from tests.attempts.databases import new_database
 from tests.attempts.recorded import RIGHT, new_attempt

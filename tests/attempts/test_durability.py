@@ -21,9 +21,9 @@ import pytest
 from pydantic import SecretStr
 from sqlalchemy import select
 
-from service.attempts.database import open_database
+from service.attempts.storage.database import open_database
+from service.attempts.storage.tables import attempts
 from service.attempts.store import AttemptStore
-from service.attempts.tables import attempts
 from service.catalogue import Exercise
 from service.server.start import serve
 from service.settings import Settings

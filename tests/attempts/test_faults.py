@@ -26,7 +26,7 @@ def record(store: AttemptStore, exercise: Exercise, ordinal: int) -> bool:
 def test_a_locked_file_is_told_after_a_wait_and_works_when_it_is_free(
     sqlite_url: str, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.attempts.database._LOCK_WAIT", 0.5)
+    monkeypatch.setattr("service.attempts.storage.database._LOCK_WAIT", 0.5)
     scara = catalogue["scara"]
     store = AttemptStore.open(sqlite_url)
     store.start()

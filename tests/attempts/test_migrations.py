@@ -16,11 +16,11 @@ from typing import Any
 import pytest
 from sqlalchemy import Engine, event, inspect, select, text
 
-from service.attempts import database
-from service.attempts.database import open_database
 from service.attempts.errors import UnusableDatabaseError
+from service.attempts.storage import database
+from service.attempts.storage.database import open_database
+from service.attempts.storage.tables import attempts, metadata
 from service.attempts.store import AttemptStore
-from service.attempts.tables import attempts, metadata
 from service.catalogue import Exercise
 from tests.attempts.databases import KINDS, new_database, new_file
 from tests.attempts.recorded import RIGHT, recorded

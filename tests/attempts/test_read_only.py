@@ -13,10 +13,10 @@ import httpx
 import pytest
 from sqlalchemy import event
 
-from service.api.access import Access
 from service.api.application import application
-from service.attempts.database import open_database
+from service.api.permissions.access import Access
 from service.attempts.errors import UnusableDatabaseError
+from service.attempts.storage.database import open_database
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
 from tests.api.conftest import InProcess

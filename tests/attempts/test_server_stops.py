@@ -10,8 +10,8 @@ import pytest
 from sqlalchemy import select
 
 from service.api.application import application
+from service.attempts.storage.tables import attempts
 from service.attempts.store import AttemptStore
-from service.attempts.tables import attempts
 from service.catalogue import Exercise
 from tests.attempts.databases import STOPS, new_database, start, stop
 from tests.attempts.recorded import NO_TWIST
@@ -76,7 +76,7 @@ def test_every_acknowledged_attempt_is_there_once_however_the_server_stops(
     catalogue: Mapping[str, Exercise],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("service.attempts.writer._PATIENCE", 0.5)
+    monkeypatch.setattr("service.attempts.storage.writer._PATIENCE", 0.5)
     store = AttemptStore.open(postgresql_url)
     store.start()
 

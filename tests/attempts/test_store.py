@@ -9,11 +9,11 @@ from alembic.migration import MigrationContext
 from sqlalchemy import text
 
 from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
-from service.attempts.database import open_database
 from service.attempts.errors import StoreDownError, UnusableDatabaseError
 from service.attempts.outcome import Outcome
+from service.attempts.storage.database import open_database
+from service.attempts.storage.tables import metadata
 from service.attempts.store import AttemptStore
-from service.attempts.tables import metadata
 from tests.attempts.recorded import record_once
 
 OUTCOME = Outcome("scara", "{}")

@@ -7,10 +7,10 @@ import pytest
 from sqlalchemy import func, select, text
 
 from service.attempts.errors import UnknownAttemptError, UnusablePointsError
-from service.attempts.reading import history
-from service.attempts.regrading import Regrading
+from service.attempts.regrades.outdated import Regrading
+from service.attempts.results.listing import history
+from service.attempts.storage.tables import attempts, metadata, outcomes, regrade_queue
 from service.attempts.store import AttemptStore
-from service.attempts.tables import attempts, metadata, outcomes, regrade_queue
 from service.attempts.tutoring import (
     LearnerData,
     forget,

@@ -16,12 +16,12 @@ from sqlalchemy import create_engine, make_url, text
 
 from service.access.key_table import add_key, fits, revoke_key, settle
 from service.access.keys import Secret
-from service.attempts import database
 from service.attempts.attempt import AttemptFilter, GradesFormat
-from service.attempts.database import in_transaction
-from service.attempts.grades import graded_attempts, written
-from service.attempts.reading import history, page
-from service.attempts.regrading import Regrading
+from service.attempts.regrades.outdated import Regrading
+from service.attempts.results.grades import graded_attempts, written
+from service.attempts.results.listing import history, page
+from service.attempts.storage import database
+from service.attempts.storage.database import in_transaction
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise, FeedbackLevel
 from tests.attempts.databases import new_database, new_file

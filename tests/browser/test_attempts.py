@@ -17,7 +17,7 @@ from service.access.caller import Scope
 from service.access.key_table import add_key
 from service.access.key_text import new_key_text
 from service.access.keys import Secret
-from service.attempts.database import in_transaction
+from service.attempts.storage.database import in_transaction
 from service.attempts.store import AttemptStore
 from service.catalogue import shipped_folder
 from tests.api.serving import served

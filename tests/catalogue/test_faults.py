@@ -9,8 +9,7 @@ import pytest
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from service.catalogue import CatalogueError, load_catalogue, load_exercise
-from service.catalogue.parts import SPECS
-from service.catalogue.schema import (
+from service.catalogue.files.schema import (
     CheckSpec,
     ExerciseSpec,
     ExpectSpec,
@@ -18,6 +17,7 @@ from service.catalogue.schema import (
     ScrewRobotSpec,
     SymbolSpec,
 )
+from service.catalogue.parts import SPECS
 from tests.guards import ANSWER
 from tests.together import together
 

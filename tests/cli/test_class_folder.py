@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from service.cli.processes import WorkerLostError, mapped
+from service.cli.running.processes import WorkerLostError, mapped
 from service.submissions.file_content import UnusableFileError, read_file
 from tests.benchmarks.class_folder import BROKEN, EXERCISE, write_class
 from tests.guards import ANSWER

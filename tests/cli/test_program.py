@@ -85,7 +85,7 @@ def test_grading_loads_what_it_needs_and_no_more(answer: Path) -> None:
 def test_the_help_says_of_each_command_what_the_command_says_itself() -> None:
     assert len(COMMANDS) >= 3
     for name, line in COMMANDS.items():
-        command = typer.main.get_command(import_module(f"service.cli.{name}").commands)
+        command = typer.main.get_command(import_module(f"service.cli.commands.{name}").commands)
         assert (command.help or "").partition("\n")[0] == line
         assert "completion" not in command.get_help(typer.Context(command))
 

@@ -17,10 +17,8 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from service.catalogue.attempts import AttemptsSpec
-from service.catalogue.part import PartSpec, PosePartSpec
-from service.catalogue.parts import SPECS
-from service.catalogue.refusals import table_in
-from service.catalogue.schema import (
+from service.catalogue.files.refusals import table_in
+from service.catalogue.files.schema import (
     CheckSpec,
     ExerciseSpec,
     ExpectSpec,
@@ -29,6 +27,8 @@ from service.catalogue.schema import (
     SymbolSpec,
     ViewSpec,
 )
+from service.catalogue.part import PartSpec, PosePartSpec
+from service.catalogue.parts import SPECS
 
 Schema = Mapping[str, Any]
 

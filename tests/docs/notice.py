@@ -27,7 +27,7 @@ class Vendored:
 
 
 _STATIC: Final = "service/web/static"
-_SWAGGER: Final = "service/api/swagger_ui"
+_SWAGGER: Final = "service/api/routes/swagger_ui"
 VENDORED: Final = (
     Vendored(
         "three.js",

@@ -13,7 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Final
 
-from service.api.preview import GENERIC
+from service.api.routes.preview import GENERIC
 from service.catalogue import Exercise, load_catalogue
 from service.expressions import LIMITS, AngleUnit, ExpressionError, Vocabulary, read
 from service.grading import FeedbackLevel, Submission, grade

@@ -7,9 +7,7 @@ from pathlib import Path
 import pytest
 
 from service.catalogue.attempts import AttemptsSpec
-from service.catalogue.part import PartSpec
-from service.catalogue.parts import SPECS
-from service.catalogue.schema import (
+from service.catalogue.files.schema import (
     CheckSpec,
     ExerciseSpec,
     ExpectSpec,
@@ -17,6 +15,8 @@ from service.catalogue.schema import (
     ScrewRobotSpec,
     SymbolSpec,
 )
+from service.catalogue.part import PartSpec
+from service.catalogue.parts import SPECS
 from tests.docs.exercise_fields import page
 
 FILE = Path(__file__).parents[2] / "docs" / "exercise-fields.md"

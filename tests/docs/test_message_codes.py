@@ -14,7 +14,7 @@ from service.catalogue import Exercise
 from service.expressions import LIMITS, ExpressionError, read
 from service.grading import FeedbackLevel
 from service.grading.reading.preview import preview_pasted
-from service.grading.reading.table import MAX_ROWS
+from service.grading.reading.tables.table import MAX_ROWS
 from service.grading.work_budget import MAX_SYMBOLS
 from service.grids import GRID_LIMITS
 from tests.docs.codes import CodeUse, HiddenCodeError, codes_in, sources
@@ -43,11 +43,11 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
         (PASTED_UNREAD, PASTED_NOTED),
         (
             "grids/",
-            "grading/reading/row_labels.py",
-            "grading/reading/length_units.py",
+            "grading/reading/tables/row_labels.py",
+            "grading/reading/tables/length_units.py",
             "grading/reading/pasted.py",
-            "grading/reading/matrix_list.py",
-            "grading/reading/pasted_table.py",
+            "grading/reading/matrices/matrix_list.py",
+            "grading/reading/tables/pasted_table.py",
             "grading/reading/preview.py",
         ),
     ),
@@ -58,11 +58,11 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
             "grading/kinds/dh_row.py",
             "grading/reading/entry.py",
             "grading/kinds/link_transforms.py",
-            "grading/reading/screw_list.py",
-            "grading/reading/value_list.py",
+            "grading/reading/matrices/screw_list.py",
+            "grading/reading/lists/value_list.py",
             "grading/reading/written_names.py",
-            "grading/reading/matrix.py",
-            "grading/reading/table.py",
+            "grading/reading/matrices/matrix.py",
+            "grading/reading/tables/table.py",
         ),
     ),
     (
@@ -74,7 +74,7 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
             "grading/kinds/screw_axes.py",
         ),
     ),
-    ((IN_CELLS,), (f"{DIAGNOSIS}table_cell.py", VALUES)),
+    ((IN_CELLS,), (f"{DIAGNOSIS}tables/table_cell.py", VALUES)),
     (
         ("Slips through a whole table",),
         (
@@ -83,48 +83,51 @@ PLACES: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = (
             "grading/judging/convention.py",
             "grading/judging/row_places.py",
             "grading/judging/own_frames/written_table.py",
-            f"{DIAGNOSIS}column_order.py",
-            f"{DIAGNOSIS}intended_table.py",
-            f"{DIAGNOSIS}joint_numbering.py",
-            f"{DIAGNOSIS}table_freedom.py",
-            f"{DIAGNOSIS}whole_table.py",
+            f"{DIAGNOSIS}tables/column_order.py",
+            f"{DIAGNOSIS}tables/intended_table.py",
+            f"{DIAGNOSIS}tables/joint_numbering.py",
+            f"{DIAGNOSIS}tables/table_freedom.py",
+            f"{DIAGNOSIS}tables/whole_table.py",
         ),
     ),
-    (("The row of a transform",), (f"{DIAGNOSIS}dh_row.py",)),
+    (("The row of a transform",), (f"{DIAGNOSIS}tables/dh_row.py",)),
     (
         ("Matrices",),
         (
-            f"{DIAGNOSIS}exponentials.py",
-            f"{DIAGNOSIS}whole_matrix.py",
-            f"{DIAGNOSIS}link_products.py",
-            f"{DIAGNOSIS}link_slips.py",
-            f"{DIAGNOSIS}rotation_steps.py",
-            f"{DIAGNOSIS}inverse_slips.py",
-            f"{DIAGNOSIS}motion_slips.py",
+            f"{DIAGNOSIS}matrices/exponentials.py",
+            f"{DIAGNOSIS}matrices/whole_matrix.py",
+            f"{DIAGNOSIS}motions/link_products.py",
+            f"{DIAGNOSIS}matrices/link_slips.py",
+            f"{DIAGNOSIS}matrices/rotation_steps.py",
+            f"{DIAGNOSIS}matrices/inverse_slips.py",
+            f"{DIAGNOSIS}motions/motion_slips.py",
         ),
     ),
-    ((SINGLE,), (f"{DIAGNOSIS}matrix_entry.py", f"{DIAGNOSIS}missing_symbol.py", VALUES)),
+    (
+        (SINGLE,),
+        (f"{DIAGNOSIS}matrices/matrix_entry.py", f"{DIAGNOSIS}upstream/missing_symbol.py", VALUES),
+    ),
     (
         ("Slips behind a pose",),
         (
-            f"{DIAGNOSIS}joint_slips.py",
-            f"{DIAGNOSIS}table_slips.py",
-            f"{DIAGNOSIS}rows_and_columns.py",
-            f"{DIAGNOSIS}slip_search.py",
+            f"{DIAGNOSIS}upstream/joint_slips.py",
+            f"{DIAGNOSIS}upstream/table_slips.py",
+            f"{DIAGNOSIS}tables/rows_and_columns.py",
+            f"{DIAGNOSIS}upstream/slip_search.py",
         ),
     ),
-    (("Positions",), (f"{DIAGNOSIS}position.py",)),
+    (("Positions",), (f"{DIAGNOSIS}lists/position.py",)),
     (
         ("Angles",),
         (
-            f"{DIAGNOSIS}angle.py",
-            f"{DIAGNOSIS}angle_sum.py",
-            f"{DIAGNOSIS}euler_triple.py",
+            f"{DIAGNOSIS}lists/angle.py",
+            f"{DIAGNOSIS}lists/angle_sum.py",
+            f"{DIAGNOSIS}lists/euler_triple.py",
             VALUES,
         ),
     ),
-    (("Screws",), (f"{DIAGNOSIS}screw_axis.py", f"{DIAGNOSIS}home_position.py")),
-    (("A table that is drawn",), ("figures/table_frames.py",)),
+    (("Screws",), (f"{DIAGNOSIS}screws/screw_axis.py", f"{DIAGNOSIS}matrices/home_position.py")),
+    (("A table that is drawn",), ("figures/tables/table_frames.py",)),
     (("Parts as a whole",), ("grading/follow_through.py", "grading/grade.py")),
 )
 

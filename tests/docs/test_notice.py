@@ -11,7 +11,7 @@ BESIDE = {each.text for each in VENDORED} | {
     BUNDLED,
     "LICENSE",
     "NOTICE",
-    "service/api/swagger_ui/NOTICE",
+    "service/api/routes/swagger_ui/NOTICE",
     "service/web/static/three-0.185.1.README.md",
     "tests/docs/notice.py",
 }

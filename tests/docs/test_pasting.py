@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from service.catalogue import Exercise
-from service.grading.reading.column_headers import read_header
+from service.grading.reading.tables.column_headers import read_header
 from service.grading.work_budget import MAX_PASTED
 from service.grids import GRID_LIMITS, GridError, read_grid, read_robot
 from tests.grading.support.submitting import full_marks, handed_in, part

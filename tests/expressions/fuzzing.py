@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from service.expressions import Expression, ExpressionError, read, reader
-from service.expressions.parsing import words
+from service.expressions.parsing.lexing import words
 from tests.expressions.corpus_files import FOLDER, ROBOT, cases, names, python_text
 
 Fingerprint = tuple[object, ...]

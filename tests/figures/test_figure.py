@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 
 from service.catalogue import Exercise
-from service.catalogue.robot import Robot
-from service.catalogue.schema import ViewSpec
+from service.catalogue.files.schema import ViewSpec
+from service.catalogue.robots.robot import Robot
+from service.figures.drawing.style import Theme
 from service.figures.figure import exercise_figure, plainest_view, reference_figure
-from service.figures.mechanism import mechanism_of
-from service.figures.style import Theme
-from service.figures.symbol_numbers import drawing_numbers
-from service.figures.view import View
+from service.figures.geometry.mechanism import mechanism_of
+from service.figures.geometry.symbol_numbers import drawing_numbers
+from service.figures.geometry.view import View
 from service.kinematics.transforms import Numbers
 from tests.browser.fixtures import Visit
 from tests.shipped import shipped_exercises

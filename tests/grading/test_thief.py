@@ -12,8 +12,8 @@ import pytest
 from service.catalogue import Exercise, FeedbackLevel, PartSpec, shipped_folder
 from service.expressions import ExpressionError, read
 from service.grading import PartReport
+from service.grading.numerics.samples import draw
 from service.grading.report import messages_of
-from service.grading.samples import draw
 from tests.grading.support.sheets import Grid, Sheet, sheet_of
 from tests.grading.support.submitting import handed_in, part
 from tests.grading.support.thief import Thief, expressions_in, is_trivial, known_before, lazy

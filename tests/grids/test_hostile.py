@@ -9,7 +9,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from service.grids import GRID_LIMITS, Grid, GridError, NamedGrid, read_grid, read_grids, read_robot
-from tests.grids.test_robot_script import SCRIPTS
+from tests.grids.scripts.test_robot_script import SCRIPTS
 from tests.grids.writers import FORMATS, POSE
 from tests.guards import STALL
 from tests.samples import one_in

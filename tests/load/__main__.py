@@ -16,8 +16,8 @@ from pathlib import Path
 
 from sqlalchemy import select
 
-from service.attempts.database import open_database
-from service.attempts.tables import attempts
+from service.attempts.storage.database import open_database
+from service.attempts.storage.tables import attempts
 from tests.attack.floods import costly
 from tests.attempts.databases import KINDS, new_database, new_file, postgresql_server
 from tests.load.clients import Mix, Told, submitted

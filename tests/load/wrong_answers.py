@@ -19,7 +19,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from service.api.bodies import checked
+from service.api.http.bodies import checked
 from service.catalogue import Exercise
 from service.grading import grade
 from service.submissions.body import GradeRequest

@@ -10,10 +10,13 @@ import time
 
 from fastapi import FastAPI
 
-from service.api import health
+from service.api.routes import health
 from service.cli import main
-from service.server import crowd, process, protocol, start
+from service.server import start
+from service.server.connections import open_connections as crowd
+from service.server.connections import protocol
 from service.server.installed import installed_app
+from service.server.processes import process
 from service.settings import Settings
 
 PATIENCE = 1.0

@@ -13,8 +13,8 @@ import pytest
 from starlette.requests import Request
 
 from service.api.turns import CLIENT, COURSE_SITE, Client, give_way
-from service.server import admission
-from service.server.admission import FairAdmission
+from service.server.turns import admission
+from service.server.turns.admission import FairAdmission
 from service.time_slices import SLICE
 
 # Seconds from an answer to the client's next request: the wire, and the client's own work.

@@ -7,9 +7,9 @@ from typing import Any
 
 import uvicorn
 
-from service.server.crowd import Crowd, Room
-from service.server.guarded_state import GuardedState
-from service.server.protocol import GuardedProtocol
+from service.server.connections.guarded_state import GuardedState
+from service.server.connections.open_connections import Crowd, Room
+from service.server.connections.protocol import GuardedProtocol
 from tests.server.raw import HEALTH
 
 MB = 1024 * 1024

@@ -14,10 +14,10 @@ import pytest
 from typer.testing import CliRunner
 
 from service.catalogue import Exercise
-from service.cli.grade import commands
+from service.cli.commands.grade import commands
 from service.submissions.strict_json import MAX_BODY_SIZE
-from service.web.class_report import MAX_UPLOAD
-from tests.web.test_tutor_routes import RIGHT, Tutor
+from service.web.tutor.class_report import MAX_UPLOAD
+from tests.web.tutor.test_tutor_routes import RIGHT, Tutor
 
 MEGABYTE = 1_000_000
 

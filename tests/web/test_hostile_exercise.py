@@ -12,7 +12,7 @@ import pytest
 
 from service.catalogue import load_catalogue
 from tests.browser.hostile import BREAKOUT, HOSTILE_EXERCISE, PICTURE
-from tests.web.test_tutor_routes import Tutor
+from tests.web.tutor.test_tutor_routes import Tutor
 
 PLAIN = re.sub(r"'''.*?'''", "'''plain'''", HOSTILE_EXERCISE, flags=re.DOTALL)
 # The pages that show the title, and others that an exercise might get into.

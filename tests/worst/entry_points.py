@@ -22,7 +22,7 @@ from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
 from service.expressions import reader, reading_work
 from service.expressions.evaluation import decimals
-from service.expressions.parsing import words
+from service.expressions.parsing.lexing import words
 from service.formats import report_format
 from service.formats.shared.report_format import Setting
 from service.local_grading import GradingTerms, graded

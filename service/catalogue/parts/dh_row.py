@@ -6,16 +6,16 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from service.catalogue.fields import Homogeneous
-from service.catalogue.formulas import (
+from service.catalogue.files.fields import Homogeneous
+from service.catalogue.part import PartSpec
+from service.catalogue.robots.formulas import (
     EXACT,
     FieldError,
     WrittenFormulas,
     check_transform,
     transform_of,
 )
-from service.catalogue.part import PartSpec
-from service.catalogue.screw_robot import Reference
+from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import AnswerShape
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention

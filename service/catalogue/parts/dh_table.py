@@ -5,10 +5,10 @@ from typing import ClassVar, Literal, TypeAlias
 
 from pydantic import Field, model_validator
 
-from service.catalogue.fields import GivenOrFree
+from service.catalogue.files.fields import GivenOrFree
 from service.catalogue.part import TablePartSpec
-from service.catalogue.robot import Robot
-from service.catalogue.screw_robot import Reference
+from service.catalogue.robots.robot import Robot
+from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import AnswerShape, choices
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention

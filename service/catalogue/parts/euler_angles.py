@@ -4,10 +4,10 @@ from typing import Literal
 
 from pydantic import model_validator
 
-from service.catalogue.fields import Triple
-from service.catalogue.formulas import WrittenFormulas, list_of
+from service.catalogue.files.fields import Triple
 from service.catalogue.part import PosePartSpec
-from service.catalogue.screw_robot import Reference
+from service.catalogue.robots.formulas import WrittenFormulas, list_of
+from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import ListShape, list_shape
 
 

@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 from typing import ClassVar, Literal
 
-from service.catalogue.fields import GivenOrFree
+from service.catalogue.files.fields import GivenOrFree
 from service.catalogue.part import TablePartSpec
-from service.catalogue.robot import Robot
-from service.catalogue.screw_robot import Reference
+from service.catalogue.robots.robot import Robot
+from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import AnswerShape, choices, numbered
 from service.kinematics.dh import Convention
 

@@ -4,10 +4,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from service.catalogue.fields import Formula
-from service.catalogue.formulas import WrittenFormulas, matrix_of
+from service.catalogue.files.fields import Formula
 from service.catalogue.part import PartSpec
-from service.catalogue.screw_robot import Reference
+from service.catalogue.robots.formulas import WrittenFormulas, matrix_of
+from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import MatrixShape, matrix_shape
 from service.expressions import Kind
 

@@ -4,10 +4,16 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from service.catalogue.fields import Formula, StrictModel, Triple
-from service.catalogue.formulas import ROTATION, WrittenFormulas, check_rotation, list_of, matrix_of
+from service.catalogue.files.fields import Formula, StrictModel, Triple
 from service.catalogue.part import PosePartSpec
-from service.catalogue.screw_robot import Reference
+from service.catalogue.robots.formulas import (
+    ROTATION,
+    WrittenFormulas,
+    check_rotation,
+    list_of,
+    matrix_of,
+)
+from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import MatrixShape, matrix_shape
 
 

@@ -5,10 +5,10 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from service.catalogue.fields import GivenOrFree, Screw
-from service.catalogue.formulas import WrittenFormulas, screws_of
+from service.catalogue.files.fields import GivenOrFree, Screw
 from service.catalogue.part import PartSpec
-from service.catalogue.screw_robot import Reference
+from service.catalogue.robots.formulas import WrittenFormulas, screws_of
+from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import AnswerShape, choices, numbered
 
 

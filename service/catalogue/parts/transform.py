@@ -2,10 +2,10 @@
 
 from typing import ClassVar, Literal
 
-from service.catalogue.fields import Homogeneous
-from service.catalogue.formulas import WrittenFormulas, transform_of
+from service.catalogue.files.fields import Homogeneous
 from service.catalogue.part import PosePartSpec
-from service.catalogue.screw_robot import Reference
+from service.catalogue.robots.formulas import WrittenFormulas, transform_of
+from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import MatrixShape, matrix_shape
 
 

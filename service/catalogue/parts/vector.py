@@ -4,10 +4,10 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from service.catalogue.fields import Formula, StrictModel, Text
-from service.catalogue.formulas import WrittenFormulas, list_of
+from service.catalogue.files.fields import Formula, StrictModel, Text
 from service.catalogue.part import PartSpec
-from service.catalogue.screw_robot import Reference
+from service.catalogue.robots.formulas import WrittenFormulas, list_of
+from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import ListShape, list_shape
 from service.expressions import Kind
 

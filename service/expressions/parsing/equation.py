@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 
 from service.expressions.characters import greek
 from service.expressions.errors import Note, Span
-from service.expressions.parsing.words import split
+from service.expressions.parsing.lexing.words import split
 from service.expressions.vocabulary.symbols import Vocabulary
 
 _STYLE: Final = r"\\(?:mathrm|mathbf|mathit|mathsf|text|boldsymbol|bm|vec)\s*"

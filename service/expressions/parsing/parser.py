@@ -30,7 +30,7 @@ from functools import partial
 from typing import Final
 
 from service.expressions.errors import UnreadableError
-from service.expressions.parsing.tokens import END, Token
+from service.expressions.parsing.lexing.tokens import END, Token
 from service.expressions.parsing.tree_builder import Builder
 from service.expressions.tree import Node, Operator
 

@@ -9,8 +9,8 @@ from typing import Final
 from service.expressions.errors import Note, UnreadableError, shortened
 from service.expressions.limits import LIMITS
 from service.expressions.parsing.built import built
-from service.expressions.parsing.literal_notes import on_call, on_shorthand, on_sum
-from service.expressions.parsing.tokens import Token
+from service.expressions.parsing.lexing.literal_notes import on_call, on_shorthand, on_sum
+from service.expressions.parsing.lexing.tokens import Token
 from service.expressions.tree import (
     Binary,
     Call,

@@ -1,6 +1,6 @@
 """2^3^2, which has two readings."""
 
-from service.expressions.parsing.tokens import OPERAND_ENDS
+from service.expressions.parsing.lexing.tokens import OPERAND_ENDS
 from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 

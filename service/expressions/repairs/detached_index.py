@@ -3,7 +3,7 @@
 import re
 
 from service.expressions.characters import greek
-from service.expressions.parsing.words import split
+from service.expressions.parsing.lexing.words import split
 from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 _DETACHED = re.compile(rf"([A-Za-z{greek.CLASS}]+)[ _]+([0-9]+)(?![0-9.])")

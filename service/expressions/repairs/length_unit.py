@@ -2,7 +2,7 @@
 
 import re
 
-from service.expressions.parsing.tokens import OPERAND_ENDS
+from service.expressions.parsing.lexing.tokens import OPERAND_ENDS
 from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 _UNIT = re.compile(

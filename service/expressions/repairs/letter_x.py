@@ -1,6 +1,6 @@
 """The letter x for a product: 2 x q1."""
 
-from service.expressions.parsing.tokens import OPERAND_ENDS
+from service.expressions.parsing.lexing.tokens import OPERAND_ENDS
 from service.expressions.repairs.failure import Failure, Repair, answers, error
 
 

@@ -3,7 +3,7 @@
 import difflib
 import re
 
-from service.expressions.parsing.words import split
+from service.expressions.parsing.lexing.words import split
 from service.expressions.vocabulary.functions import IN_DEGREES, OF_DEGREES, PI, SPELLINGS
 from service.expressions.vocabulary.symbols import Vocabulary, normal_form
 

@@ -2,7 +2,7 @@
 
 import re
 
-from service.expressions.parsing.words import split
+from service.expressions.parsing.lexing.words import split
 from service.expressions.repairs.failure import Failure, Repair, error
 
 _WORD = re.compile(r"[A-Za-zÀ-ÿ]+")

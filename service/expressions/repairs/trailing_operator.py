@@ -1,6 +1,6 @@
 """A text that ends in an operator."""
 
-from service.expressions.parsing.tokens import END
+from service.expressions.parsing.lexing.tokens import END
 from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
 
 OPERATORS = frozenset({"PLUS", "MINUS", "STAR", "SLASH", "POWER", "ROOT"})

@@ -1,8 +1,8 @@
 """A bracket without its partner."""
 
 from service.expressions.errors import Span
-from service.expressions.parsing.brackets import PARTNERS
-from service.expressions.parsing.tokens import END, OPERAND_ENDS
+from service.expressions.parsing.lexing.brackets import PARTNERS
+from service.expressions.parsing.lexing.tokens import END, OPERAND_ENDS
 from service.expressions.repairs.failure import Failure, Repair, answers, error, position, quoted
 
 _BEFORE_BRACKET = OPERAND_ENDS | {"LEFT"}

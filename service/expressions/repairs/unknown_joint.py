@@ -4,7 +4,7 @@ import re
 
 from service.expressions.characters import greek
 from service.expressions.errors import Span
-from service.expressions.parsing.words import split
+from service.expressions.parsing.lexing.words import split
 from service.expressions.printing.symbol_names import symbol_latex
 from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
 from service.expressions.vocabulary.symbols import Vocabulary, normal_form

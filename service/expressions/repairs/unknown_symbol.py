@@ -4,7 +4,7 @@ import re
 from typing import Final
 
 from service.expressions.characters import greek
-from service.expressions.parsing.words import Piece, split
+from service.expressions.parsing.lexing.words import Piece, split
 from service.expressions.repairs.failure import Failure, Repair, absent, answers, error
 from service.expressions.repairs.nearest_name import nearest
 from service.expressions.vocabulary.symbols import Kind, Symbol, Vocabulary, normal_form

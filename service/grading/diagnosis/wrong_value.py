@@ -12,18 +12,18 @@ from numpy.typing import ArrayLike, NDArray
 from service.catalogue import Joint
 from service.expressions import Expression
 from service.expressions.printing.spelling import PLAIN, Spelling
-from service.grading.comparison import (
+from service.grading.diagnosis.wording import MEASURED, SYMBOLS
+from service.grading.feedback import EXPECTED, YOURS, Finding
+from service.grading.misconception import AnyHypothesis, Hypothesis, Index, Repaired, Written
+from service.grading.numerics.comparison import (
     difference,
     nearly_equal,
     rounding_slack,
     same,
 )
-from service.grading.diagnosis.wording import MEASURED, SYMBOLS
-from service.grading.feedback import EXPECTED, YOURS, Finding
-from service.grading.misconception import AnyHypothesis, Hypothesis, Index, Repaired, Written
+from service.grading.numerics.samples import Samples
+from service.grading.numerics.tolerances import PRINTED_NUMBER
 from service.grading.report import Correction
-from service.grading.samples import Samples
-from service.grading.tolerances import PRINTED_NUMBER
 from service.kinematics.transforms import Numbers
 
 Mask = NDArray[np.bool_]

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from service.catalogue import Joint, PartSpec
-from service.grading.comparison import difference
+from service.grading.numerics.comparison import difference
+from service.grading.numerics.samples import Samples
+from service.grading.numerics.tolerances import SAME_CONTENT
 from service.grading.part import Content, Grading
-from service.grading.samples import Samples
-from service.grading.tolerances import SAME_CONTENT
 from service.kinematics.transforms import Matrices, Numbers
 
 KnownCells = NDArray[np.bool_]

@@ -4,7 +4,7 @@ from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.feedback import Finding
 from service.grading.judging.table import Judgement, judged_table
 from service.grading.part import Grading
-from service.grading.reading.table import StudentTable
+from service.grading.reading.tables.table import StudentTable
 from service.grading.report import Severity
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention

@@ -4,10 +4,10 @@ import numpy as np
 
 from service.catalogue import Exercise, PartSpec, grid_values
 from service.catalogue.part import PosePartSpec
-from service.catalogue.robot import Robot, at_home
+from service.catalogue.robots.robot import Robot, at_home
 from service.grading.judging.own_frames.reference import tool_pose
+from service.grading.numerics.samples import SAMPLES, Samples
 from service.grading.part import Grading
-from service.grading.samples import SAMPLES, Samples
 from service.kinematics.transforms import Matrices, Numbers, inverse
 
 

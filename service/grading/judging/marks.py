@@ -9,7 +9,7 @@ from functools import lru_cache
 from typing import Final
 
 from service.catalogue import PartSpec
-from service.catalogue.fields import Marking
+from service.catalogue.files.fields import Marking
 from service.grading.part import Content, Judged
 from service.grading.report import (
     Feedback,

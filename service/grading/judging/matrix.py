@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.expressions import Kind
-from service.grading.comparison import entry_matches
-from service.grading.reading.matrix import StudentMatrix
-from service.grading.samples import Samples
+from service.grading.numerics.comparison import entry_matches
+from service.grading.numerics.samples import Samples
+from service.grading.reading.matrices.matrix import StudentMatrix
 from service.kinematics.transforms import Numbers
 
 

@@ -6,11 +6,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from service.grading.comparison import Match
 from service.grading.feedback import ROUNDED, Finding
+from service.grading.numerics.comparison import Match
 from service.grading.part import Grading
 from service.grading.reading.entry import Entry
-from service.grading.reading.value_list import StudentValues
+from service.grading.reading.lists.value_list import StudentValues
 from service.grading.report import CellReport, Place, ReadEntry, RowReport, Verdict, row_report
 
 _EXACT = int(Match.EXACT)

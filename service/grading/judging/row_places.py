@@ -5,7 +5,7 @@ from typing import Final
 from service.grading.feedback import Finding
 from service.grading.judging.table import JudgedRow, Judgement
 from service.grading.part import Grading
-from service.grading.reading.table import StudentTable
+from service.grading.reading.tables.table import StudentTable
 from service.grading.report import Severity
 from service.kinematics.dh import Convention
 

@@ -16,22 +16,27 @@ from numpy.typing import NDArray
 from service.catalogue import Joint, ReferenceTable
 from service.catalogue.parts.dh_table import DhTableSpec
 from service.expressions import Expression
-from service.grading.comparison import Match, difference, entry_matches, nearly_equal
 from service.grading.feedback import Finding
 from service.grading.judging.own_frames.best_roles import best_roles, roles_in, without_idle_rows
 from service.grading.judging.own_frames.completion import completed
-from service.grading.judging.own_frames.few_cells import NearestTable, frames_from_reference
-from service.grading.judging.own_frames.nearest_table import parallel_neighbours
+from service.grading.judging.own_frames.nearest.few_cells import NearestTable, frames_from_reference
+from service.grading.judging.own_frames.nearest.nearest_table import parallel_neighbours
 from service.grading.judging.own_frames.reference import reference_values
 from service.grading.judging.own_frames.remarks import remarks_on
 from service.grading.judging.own_frames.row_roles import Role, freedom_of, pair_in_order
+from service.grading.numerics.comparison import Match, difference, entry_matches, nearly_equal
+from service.grading.numerics.samples import SAMPLES
+from service.grading.numerics.tolerances import (
+    EXACT_VALUE,
+    HUGE_CELL,
+    HUGE_LENGTH,
+    PLAINLY_DIFFERENT,
+)
 from service.grading.part import Grading
-from service.grading.reading.table import IS_ANGLE, StudentRow, values_of
-from service.grading.samples import SAMPLES
-from service.grading.tolerances import EXACT_VALUE, HUGE_CELL, HUGE_LENGTH, PLAINLY_DIFFERENT
+from service.grading.reading.tables.table import IS_ANGLE, StudentRow, values_of
 from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh import Convention
-from service.kinematics.frame_choice import NO_SUCH_CELL, WRONG_CELL, departure
+from service.kinematics.frames.frame_choice import NO_SUCH_CELL, WRONG_CELL, departure
 from service.kinematics.transforms import Matrices, Numbers
 
 

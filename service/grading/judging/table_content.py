@@ -10,7 +10,7 @@ from service.catalogue import Exercise, Joint
 from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.judging.content import KnownCells, known_cells, of_rows
 from service.grading.judging.own_frames.best_roles import roles_in
-from service.grading.judging.own_frames.nearest_table import nearest_for_roles
+from service.grading.judging.own_frames.nearest.nearest_table import nearest_for_roles
 from service.grading.judging.own_frames.reference import reference_values
 from service.grading.judging.own_frames.row_roles import (
     Role,
@@ -19,16 +19,16 @@ from service.grading.judging.own_frames.row_roles import (
     variable_column,
 )
 from service.grading.judging.table import Judgement, column_scales
+from service.grading.numerics.samples import SAMPLES, draw
 from service.grading.part import Content, Grading
 from service.grading.reading.entry import Reader
-from service.grading.reading.table import (
+from service.grading.reading.tables.table import (
     COMPUTED,
     IS_ANGLE,
     StudentRow,
     StudentTable,
     computed_row,
 )
-from service.grading.samples import SAMPLES, draw
 from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh import Convention
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from service.grading.comparison import entry_matches
 from service.grading.formula_text import number_formula
+from service.grading.numerics.comparison import entry_matches
 from service.grading.part import Grading
-from service.grading.reading.value_list import StudentValues
+from service.grading.reading.lists.value_list import StudentValues
 from service.grading.report import Correction
 from service.kinematics.transforms import Numbers
 

@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 from service.catalogue.parts.dh_row import DhRowSpec
 from service.expressions import Expression
 from service.expressions.printing.spelling import Spelling, spelling_for
-from service.grading.comparison import Match, entry_matches
-from service.grading.diagnosis.dh_row import MISCONCEPTIONS, WrongRow, has_a_row, violated
-from service.grading.diagnosis.table_cell import diagnose
+from service.grading.diagnosis.tables.dh_row import MISCONCEPTIONS, WrongRow, has_a_row, violated
+from service.grading.diagnosis.tables.table_cell import diagnose
 from service.grading.diagnosis.wrong_value import WrongCell
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.formula_text import value_formula
@@ -20,11 +19,12 @@ from service.grading.judging.content import known_cells, of_one_row
 from service.grading.judging.expected import given_values
 from service.grading.judging.report_rows import cell_report
 from service.grading.misconception import diagnosed
+from service.grading.numerics.comparison import Match, entry_matches
 from service.grading.part import Grading, Judged
 from service.grading.reading.entry import MISSING, Entry
-from service.grading.reading.row_text import NamedCell, in_one_line, named_cells, says_none
-from service.grading.reading.table import IS_ANGLE, StudentRow, read_table
-from service.grading.reading.table_json import canonical_table
+from service.grading.reading.tables.row_text import NamedCell, in_one_line, named_cells, says_none
+from service.grading.reading.tables.table import IS_ANGLE, StudentRow, read_table
+from service.grading.reading.tables.table_json import canonical_table
 from service.grading.report import CellReport, Verdict, row_report
 from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh_row import row

@@ -5,12 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from service.catalogue.parts.dh_table import DhTableSpec
-from service.grading.comparison import Match
-from service.grading.diagnosis.column_order import in_other_orders
-from service.grading.diagnosis.intended_table import IntendedTable, with_exchanged_row
-from service.grading.diagnosis.joint_numbering import by_other_numbering
-from service.grading.diagnosis.table_cell import diagnose_cells, wrong_cells
-from service.grading.diagnosis.table_explained import explained, freedom_lost
+from service.grading.diagnosis.tables.column_order import in_other_orders
+from service.grading.diagnosis.tables.intended_table import IntendedTable, with_exchanged_row
+from service.grading.diagnosis.tables.joint_numbering import by_other_numbering
+from service.grading.diagnosis.tables.table_cell import diagnose_cells, wrong_cells
+from service.grading.diagnosis.tables.table_explained import explained, freedom_lost
 from service.grading.feedback import Finding
 from service.grading.follow_through import stands_still
 from service.grading.judging.convention import judged_in_convention
@@ -30,9 +29,11 @@ from service.grading.judging.report_rows import (
 from service.grading.judging.row_places import row_places
 from service.grading.judging.table import JudgedRow, Judgement
 from service.grading.judging.table_content import table_content, with_lazy_cells
+from service.grading.numerics.comparison import Match
+from service.grading.numerics.samples import Samples
 from service.grading.part import Grading, Judged, StudentChain
-from service.grading.reading.column_headers import QUANTITIES
-from service.grading.reading.table import StudentRow, StudentTable, read_table
+from service.grading.reading.tables.column_headers import QUANTITIES
+from service.grading.reading.tables.table import StudentRow, StudentTable, read_table
 from service.grading.report import (
     CellReport,
     Place,
@@ -41,7 +42,6 @@ from service.grading.report import (
     Verdict,
     row_report,
 )
-from service.grading.samples import Samples
 from service.kinematics.chain import COLUMNS, D, frames, links
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices

@@ -11,7 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue.parts.euler_angles import EulerAnglesSpec
-from service.grading.comparison import (
+from service.grading.diagnosis.lists.angle import has_arctangent
+from service.grading.diagnosis.lists.euler_triple import RepairedTriple, WrongTriple, explain_triple
+from service.grading.diagnosis.lists.value_list import slips_of
+from service.grading.feedback import Finding
+from service.grading.formula_text import value_formula
+from service.grading.judging.content import known_cells, of_list
+from service.grading.judging.expected import asked_pose, formula_values
+from service.grading.judging.report_rows import value_rows
+from service.grading.judging.value_list import ComparedValues
+from service.grading.numerics.comparison import (
     Match,
     SharedDecimals,
     difference,
@@ -19,21 +28,12 @@ from service.grading.comparison import (
     fitted_shifts,
     rounding_slack,
 )
-from service.grading.diagnosis.angle import has_arctangent
-from service.grading.diagnosis.euler_triple import RepairedTriple, WrongTriple, explain_triple
-from service.grading.diagnosis.value_list import slips_of
-from service.grading.feedback import Finding
-from service.grading.formula_text import value_formula
-from service.grading.judging.content import known_cells, of_list
-from service.grading.judging.expected import asked_pose, formula_values
-from service.grading.judging.report_rows import value_rows
-from service.grading.judging.value_list import ComparedValues
+from service.grading.numerics.tolerances import EXACT_VALUE, SAME_TRIPLE
 from service.grading.part import Content, Grading, Judged
-from service.grading.reading.component_names import names_of_angles
 from service.grading.reading.entry import Entry
-from service.grading.reading.value_list import StudentValues, read_list
+from service.grading.reading.lists.component_names import names_of_angles
+from service.grading.reading.lists.value_list import StudentValues, read_list
 from service.grading.report import Correction, Severity
-from service.grading.tolerances import EXACT_VALUE, SAME_TRIPLE
 from service.kinematics.rotations import (
     from_angles,
     is_singular,

@@ -5,13 +5,13 @@ from functools import partial
 
 import numpy as np
 
-from service.catalogue.formulas import HOMOGENEOUS
 from service.catalogue.parts.link_transforms import LinkTransformsSpec
-from service.grading.diagnosis.all_links import explain_links
-from service.grading.diagnosis.link_slips import LinkAmongOthers, explain_link
-from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
-from service.grading.diagnosis.matrix_entry import WORK_BUDGET
-from service.grading.diagnosis.slipped_link import slipped_link
+from service.catalogue.robots.formulas import HOMOGENEOUS
+from service.grading.diagnosis.matrices.link_slips import LinkAmongOthers, explain_link
+from service.grading.diagnosis.matrices.matrix_case import Explanation, MatrixCase
+from service.grading.diagnosis.matrices.matrix_entry import WORK_BUDGET
+from service.grading.diagnosis.upstream.all_links import explain_links
+from service.grading.diagnosis.upstream.slipped_link import slipped_link
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.follow_through import stands_still
 from service.grading.judging.content import of_links
@@ -19,13 +19,13 @@ from service.grading.judging.matrix import ExpectedMatrix
 from service.grading.judging.own_frames.best_roles import nearest_with_tool_row
 from service.grading.judging.own_frames.row_roles import FrameFreedom, Role
 from service.grading.kinds.matrix_rows import matrix_rows
+from service.grading.numerics.samples import SAMPLES, Samples
+from service.grading.numerics.tolerances import LINK_TRANSFORM
 from service.grading.part import Content, Grading, Judged, StudentChain
-from service.grading.reading.matrix import StudentMatrix, read_matrix, unreadable_matrix
-from service.grading.reading.matrix_list import places_in_list, read_matrices, with_notes
-from service.grading.reading.table import StudentRow, computed_row
+from service.grading.reading.matrices.matrix import StudentMatrix, read_matrix, unreadable_matrix
+from service.grading.reading.matrices.matrix_list import places_in_list, read_matrices, with_notes
+from service.grading.reading.tables.table import StudentRow, computed_row
 from service.grading.report import Feedback, RowReport
-from service.grading.samples import SAMPLES, Samples
-from service.grading.tolerances import LINK_TRANSFORM
 from service.kinematics.chain import links, products
 from service.kinematics.dh import link_transforms
 from service.kinematics.dh_row import row as dh_row

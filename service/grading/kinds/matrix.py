@@ -6,7 +6,7 @@ from service.grading.judging.expected import given_values
 from service.grading.judging.matrix import ExpectedMatrix
 from service.grading.kinds.matrix_rows import matrix_rows
 from service.grading.part import Grading, Judged
-from service.grading.reading.matrix import StudentMatrix, read_matrix
+from service.grading.reading.matrices.matrix import StudentMatrix, read_matrix
 
 
 def read(part: MatrixSpec, answer: object, grading: Grading) -> StudentMatrix:

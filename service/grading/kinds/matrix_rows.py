@@ -7,24 +7,24 @@ from itertools import chain
 import numpy as np
 
 from service.expressions.printing.spelling import PLAIN
-from service.grading.comparison import Match
-from service.grading.diagnosis.formula_repair import WrongEntry
-from service.grading.diagnosis.given_motion import GivenMotion
-from service.grading.diagnosis.link_products import Chain
-from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
-from service.grading.diagnosis.matrix_entry import WORK_BUDGET, diagnose_entries
-from service.grading.diagnosis.missing_symbol import Requirements
-from service.grading.diagnosis.slip_search import SlipSearch
-from service.grading.diagnosis.slipped_answers import SlippedAnswers
-from service.grading.diagnosis.whole_matrix import check_yourself, explain, unexplained
+from service.grading.diagnosis.formulas.formula_repair import WrongEntry
+from service.grading.diagnosis.matrices.matrix_case import Explanation, MatrixCase
+from service.grading.diagnosis.matrices.matrix_entry import WORK_BUDGET, diagnose_entries
+from service.grading.diagnosis.matrices.whole_matrix import check_yourself, explain, unexplained
+from service.grading.diagnosis.motions.given_motion import GivenMotion
+from service.grading.diagnosis.motions.link_products import Chain
+from service.grading.diagnosis.upstream.missing_symbol import Requirements
+from service.grading.diagnosis.upstream.slip_search import SlipSearch
+from service.grading.diagnosis.upstream.slipped_answers import SlippedAnswers
 from service.grading.diagnosis.wrong_value import Mask
 from service.grading.formula_text import number_formula
 from service.grading.judging.matrix import ExpectedMatrix
 from service.grading.judging.report_rows import entry_rows
+from service.grading.numerics.comparison import Match
+from service.grading.numerics.samples import Samples
 from service.grading.part import Grading
-from service.grading.reading.matrix import StudentMatrix
+from service.grading.reading.matrices.matrix import StudentMatrix
 from service.grading.report import Feedback, Place, RowReport
-from service.grading.samples import Samples
 
 # So many samples of each half tell whole matrices apart.
 SUBSET = 4

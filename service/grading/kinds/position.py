@@ -4,22 +4,22 @@ import numpy as np
 
 from service.catalogue import Robot
 from service.catalogue.parts.position import PositionSpec
-from service.grading.comparison import Match
-from service.grading.diagnosis.given_motion import GivenMotion
-from service.grading.diagnosis.link_products import chains_of
-from service.grading.diagnosis.motion_slips import explain_displacements
-from service.grading.diagnosis.position import WrongPosition, explain_position
-from service.grading.diagnosis.slipped_answers import SlippedAnswers, slipped_answers
-from service.grading.diagnosis.value_list import SEARCH_WORK, search_of, slips_of
+from service.grading.diagnosis.lists.position import WrongPosition, explain_position
+from service.grading.diagnosis.lists.value_list import SEARCH_WORK, search_of, slips_of
+from service.grading.diagnosis.motions.given_motion import GivenMotion
+from service.grading.diagnosis.motions.link_products import chains_of
+from service.grading.diagnosis.motions.motion_slips import explain_displacements
+from service.grading.diagnosis.upstream.slipped_answers import SlippedAnswers, slipped_answers
 from service.grading.diagnosis.wrong_value import Mask
 from service.grading.feedback import Finding
 from service.grading.judging.content import known_cells, of_list
 from service.grading.judging.expected import as_entries, asked_pose, formula_values, is_whole_chain
 from service.grading.judging.report_rows import value_places, value_rows
 from service.grading.judging.value_list import ComparedValues, number_corrections
+from service.grading.numerics.comparison import Match
 from service.grading.part import Grading, Judged
-from service.grading.reading.component_names import names_of_coordinates
-from service.grading.reading.value_list import (
+from service.grading.reading.lists.component_names import names_of_coordinates
+from service.grading.reading.lists.value_list import (
     HOMOGENEOUS,
     PLANAR,
     StudentValues,

@@ -1,13 +1,13 @@
 """Answer kind ``rotation``: a rotation matrix, of a pose or made of turns about axes."""
 
 from service.catalogue import Robot
-from service.catalogue.formulas import ROTATION
 from service.catalogue.parts.rotation import RotationSpec
-from service.grading.diagnosis.given_motion import GivenMotion
-from service.grading.diagnosis.link_products import Chain, chains_of
-from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
-from service.grading.diagnosis.rotation_steps import Step, explain_steps
-from service.grading.diagnosis.slipped_answers import SlippedAnswers, slipped_answers
+from service.catalogue.robots.formulas import ROTATION
+from service.grading.diagnosis.matrices.matrix_case import Explanation, MatrixCase
+from service.grading.diagnosis.matrices.rotation_steps import Step, explain_steps
+from service.grading.diagnosis.motions.given_motion import GivenMotion
+from service.grading.diagnosis.motions.link_products import Chain, chains_of
+from service.grading.diagnosis.upstream.slipped_answers import SlippedAnswers, slipped_answers
 from service.grading.judging.content import of_rigid
 from service.grading.judging.expected import (
     as_entries,
@@ -18,9 +18,9 @@ from service.grading.judging.expected import (
 )
 from service.grading.judging.matrix import ExpectedMatrix
 from service.grading.kinds.matrix_rows import matrix_rows
+from service.grading.numerics.samples import Samples
 from service.grading.part import Grading, Judged
-from service.grading.reading.matrix import StudentMatrix, read_matrix
-from service.grading.samples import Samples
+from service.grading.reading.matrices.matrix import StudentMatrix, read_matrix
 from service.kinematics.rotations import about, composed
 from service.kinematics.transforms import Numbers
 

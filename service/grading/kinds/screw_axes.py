@@ -6,33 +6,38 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from service.catalogue.formulas import SCREW
 from service.catalogue.parts.screw_axes import ScrewAxesSpec
-from service.catalogue.robot import at_home
+from service.catalogue.robots.formulas import SCREW
+from service.catalogue.robots.robot import at_home
 from service.expressions import Note
-from service.grading.comparison import Match, entry_matches
-from service.grading.diagnosis.all_screws import WrongScrews, explain_screws
-from service.grading.diagnosis.home_position import NOT_AT_HOME, with_joint_variable
-from service.grading.diagnosis.screw_axis import explain_screw
-from service.grading.diagnosis.value_list import slips_of
+from service.grading.diagnosis.lists.value_list import slips_of
+from service.grading.diagnosis.matrices.home_position import NOT_AT_HOME, with_joint_variable
+from service.grading.diagnosis.screws.all_screws import WrongScrews, explain_screws
+from service.grading.diagnosis.screws.screw_axis import explain_screw
 from service.grading.feedback import Finding, UnreadableAnswerError
 from service.grading.judging.content import known_cells, of_rows
 from service.grading.judging.expected import formula_values
 from service.grading.judging.report_rows import entry_rows
 from service.grading.judging.value_list import ComparedValues, number_corrections
+from service.grading.numerics.comparison import Match, entry_matches
+from service.grading.numerics.samples import SAMPLES, Samples
 from service.grading.part import Grading, Judged
 from service.grading.reading.entry import from_note
-from service.grading.reading.matrix import (
+from service.grading.reading.lists.value_list import StudentValues
+from service.grading.reading.matrices.matrix import (
     StudentMatrix,
     matrix_of_entries,
     matrix_of_grid,
     read_matrix,
 )
+from service.grading.reading.matrices.screw_list import (
+    WIDTH,
+    columns_as_axes,
+    screw_grid,
+    screw_rows,
+)
 from service.grading.reading.pasted import from_grid_error
-from service.grading.reading.screw_list import WIDTH, columns_as_axes, screw_grid, screw_rows
-from service.grading.reading.value_list import StudentValues
 from service.grading.report import Feedback, Place, Severity
-from service.grading.samples import SAMPLES, Samples
 from service.grids import GridError
 from service.kinematics.screws import moved
 from service.kinematics.transforms import Numbers, inverse

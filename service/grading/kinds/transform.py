@@ -3,22 +3,22 @@
 import numpy as np
 
 from service.catalogue import Robot
-from service.catalogue.formulas import HOMOGENEOUS
 from service.catalogue.parts.transform import TransformSpec
-from service.grading.diagnosis.exponentials import explain_product
-from service.grading.diagnosis.given_motion import GivenMotion
-from service.grading.diagnosis.home_position import explain_moving
-from service.grading.diagnosis.link_products import Chain, chains_of
-from service.grading.diagnosis.matrix_case import Explanation, MatrixCase
-from service.grading.diagnosis.slipped_answers import SlippedAnswers, slipped_answers
+from service.catalogue.robots.formulas import HOMOGENEOUS
+from service.grading.diagnosis.matrices.exponentials import explain_product
+from service.grading.diagnosis.matrices.home_position import explain_moving
+from service.grading.diagnosis.matrices.matrix_case import Explanation, MatrixCase
+from service.grading.diagnosis.motions.given_motion import GivenMotion
+from service.grading.diagnosis.motions.link_products import Chain, chains_of
+from service.grading.diagnosis.upstream.slipped_answers import SlippedAnswers, slipped_answers
 from service.grading.follow_through import stands_still
 from service.grading.judging.content import of_rigid
 from service.grading.judging.expected import as_entries, asked_pose, formula_values, is_whole_chain
 from service.grading.judging.matrix import ExpectedMatrix
 from service.grading.kinds.matrix_rows import matrix_rows
+from service.grading.numerics.samples import Samples
 from service.grading.part import Grading, Judged, StudentChain
-from service.grading.reading.matrix import StudentMatrix, read_matrix
-from service.grading.samples import Samples
+from service.grading.reading.matrices.matrix import StudentMatrix, read_matrix
 from service.kinematics.chain import products
 from service.kinematics.transforms import Matrices
 

@@ -3,9 +3,8 @@
 import numpy as np
 
 from service.catalogue.parts.vector import VectorSpec
-from service.grading.comparison import Match
-from service.grading.diagnosis.slipped_answers import SlippedAnswers, slipped_answers
-from service.grading.diagnosis.value_list import SEARCH_WORK, search_of, slips_of
+from service.grading.diagnosis.lists.value_list import SEARCH_WORK, search_of, slips_of
+from service.grading.diagnosis.upstream.slipped_answers import SlippedAnswers, slipped_answers
 from service.grading.diagnosis.wrong_value import Mask
 from service.grading.feedback import Finding
 from service.grading.formula_text import spelled
@@ -13,9 +12,10 @@ from service.grading.judging.content import known_cells, of_list
 from service.grading.judging.expected import given_values
 from service.grading.judging.report_rows import value_places, value_rows
 from service.grading.judging.value_list import ComparedValues
+from service.grading.numerics.comparison import Match
 from service.grading.part import Grading, Judged
-from service.grading.reading.component_names import names_of_components
-from service.grading.reading.value_list import PLANAR, StudentValues, read_list
+from service.grading.reading.lists.component_names import names_of_components
+from service.grading.reading.lists.value_list import PLANAR, StudentValues, read_list
 from service.grading.report import Correction
 
 

@@ -9,7 +9,7 @@ from functools import lru_cache
 from typing import Final
 
 from service.expressions import Expression, Symbol, Vocabulary
-from service.grading.samples import Samples
+from service.grading.numerics.samples import Samples
 
 _LETTERS: Final = "thetad"
 # No joint has such an index, so that no shorthand names an absent variable.

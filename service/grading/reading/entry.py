@@ -21,9 +21,9 @@ from service.expressions import (
     reading_cost,
 )
 from service.grading.feedback import Finding, reading_error, reading_note
+from service.grading.numerics.samples import SAMPLES, Samples
 from service.grading.reading.absent_variables import with_absent_variables
 from service.grading.report import Verdict
-from service.grading.samples import SAMPLES, Samples
 from service.grading.work_budget import WorkBudget
 from service.kinematics.transforms import Numbers
 

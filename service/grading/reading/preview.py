@@ -11,13 +11,13 @@ from service.catalogue.parts.screw_axes import ScrewAxesSpec
 from service.expressions import AngleUnit, Kind, Note
 from service.expressions.errors import Span
 from service.grading.feedback import Finding, UnreadableAnswerError
-from service.grading.reading.column_headers import Header
+from service.grading.numerics.samples import draw
 from service.grading.reading.entry import Entry, Reader
-from service.grading.reading.matrix_list import grids_in_order
+from service.grading.reading.matrices.matrix_list import grids_in_order
+from service.grading.reading.matrices.screw_list import screw_grid
 from service.grading.reading.pasted import pasted_grid, placed
-from service.grading.reading.pasted_table import entries_of, read_pasted_table
-from service.grading.reading.screw_list import screw_grid
-from service.grading.samples import draw
+from service.grading.reading.tables.column_headers import Header
+from service.grading.reading.tables.pasted_table import entries_of, read_pasted_table
 from service.grading.work_budget import WorkBudget
 from service.grids import Grid, GridCell, GridError
 from service.kinematics.chain import COLUMNS

@@ -4,9 +4,9 @@ import numpy as np
 import sympy
 
 from service.catalogue import Exercise, grid_values
-from service.catalogue.formulas import EXACT
 from service.catalogue.parts.dh_row import DhRowSpec
-from service.catalogue.variables import TRIALS, trial_values
+from service.catalogue.robots.formulas import EXACT
+from service.catalogue.robots.variables import TRIALS, trial_values
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention
 from service.kinematics.dh_row import dh1_residual, dh2_residual

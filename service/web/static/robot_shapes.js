@@ -5,7 +5,7 @@ import { Group, Vector3 } from "./three-0.185.1.module.min.js";
 import { column, dot } from "./motion.js";
 import { lay, layRods, vector } from "./shapes.js";
 
-// The sizes of the figure, as shares of the mechanism's: service/figures/mechanism.py has them.
+// The sizes of the figure, as shares of the mechanism's: service/figures/geometry/mechanism.py has them.
 const JOINT_LENGTH = 0.15;
 const JOINT_RADIUS = 0.046;
 const ROD = 0.018;

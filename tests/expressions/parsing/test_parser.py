@@ -15,7 +15,7 @@ import pytest
 from service.expressions import LIMITS, ExpressionError, Vocabulary, read
 from service.expressions.errors import UnreadableError
 from service.expressions.parsing import parser
-from service.expressions.parsing.tokens import END, Token
+from service.expressions.parsing.lexing.tokens import END, Token
 from service.expressions.parsing.tree_builder import Builder
 
 # A part of a rule: a symbol, or what may be repeated or left out, as alternatives of sequences.

@@ -4,8 +4,8 @@ from functools import reduce
 
 import numpy as np
 
-from service.grading.diagnosis.link_products import Chain
-from service.grading.diagnosis.matrix_case import MatrixCase
+from service.grading.diagnosis.matrices.matrix_case import MatrixCase
+from service.grading.diagnosis.motions.link_products import Chain
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers
 from tests.frame_choice.kinematics import screw_x, screw_z

@@ -6,7 +6,7 @@ from service.expressions import Symbol, Vocabulary, read
 from service.grading.diagnosis.wrong_value import WrongNumbers, WrongValue, differs
 from service.grading.feedback import Finding
 from service.grading.misconception import Hypothesis, Repaired, Written
-from service.grading.samples import SAMPLES, Samples
+from service.grading.numerics.samples import SAMPLES, Samples
 from service.kinematics.transforms import Numbers
 
 FINDING = Finding("code", "Hint.")

@@ -12,10 +12,10 @@ import numpy as np
 
 from service.grading.judging.own_frames.reference import Mechanism
 from service.grading.judging.own_frames.row_roles import FrameFreedom, Role
-from service.kinematics.axis_alignment import align_axes
 from service.kinematics.chain import Table, products
 from service.kinematics.dh import standard_link
 from service.kinematics.factors import Integers
+from service.kinematics.frames.axis_alignment import align_axes
 from service.kinematics.transforms import Matrices, inverse
 
 

@@ -4,18 +4,18 @@ from collections.abc import Sequence
 
 from service.catalogue import Joint
 from service.catalogue.parts.dh_table import DhTableSpec
-from service.grading.judging.own_frames.few_cells import NearestTable
-from service.grading.judging.own_frames.nearest_table import nearest_for_roles
-from service.grading.judging.own_frames.rounded_angles import with_exact_angles
-from service.grading.judging.own_frames.rounded_cells import (
+from service.grading.judging.own_frames.nearest.few_cells import NearestTable
+from service.grading.judging.own_frames.nearest.nearest_table import nearest_for_roles
+from service.grading.judging.own_frames.rounding.rounded_angles import with_exact_angles
+from service.grading.judging.own_frames.rounding.rounded_cells import (
     with_rounded_cells,
     with_true_numbers,
 )
 from service.grading.judging.own_frames.row_roles import FrameFreedom, Role, freedom_of, roles_of
 from service.grading.part import Grading
-from service.grading.reading.table import StudentRow
+from service.grading.reading.tables.table import StudentRow
 from service.kinematics.dh import Convention
-from service.kinematics.frame_choice import WRONG_CELL
+from service.kinematics.frames.frame_choice import WRONG_CELL
 
 
 def best_roles(

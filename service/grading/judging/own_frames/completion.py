@@ -15,20 +15,20 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from service.grading.judging.own_frames.few_cells import NearestTable
+from service.grading.judging.own_frames.nearest.few_cells import NearestTable
 from service.grading.judging.own_frames.row_roles import (
     FrameFreedom,
     Role,
     handed_in_values,
     joint_cells,
 )
+from service.grading.numerics.samples import HALF, SAMPLES, Samples
 from service.grading.part import Grading
-from service.grading.reading.table import IS_ANGLE
-from service.grading.samples import HALF, SAMPLES, Samples
+from service.grading.reading.tables.table import IS_ANGLE
 from service.grading.work_budget import WorkBudget
 from service.kinematics.chain import A, D, Table, frames
 from service.kinematics.dh import Convention
-from service.kinematics.frame_choice import WRONG_CELL
+from service.kinematics.frames.frame_choice import WRONG_CELL
 from service.kinematics.screws import exponential
 from service.kinematics.transforms import Matrices, Numbers, identity
 

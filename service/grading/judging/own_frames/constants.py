@@ -4,22 +4,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import Joint
-from service.grading.comparison import difference
-from service.grading.joint_motion import halves, joint_counts
 from service.grading.judging.own_frames.reference import regrouped
-from service.grading.judging.own_frames.rounded_angles import slack_of_cells
+from service.grading.judging.own_frames.rounding.rounded_angles import slack_of_cells
 from service.grading.judging.own_frames.row_roles import (
     Role,
     handed_in_values,
     joint_cells,
     variable_column,
 )
-from service.grading.reading.table import IS_ANGLE
-from service.grading.samples import HALF, SAMPLES, Samples
-from service.grading.tolerances import SAME_MOTION
+from service.grading.numerics.comparison import difference
+from service.grading.numerics.joint_motion import halves, joint_counts
+from service.grading.numerics.samples import HALF, SAMPLES, Samples
+from service.grading.numerics.tolerances import SAME_MOTION
+from service.grading.reading.tables.table import IS_ANGLE
 from service.kinematics.chain import COLUMNS
-from service.kinematics.chain_match import RowConstants
 from service.kinematics.dh import Convention
+from service.kinematics.frames.chain_match import RowConstants
 from service.kinematics.transforms import Numbers
 
 

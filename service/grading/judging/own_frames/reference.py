@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import Exercise, ReferenceTable
-from service.grading.joint_motion import halves
 from service.grading.judging.own_frames.row_roles import Role, joint_cells, variable_column
-from service.grading.samples import Samples
+from service.grading.numerics.joint_motion import halves
+from service.grading.numerics.samples import Samples
 from service.kinematics.chain import Table, axis_frames, z_links
 from service.kinematics.dh import Convention, standard_link
 from service.kinematics.transforms import Matrices, inverse

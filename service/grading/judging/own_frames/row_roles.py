@@ -8,9 +8,9 @@ import numpy as np
 
 from service.catalogue import Joint
 from service.catalogue.parts.dh_table import DhTableSpec
-from service.grading.joint_motion import joint_counts
-from service.grading.reading.table import IS_ANGLE, StudentRow, values_of
-from service.grading.samples import SAMPLES, Samples
+from service.grading.numerics.joint_motion import joint_counts
+from service.grading.numerics.samples import SAMPLES, Samples
+from service.grading.reading.tables.table import IS_ANGLE, StudentRow, values_of
 from service.kinematics.chain import COLUMNS, THETA, D, Table
 from service.kinematics.factors import CellIndex
 from service.kinematics.transforms import Numbers

@@ -4,7 +4,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue import Exercise
-from service.grading.joint_motion import changes, moves_with
 from service.grading.judging.own_frames.constants import without_variables
 from service.grading.judging.own_frames.reference import (
     Mechanism,
@@ -13,12 +12,13 @@ from service.grading.judging.own_frames.reference import (
     regrouped,
 )
 from service.grading.judging.own_frames.row_roles import FrameFreedom, Role, variables_of
-from service.grading.reading.table import IS_ANGLE
-from service.grading.samples import Samples
-from service.kinematics.candidate_rows import TargetKind
+from service.grading.numerics.joint_motion import changes, moves_with
+from service.grading.numerics.samples import Samples
+from service.grading.reading.tables.table import IS_ANGLE
 from service.kinematics.chain import pose
-from service.kinematics.chain_match import Target, match_tables
 from service.kinematics.dh import Convention
+from service.kinematics.frames.candidate_rows import TargetKind
+from service.kinematics.frames.chain_match import Target, match_tables
 from service.kinematics.transforms import Numbers
 
 

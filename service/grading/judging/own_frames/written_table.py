@@ -7,10 +7,10 @@ import numpy as np
 
 from service.catalogue import Joint
 from service.grading.feedback import Finding
-from service.grading.joint_motion import joint_counts
 from service.grading.misconception import Repaired
-from service.grading.reading.table import IS_ANGLE
-from service.grading.samples import Samples
+from service.grading.numerics.joint_motion import joint_counts
+from service.grading.numerics.samples import Samples
+from service.grading.reading.tables.table import IS_ANGLE
 from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
 

@@ -1,0 +1,73 @@
+"""The exercise and the parts that a request names, or a problem that lists the known ones."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from http import HTTPStatus
+from itertools import islice
+from typing import Annotated
+
+from fastapi import Path
+
+from service.access.caller import Caller
+from service.api.http.problems import MAX_ERRORS, ProblemError, invalid
+from service.catalogue import Exercise
+from service.submissions.lookup import UnknownExerciseError, find_exercise, nearest
+
+Catalogue = Mapping[str, Exercise]
+ExerciseId = Annotated[str, Path(description="The id of an exercise.", examples=["stanford-arm"])]
+# The steps from the whole body to a place in it.
+Location = tuple[str | int, ...]
+
+
+def reached(catalogue: Catalogue, caller: Caller) -> Catalogue:
+    """The exercises that a caller's key is for."""
+    return {name: each for name, each in catalogue.items() if caller.reaches(name)}
+
+
+def exercise_or_404(catalogue: Catalogue, exercise_id: str) -> Exercise:
+    """The exercise named in a path. Raises ProblemError."""
+    try:
+        return find_exercise(catalogue, exercise_id)
+    except UnknownExerciseError as error:
+        raise ProblemError(
+            HTTPStatus.NOT_FOUND, str(error), "unknown-exercise", "There is no such exercise"
+        ) from error
+
+
+def require_exercise(catalogue: Catalogue, exercise_id: str) -> Exercise:
+    """The exercise named in a body, in its field ``exercise``. Raises ProblemError."""
+    try:
+        return find_exercise(catalogue, exercise_id)
+    except UnknownExerciseError as error:
+        detail = {"type": "unknown", "loc": ("exercise",), "msg": str(error)[:-1]}
+        raise invalid([detail]) from error
+
+
+def require_exercises(catalogue: Catalogue, exercise_ids: Iterable[str], field: str) -> None:
+    """Check that the exercises of a list in a body exist. Raises ProblemError."""
+    details = []
+    for i, exercise_id in enumerate(exercise_ids):
+        try:
+            find_exercise(catalogue, exercise_id)
+        except UnknownExerciseError as error:
+            details.append({"type": "unknown", "loc": (field, i), "msg": str(error)[:-1]})
+    if details:
+        raise invalid(details)
+
+
+def require_parts(exercise: Exercise, located: Iterable[tuple[str, Location]]) -> None:
+    """Check that the exercise has these parts, each with its place in the body.
+
+    Raises ProblemError naming those that there are, and the places of the first that there are not.
+    """
+    absent = (each for each in located if exercise.part(each[0]) is None)
+    known = [part.id for part in exercise.parts]
+    details = []
+    for part, place in islice(absent, MAX_ERRORS):
+        meant = nearest(part, known)
+        hint = f"did you mean {meant}? Its" if meant else "its"
+        message = f"{exercise.id} has no such part; {hint} parts are {', '.join(known)}"
+        details.append({"type": "unknown", "loc": place, "msg": message})
+    if details:
+        problem = invalid(details)
+        raise replace(problem, name="unknown-part", title="The exercise has no such part")

@@ -1,0 +1,192 @@
+"""The routes by which tutors read what is recorded."""
+
+import json
+import re
+from datetime import UTC, datetime
+from http import HTTPStatus
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+from fastapi import APIRouter, Path, Query, Request, Response
+from pydantic import AfterValidator, AwareDatetime, BeforeValidator, StringConstraints
+
+from service.access.caller import Caller
+from service.api.document.openapi import MAY_NEED_KEY, refusals
+from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
+from service.api.http.problems import invalid
+from service.api.permissions.access import Access
+from service.api.permissions.access_problems import other_learner
+from service.api.recording.store import ask, private, private_json, unknown_attempt
+from service.attempts.attempt import MOST_ON_A_PAGE, AttemptFilter
+from service.attempts.errors import BadCursorError
+from service.contract.attempts import (
+    AttemptDetail,
+    AttemptList,
+    AttemptOverride,
+    AttemptSummary,
+    Learner,
+)
+from service.contract.statistics import ExerciseStatistics
+
+if TYPE_CHECKING:  # they load the drivers of databases
+    from sqlalchemy import Row
+
+    from service.attempts.results.listing import AttemptHistory
+    from service.attempts.store import AttemptStore
+
+
+def _in_utc(moment: datetime) -> datetime:
+    try:
+        return moment.astimezone(UTC)
+    except OverflowError as error:
+        raise ValueError("is no moment of the calendar in UTC") from error
+
+
+def _written_out(moment: object) -> object:
+    # A number would be read as seconds since 1970.
+    if isinstance(moment, str) and _DATE.match(moment) is None:
+        raise ValueError("is no date with a time, such as 2026-10-01T08:00:00Z")
+    return moment
+
+
+_DATE: Final = re.compile(r"\d{4}-\d\d-\d\d[Tt ]")
+Moment = Annotated[AwareDatetime, BeforeValidator(_written_out), AfterValidator(_in_utc)]
+Since = Annotated[
+    Moment | None,
+    Query(description="The first moment, with its time zone: 2026-10-01T08:00:00Z."),
+]
+Until = Annotated[Moment | None, Query(description="The moment before which all are.")]
+Name = Annotated[str, StringConstraints(max_length=100, pattern=r"^[^\x00-\x1f\x7f]+$")]
+
+_REFUSED: Final = refusals(
+    HTTPStatus.FORBIDDEN,
+    HTTPStatus.NOT_FOUND,
+    HTTPStatus.UNPROCESSABLE_ENTITY,
+    HTTPStatus.SERVICE_UNAVAILABLE,
+)
+
+
+def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -> APIRouter:
+    """The routes that read what is recorded: for tutors, and for learners what is their own."""
+    router = APIRouter(prefix="/v1", tags=["attempts"])
+
+    @router.get(
+        "/attempts",
+        operation_id="listAttempts",
+        summary="List recorded attempts",
+        response_model=AttemptList,
+        response_description="A page of attempts.",
+        responses=_REFUSED,
+        openapi_extra=MAY_NEED_KEY,
+    )
+    async def list_attempts(
+        request: Request,
+        exercise: Annotated[Name | None, Query(description="The id of an exercise.")] = None,
+        learner: Annotated[Learner | None, Query(description="Whose attempts.")] = None,
+        since: Since = None,
+        until: Until = None,
+        counted: Annotated[
+            bool | None, Query(description="Only those that count, or that do not.")
+        ] = None,
+        cursor: Annotated[
+            str | None, Query(max_length=40, description="The `next` of the page before.")
+        ] = None,
+        limit: Annotated[
+            int, Query(ge=1, le=MOST_ON_A_PAGE, description="The most on a page.")
+        ] = 50,
+    ) -> Response:
+        """List recorded attempts for tutors, the newest first, without answers and reports.
+
+        To a learner with a token only the learner's own.
+        """
+        caller = access.require_reading(request, exercise)
+        wanted = AttemptFilter(exercise, _readable(caller, learner), since, until, counted)
+        try:
+            shown, following = await ask(store, lambda it: it.page(wanted, cursor, limit))
+        except BadCursorError as error:
+            detail = {"type": "cursor", "loc": ("cursor",), "msg": "This is no cursor of a page."}
+            raise invalid([detail]) from error
+        attempts = [AttemptSummary.model_validate(each, from_attributes=True) for each in shown]
+        return private(AttemptList(attempts=attempts, next=following))
+
+    @router.get(
+        "/attempts/{attempt_id}",
+        operation_id="getAttempt",
+        summary="Show a recorded attempt",
+        response_model=AttemptDetail,
+        response_description="The attempt with its answers and reports.",
+        responses=_REFUSED,
+        openapi_extra=MAY_NEED_KEY,
+    )
+    async def show_attempt(
+        request: Request, attempt_id: Annotated[str, Path(description="The id of an attempt.")]
+    ) -> Response:
+        """Show a recorded attempt for tutors: answers, report, earlier reports and overrides.
+
+        To the learner with a token only answers and report.
+        """
+        caller = access.require_reading_one(request)
+        found = await ask(store, lambda it: it.history(attempt_id))
+        if found is None or not _may_read(caller, found):
+            raise unknown_attempt()
+        return private_json(json.dumps(_detail(found, caller)).encode())
+
+    @router.get(
+        "/exercises/{exercise_id}/statistics",
+        operation_id="getStatistics",
+        summary="Show the statistics of an exercise",
+        response_model=ExerciseStatistics,
+        response_description="The recorded attempts in counts.",
+        responses=_REFUSED,
+        openapi_extra=MAY_NEED_KEY,
+    )
+    async def show_statistics(
+        request: Request, exercise_id: ExerciseId, since: Since = None, until: Until = None
+    ) -> Response:
+        """Count recorded attempts for tutors: who is right where, which mistakes are common."""
+        access.require_tutor(request, exercise_id)
+        exercise = exercise_or_404(catalogue, exercise_id)
+        wanted = AttemptFilter(exercise=exercise.id, since=since, until=until)
+        figures = await ask(store, lambda it: it.statistics(wanted))
+        return private(figures)
+
+    return router
+
+
+def _readable(caller: Caller, learner: str | None) -> str | None:
+    """Whose attempts are listed, where those of ``learner`` are asked for. Raises ProblemError."""
+    if caller.learner is not None and learner not in (None, caller.learner):
+        raise other_learner()
+    return caller.learner or learner
+
+
+def _may_read(caller: Caller, found: "AttemptHistory") -> bool:
+    attempt = found.attempt
+    return caller.reaches(attempt.exercise) and caller.learner in (None, attempt.learner)
+
+
+def _detail(found: "AttemptHistory", caller: Caller) -> dict[str, Any]:
+    # What a tutor has written, and what a regrade has replaced, is for tutors.
+    is_tutor = caller.learner is None
+    attempt = AttemptSummary.model_validate(found.attempt, from_attributes=True)
+    return {
+        "attempt": attempt.model_dump(mode="json", exclude_none=True),
+        "submission": json.loads(found.submission),
+        "report": json.loads(found.report),
+        "overrides": [
+            AttemptOverride.model_validate(row, from_attributes=True).model_dump(
+                mode="json", exclude_none=True
+            )
+            for row in found.overrides
+            if is_tutor
+        ],
+        "earlier_reports": [_earlier(row) for row in found.earlier if is_tutor],
+    }
+
+
+def _earlier(row: "Row[Any]") -> dict[str, Any]:
+    named = ("version", "grader", "points", "max_points")
+    return {
+        "replaced_at": row.replaced_at.isoformat(),
+        **{name: getattr(row, name) for name in named},
+        "report": json.loads(row.report),
+    }

@@ -1,0 +1,244 @@
+"""The routes by which tutors export and change what is recorded."""
+
+from collections.abc import AsyncIterator
+from dataclasses import asdict
+from functools import partial
+from http import HTTPStatus
+from typing import IO, TYPE_CHECKING, Annotated, Any, Final
+
+from fastapi import APIRouter, Path, Query, Request, Response
+from starlette.background import BackgroundTask
+from starlette.responses import StreamingResponse
+
+from service.access.caller import Caller
+from service.api.document.openapi import MAY_NEED_KEY, posting, refusals
+from service.api.http.bodies import body_as
+from service.api.http.bounded_work import BoundedWork
+from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
+from service.api.http.problems import invalid
+from service.api.permissions.access import Access
+from service.api.recording.listing import Name, Since, Until
+from service.api.recording.store import ask, private, unknown_attempt
+from service.attempts.attempt import AttemptFilter, GradesFormat
+from service.attempts.errors import (
+    BadCursorError,
+    UnknownAttemptError,
+    UnusablePointsError,
+)
+from service.catalogue import Exercise, FeedbackLevel, is_exercise_id
+from service.contract.attempts import AttemptSummary, Learner
+from service.contract.tutoring import (
+    AttemptChange,
+    ForgetRequest,
+    ForgottenData,
+    OverrideRequest,
+    RegradeAnswer,
+    RegradeRequest,
+)
+
+if TYPE_CHECKING:  # they load the drivers of databases
+    from service.attempts.regrades.outdated import Regrading
+    from service.attempts.store import AttemptStore
+
+# Bytes of an export that are handed to the server at once.
+_PIECE: Final = 64 * 1024
+_REFUSED: Final = (HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND, HTTPStatus.SERVICE_UNAVAILABLE)
+_NO_STORE: Final = {"Cache-Control": "no-store"}
+_KINDS: Final = {GradesFormat.JSONL: ("jsonl", "application/jsonl")}
+_CSV: Final = ("csv", "text/csv")
+_EXPORTED: Final[dict[int | str, dict[str, Any]]] = {
+    200: {"content": {kind: {"schema": {"type": "string"}} for _, kind in (_CSV, *_KINDS.values())}}
+}
+
+
+def routes(
+    catalogue: Catalogue, feedback: FeedbackLevel, store: "AttemptStore | None", access: Access
+) -> APIRouter:
+    """The routes that export and change what is recorded; no new report tells over ``feedback``."""
+    router = APIRouter(prefix="/v1", tags=["attempts"])
+    regrades = _Regrades(feedback)
+
+    @router.get(
+        "/attempts/export",
+        operation_id="exportAttempts",
+        summary="Export recorded attempts",
+        response_class=Response,
+        response_description="The file: lines of CSV, or of JSON.",
+        responses={**_EXPORTED, **refusals(*_REFUSED, HTTPStatus.UNPROCESSABLE_ENTITY)},
+        openapi_extra=MAY_NEED_KEY,
+    )
+    async def export_attempts(
+        request: Request,
+        exercise: Annotated[Name | None, Query(description="The id of an exercise.")] = None,
+        learner: Annotated[Learner | None, Query(description="Whose attempts.")] = None,
+        since: Since = None,
+        until: Until = None,
+        form: Annotated[
+            GradesFormat,
+            Query(
+                alias="format",
+                description="`csv` and `jsonl` have every attempt; `canvas` and `moodle`, of one "
+                "exercise, the one of each learner that counts, as the gradebook imports it.",
+            ),
+        ] = GradesFormat.CSV,
+    ) -> Response:
+        """Export recorded attempts for tutors, by exercise, learner and moment.
+
+        Which attempt of a learner counts is decided among those that are exported.
+        """
+        access.require_tutor(request, exercise)
+        if form.is_gradebook and exercise is None:
+            message = f"{form} has one column for one exercise; name it"
+            raise invalid([{"type": "missing_exercise", "loc": ("exercise",), "msg": message}])
+        # Only here: it loads the drivers of databases.
+        from service.attempts.results.grades import counting_rules
+
+        wanted = AttemptFilter(exercise, learner, since, until)
+        rules = counting_rules(catalogue)
+        file = await ask(store, lambda it: it.export(wanted, form, exercise or "", rules))
+        ending, kind = _KINDS.get(form, _CSV)
+        headers = {
+            **_NO_STORE,
+            "Content-Disposition": f'attachment; filename="{_stem(form, exercise)}.{ending}"',
+        }
+        return StreamingResponse(_pieces(file), 200, headers, kind, BackgroundTask(file.close))
+
+    @router.post(
+        "/attempts/{attempt_id}/override",
+        operation_id="overrideAttempt",
+        summary="Give an attempt other points",
+        response_description="The attempt as it now counts.",
+        **posting(OverrideRequest, AttemptSummary, "override", *_REFUSED),
+    )
+    async def override_attempt(
+        request: Request, attempt_id: Annotated[str, Path(description="The id of an attempt.")]
+    ) -> Response:
+        """Give an attempt points in place of its report's, with a reason; for tutors.
+
+        Who did so, when and why is kept, also of points that are withdrawn later.
+        """
+        caller = access.require_change_of_one(request)
+        body = await body_as(OverrideRequest, request)
+        found = await ask(store, lambda it: it.history(attempt_id))
+        if found is None or not caller.reaches(found.attempt.exercise):
+            raise unknown_attempt()
+        author = _author(caller, body.author)
+        try:
+            changed = await ask(
+                store, lambda it: it.override(attempt_id, body.points, body.reason, author)
+            )
+        except UnknownAttemptError as error:
+            raise unknown_attempt() from error
+        except UnusablePointsError as error:
+            raise invalid([{"type": "points", "loc": ("points",), "msg": str(error)}]) from error
+        return private(AttemptSummary.model_validate(changed, from_attributes=True))
+
+    @router.post(
+        "/learners/forget",
+        operation_id="forgetLearner",
+        summary="Delete all that is recorded of a learner",
+        response_description="How much is recorded of the learner, or was.",
+        **posting(ForgetRequest, ForgottenData, "forget", *_REFUSED),
+    )
+    async def forget_learner(request: Request) -> Response:
+        """Delete all that is recorded of a learner, for ever; for tutors of all exercises.
+
+        Without `apply` nothing is deleted, and the answer tells how much it would be. While another
+        program reads a database of SQLite, what was deleted is still in a file beside it: `erased`.
+        """
+        access.require_change(request, None)
+        body = await body_as(ForgetRequest, request)
+        erased = None
+        if body.apply:
+            data, erased = await ask(store, lambda it: it.forget(body.learner))
+        else:
+            data = await ask(store, lambda it: it.data_of(body.learner))
+        return private(
+            ForgottenData(learner=body.learner, deleted=body.apply, erased=erased, **asdict(data))
+        )
+
+    @router.post(
+        "/exercises/{exercise_id}/regrade",
+        operation_id="regradeAttempts",
+        summary="Grade the attempts at a corrected exercise anew, some of them",
+        response_description="What this step has graded, and the cursor of the next one.",
+        **posting(RegradeRequest, RegradeAnswer, "regrade", *_REFUSED),
+    )
+    async def regrade_attempts(request: Request, exercise_id: ExerciseId) -> Response:
+        """Grade anew what another version of the exercise or the program has graded; for tutors.
+
+        One request does as much as fits into about a second; ask again with `next` until there is
+        none. Without `apply` nothing is written, and the answers tell whose result would change
+        and why. With it the new reports are written and the old ones kept. Whoever stops in the
+        midst goes on with a first step.
+        """
+        access.require_change(request, exercise_id)
+        exercise = exercise_or_404(catalogue, exercise_id)
+        body = await body_as(RegradeRequest, request)
+        return private(await ask(store, lambda it: regrades.step(it, exercise, body)))
+
+    return router
+
+
+class _Regrades:
+    """Steps of regrades, one at a time, so that recording and grading go on beside them."""
+
+    def __init__(self, ceiling: FeedbackLevel) -> None:
+        self._ceiling = ceiling
+        self._work = BoundedWork()
+        # That of the last step: it knows the reports on answers that it has seen already.
+        self._last: tuple[Exercise, Regrading] | None = None
+
+    async def step(
+        self, store: "AttemptStore", exercise: Exercise, body: RegradeRequest
+    ) -> RegradeAnswer:
+        """One step. Raises ProblemError, StoreDownError."""
+        return await self._work.do(partial(self._step, store, exercise, body))
+
+    def _step(
+        self, store: "AttemptStore", exercise: Exercise, body: RegradeRequest
+    ) -> RegradeAnswer:
+        # Only here: it loads the drivers of databases.
+        from service.attempts.regrades.steps import apply_step, preview_step
+
+        step = apply_step if body.apply else preview_step
+        try:
+            done = step(store.engine, self._of(exercise), body.cursor)
+        except BadCursorError as error:
+            detail = {"type": "cursor", "loc": ("cursor",), "msg": "This is no cursor of a step."}
+            raise invalid([detail]) from error
+        if done.following is None:
+            # The reports that it has kept are of no more use.
+            self._last = None
+        changed = (each for each in done.regraded if each.is_changed)
+        return RegradeAnswer(
+            applied=body.apply,
+            regraded=len(done.regraded),
+            left=done.left,
+            changes=[AttemptChange.model_validate(each, from_attributes=True) for each in changed],
+            next=done.following,
+        )
+
+    def _of(self, exercise: Exercise) -> "Regrading":
+        from service.attempts.regrades.outdated import Regrading
+
+        if self._last is None or self._last[0] is not exercise:
+            self._last = (exercise, Regrading(exercise, self._ceiling))
+        return self._last[1]
+
+
+async def _pieces(file: IO[bytes]) -> AsyncIterator[bytes]:
+    while piece := file.read(_PIECE):
+        yield piece
+
+
+def _stem(form: GradesFormat, exercise: str | None) -> str:
+    """The name of the file, without its ending; an id that no exercise has is left out."""
+    kind = form.value if form.is_gradebook else "attempts"
+    return f"{kind}-{exercise}" if exercise and is_exercise_id(exercise) else kind
+
+
+def _author(caller: Caller, given: str | None) -> str:
+    """Who overrides: by a name that nobody has checked, and by the key."""
+    by = f"key {caller.key_id}" if caller.key_id else "at the machine"
+    return f"{given} ({by})" if given else by

@@ -1,0 +1,76 @@
+"""The route that draws an exercise's mechanism."""
+
+import base64
+import hashlib
+from functools import partial
+from http import HTTPStatus
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Response
+
+from service.api.document.openapi import refusals
+from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
+from service.api.http.memoized import Kept
+from service.api.http.problems import ProblemError
+from service.catalogue import Exercise
+from service.figures.drawing.style import Theme, style_sheet
+from service.figures.figure import exercise_figure
+
+_THEME = Query(description="Light, dark, or as the reader's system asks; printed it is light.")
+
+
+class SvgResponse(Response):
+    """A drawing."""
+
+    media_type = "image/svg+xml"
+
+
+def routes(catalogue: Catalogue) -> APIRouter:
+    """The route of the figures."""
+    router = APIRouter(prefix="/v1/exercises", tags=["exercises"])
+    figures = Kept()
+
+    @router.get(
+        "/{exercise_id}/figure.svg",
+        operation_id="getFigure",
+        summary="Draw the mechanism",
+        response_class=SvgResponse,
+        response_description="The drawing.",
+        responses=refusals(HTTPStatus.NOT_FOUND, HTTPStatus.UNPROCESSABLE_ENTITY),
+    )
+    async def draw_figure(
+        exercise_id: ExerciseId, theme: Annotated[Theme, _THEME] = Theme.AUTO
+    ) -> Response:
+        """Draw the robot of an exercise: joints, links, names of lengths and joint variables.
+
+        No frames, no numbers. The angles of all joints are 0, sliding joints are drawn out. An
+        exercise without a robot has no figure.
+        """
+        exercise = exercise_or_404(catalogue, exercise_id)
+        if exercise.reference is None:
+            raise ProblemError(
+                HTTPStatus.NOT_FOUND,
+                f"The exercise {exercise.id} has no robot to draw.",
+                "no-figure",
+                "The exercise has no figure",
+            )
+        key = (exercise.id, exercise.version, exercise.title, exercise.view, theme)
+        content = await figures.of(key, partial(_drawn, exercise, theme))
+        return SvgResponse(content, headers=_headers(theme))
+
+    return router
+
+
+def _drawn(exercise: Exercise, theme: Theme) -> bytes:
+    return exercise_figure(exercise, theme).encode()
+
+
+def _headers(theme: Theme) -> dict[str, str]:
+    """The figure's own style and nothing else, wherever it is opened; any page may show it."""
+    digest = base64.b64encode(hashlib.sha256(style_sheet(theme).encode()).digest()).decode()
+    policy = f"default-src 'none'; style-src 'sha256-{digest}'; frame-ancestors 'self'"
+    return {
+        "Content-Security-Policy": policy,
+        "Cross-Origin-Resource-Policy": "cross-origin",
+        "Cache-Control": "no-cache",
+    }

@@ -1,0 +1,269 @@
+"""The route that says where everything is: the frames of a table, the parts of a mechanism."""
+
+from collections import OrderedDict
+from collections.abc import Hashable, Iterator, Mapping, Sequence, Set
+from functools import cache, partial
+from typing import Any, Final
+
+import numpy as np
+from fastapi import APIRouter, Request, Response
+
+from service.access.caller import Scope
+from service.api.document.openapi import posting
+from service.api.http.bodies import body_as
+from service.api.http.lookup import Catalogue, Location, require_exercise
+from service.api.http.problems import ProblemError, invalid
+from service.api.permissions.access import Access, require_reach
+from service.api.turns import giving_way
+from service.catalogue import Exercise
+from service.contract.frames import (
+    ConvertedRow,
+    DrawnConfiguration,
+    DrawnMechanism,
+    FramesAnswer,
+    FramesOfTable,
+    FramesRequest,
+    LostFreedom,
+    MovingJoint,
+    PrintedFormula,
+    TableInFormulas,
+    TableToDraw,
+    UnreadCell,
+)
+from service.contract.preview import PreviewError
+from service.expressions import Expression
+from service.figures.figure import plainest_view, subject_of
+from service.figures.geometry.mechanism import Configuration, MovableMechanism, mechanism_of
+from service.figures.geometry.view import View
+from service.figures.table_figure import SeenMechanism, WrittenChain, table_figure
+from service.figures.tables.scope import DrawingScope, free_scope
+from service.figures.tables.table_formulas import TableFormulas, table_formulas
+from service.figures.tables.table_frames import TableFrames, table_frames, table_to_draw
+from service.grading.feedback import Finding, UnreadableAnswerError
+from service.grading.work_budget import WorkBudget
+from service.kinematics.transforms import Numbers
+
+_KEPT: Final = 64
+
+
+class _Mechanisms:
+    """Mechanisms at the lengths that they were last asked for: one per drag of a slider."""
+
+    def __init__(self) -> None:
+        self._kept: OrderedDict[Hashable, tuple[MovableMechanism, View]] = OrderedDict()
+
+    def of(self, exercise: Exercise, numbers: Mapping[str, float]) -> tuple[MovableMechanism, View]:
+        """The mechanism of an exercise that has one, with these numbers, and its view."""
+        key = (exercise.id, exercise.version, exercise.view, *numbers.values())
+        if key not in self._kept:
+            subject = subject_of(exercise)
+            mechanism = mechanism_of(subject.reference, numbers)
+            self._kept[key] = mechanism, subject.view or plainest_view(mechanism, numbers)
+            while len(self._kept) > _KEPT:
+                self._kept.popitem(last=False)
+        self._kept.move_to_end(key)
+        return self._kept[key]
+
+
+def routes(catalogue: Catalogue, access: Access) -> APIRouter:
+    """The route that gives frames."""
+    router = APIRouter(prefix="/v1", tags=["drawing"])
+    mechanisms = _Mechanisms()
+
+    @router.post(
+        "/frames",
+        operation_id="getFrames",
+        summary="Say where frames and links are",
+        response_description="Numbers to draw with.",
+        **posting(FramesRequest, FramesAnswer, "frames"),
+    )
+    async def frames(request: Request) -> Response:
+        """Say where the frames of a table and the links of an exercise's mechanism are.
+
+        A table may be wrong, or half written: its frames go as far as it can be read. Nothing of a
+        mechanism answers the exercise: no frames, no parameters, only what a picture shows.
+        """
+        caller = access.require(request, Scope.GRADE)
+        body = await body_as(FramesRequest, request)
+        require_reach(caller, body.exercise)
+        answer = await giving_way(request, partial(_answered, catalogue, body, mechanisms))
+        content = answer.model_dump_json(exclude_none=True)
+        return Response(content, media_type="application/json")
+
+    return router
+
+
+def _answered(catalogue: Catalogue, body: FramesRequest, mechanisms: _Mechanisms) -> FramesAnswer:
+    """The answer to a request. Raises ProblemError for one that does not fit together."""
+    exercise = None if body.exercise is None else require_exercise(catalogue, body.exercise)
+    scope = _scope(exercise, body)
+    constants = [variable.name for variable in scope.variables if variable.joint is None]
+    if unknown := sorted(body.symbols.keys() - set(constants)):
+        raise _refused(("symbols", unknown[0]), "There is no such symbol")
+    numbers = scope.numbers(body.symbols)
+    amounts = _amounts(body, scope, numbers)
+    table = mechanism = written = seen = None
+    used: Set[str] = set(constants)
+    if body.table is not None:
+        table, found = _table(body.table, body, scope, numbers, amounts)
+        if found is not None:
+            written = WrittenChain(found.frames[0], found.row_joints, body.table.convention)
+        # Of the letters of a book only those that the table uses.
+        used = used if exercise else found.symbols if found else set()
+    if exercise is not None:
+        movable, view = mechanisms.of(exercise, numbers)
+        shown = movable.at(amounts)
+        mechanism = _mechanism(movable, view, shown)
+        seen = SeenMechanism(movable, shown[0], view)
+    return FramesAnswer(
+        symbols={name: numbers[name] for name in constants if name in used},
+        joints=list(_joints(scope, numbers)),
+        table=table,
+        mechanism=mechanism,
+        figure=table_figure(written, seen, body.figure)
+        if body.figure and (written or seen)
+        else None,
+    )
+
+
+def _scope(exercise: Exercise | None, body: FramesRequest) -> DrawingScope:
+    structure = body.table.structure if body.table else None
+    if exercise is not None and body.table is not None and body.table.formulas:
+        raise _refused(("table", "formulas"), "Formulas are given of a table without an exercise")
+    if exercise is not None:
+        if exercise.reference is None:
+            raise _refused(("exercise",), f"The exercise {exercise.id} has no robot to draw")
+        if structure not in (None, exercise.structure):
+            message = f"The joints of {exercise.id} are {exercise.structure}; leave this out"
+            raise _refused(("table", "structure"), message)
+        return DrawingScope.of(exercise)
+    if body.table is None:
+        raise _refused((), "Name an exercise, give a table, or both")
+    if structure is None:
+        message = "Write one letter for each joint, R if it turns and P if it slides"
+        raise _refused(("table", "structure"), message)
+    return free_scope(structure)
+
+
+def _refused(place: Location, message: str) -> ProblemError:
+    return invalid([{"type": "unfit", "loc": place, "msg": message}])
+
+
+def _amounts(body: FramesRequest, scope: DrawingScope, numbers: Mapping[str, float]) -> Numbers:
+    """The joint values of each picture, ``(pictures, joints)``."""
+    if body.joints is None:
+        return np.array([[numbers[joint.variable] for joint in scope.joints]])
+    for i, values in enumerate(body.joints):
+        if len(values) != len(scope.joints):
+            message = f"The robot has {len(scope.joints)} joints; write a number for each"
+            raise _refused(("joints", i), message)
+    return np.array(body.joints)
+
+
+def _joints(scope: DrawingScope, numbers: Mapping[str, float]) -> Iterator[MovingJoint]:
+    ranges = {variable.name: variable for variable in scope.variables}
+    for joint in scope.joints:
+        variable = ranges[joint.variable]
+        yield MovingJoint(
+            joint=joint.index,
+            variable=joint.variable,
+            kind="P" if joint.prismatic else "R",
+            low=variable.low,
+            high=variable.high,
+            home=numbers[joint.variable],
+        )
+
+
+def _table(
+    table: TableToDraw,
+    body: FramesRequest,
+    scope: DrawingScope,
+    numbers: Mapping[str, float],
+    amounts: Numbers,
+) -> tuple[FramesOfTable, TableFrames | None]:
+    """The frames of the table, as they are told and as they are drawn."""
+    budget = WorkBudget.of_drawing(with_figure=body.figure is not None)
+    try:
+        written = table_to_draw(table.rows, scope, budget, body.angle_unit)
+    except UnreadableAnswerError as error:
+        reason = _error(error.finding)
+        nothing = FramesOfTable(
+            complete=False, frames=[], row_joints=[], unread=[], error=reason, lost_freedoms=[]
+        )
+        return nothing, None
+    found = table_frames(written, table.convention, scope, numbers, amounts)
+    formulas = None
+    if table.formulas:
+        formulas = _printed(table_formulas(written, table.convention, scope, budget))
+    drawn = FramesOfTable(
+        complete=found.complete,
+        frames=_plain(found.frames),
+        row_joints=[joint.index if joint else 0 for joint in found.row_joints],
+        unread=[
+            UnreadCell(row=cell.row, column=cell.column, error=_error(cell.finding))
+            for cell in found.unread
+        ],
+        degrees_of_freedom=found.freedoms,
+        lost_freedoms=[LostFreedom.model_validate(each) for each in found.lost],
+        formulas=formulas,
+    )
+    return drawn, found
+
+
+def _printed(found: TableFormulas) -> TableInFormulas:
+    # The cells of the converted table are those of the table itself, in other places.
+    formula = cache(_formula)
+    converted = [
+        ConvertedRow(label=row.label, cells=[formula(cell) for cell in row.cells])
+        for row in found.converted
+    ]
+    return TableInFormulas(
+        cells=[[formula(cell) for cell in row] for row in found.cells],
+        converted=converted or None,
+        pose=[[formula(entry) for entry in row] for row in found.pose] or None,
+    )
+
+
+def _formula(expression: Expression | None) -> PrintedFormula:
+    if expression is None:
+        return PrintedFormula(text="", latex="", mathml="")
+    return PrintedFormula(
+        text=expression.text(), latex=expression.latex(), mathml=expression.mathml()
+    )
+
+
+def _error(finding: Finding) -> PreviewError:
+    return PreviewError(
+        code=finding.code,
+        message=finding.hint,
+        span=finding.span or (0, 0),
+        suggestion=finding.suggestion,
+    )
+
+
+def _mechanism(
+    mechanism: MovableMechanism, view: View, shown: Sequence[Configuration]
+) -> DrawnMechanism:
+    return DrawnMechanism(
+        size=mechanism.size,
+        azimuth=view.azimuth,
+        elevation=view.elevation,
+        configurations=[_configuration(each) for each in shown],
+    )
+
+
+def _configuration(shown: Configuration) -> DrawnConfiguration:
+    return DrawnConfiguration(
+        centres=_plain(shown.centres),
+        axes=_plain(shown.axes),
+        links=[_plain(link) for link in shown.links],
+        base=_plain(shown.base),
+        base_normal=_plain(shown.base_normal),
+        tool=_plain(shown.tool),
+        tool_direction=_plain(shown.tool_direction),
+    )
+
+
+def _plain(numbers: Numbers) -> Any:
+    """Numbers as lists, rounded far below what can be seen, and without a negative 0."""
+    return (np.round(numbers, 12) + 0.0).tolist()

@@ -1,0 +1,103 @@
+"""The routes that grade."""
+
+import logging
+from functools import partial
+from http import HTTPStatus
+
+from fastapi import APIRouter, Request, Response
+
+from service.access.caller import Caller, Scope
+from service.api.document.openapi import posting
+from service.api.http.bodies import body_as, checked
+from service.api.http.lookup import Catalogue, ExerciseId, Location, exercise_or_404, require_parts
+from service.api.http.problems import ProblemError, failed
+from service.api.monitor import Monitor
+from service.api.permissions.access import Access, require_reach
+from service.api.turns import give_way, giving_way
+from service.catalogue import Exercise, FeedbackLevel, least
+from service.contract.grading import GradeManyResponse
+from service.formats.documents.json import rendered
+from service.grading import Report, grade
+from service.submissions.body import ExerciseSubmission, GradeManyRequest, GradeRequest
+from service.time_slices import working_time
+
+_log = logging.getLogger(__name__)
+
+
+def routes(
+    catalogue: Catalogue, feedback: FeedbackLevel, access: Access, monitor: Monitor | None = None
+) -> APIRouter:
+    """The routes that grade; no report tells more than ``feedback``."""
+    router = APIRouter(prefix="/v1", tags=["grading"])
+
+    # On the event loop and not in a thread: a grading is a millisecond of pure Python, which
+    # threads cannot share, and a hop there and back costs a tenth of that.
+    @router.post(
+        "/exercises/{exercise_id}/grade",
+        operation_id="grade",
+        summary="Grade a submission",
+        response_description="The report.",
+        **posting(GradeRequest, Report, "grade", HTTPStatus.NOT_FOUND),
+    )
+    async def grade_one(exercise_id: ExerciseId, request: Request) -> Response:
+        """Grade answers, row by row and cell by cell. Nothing is recorded.
+
+        Whatever a student wrote, the answer is a report: what cannot be read is `unreadable` there,
+        with the reason, and everything else is graded. The same answers give the same report. It
+        tells no more than the exercise and the service allow; `feedback` may ask for less.
+        """
+        access.require(request, Scope.GRADE, exercise_id)
+        exercise = exercise_or_404(catalogue, exercise_id)
+        body = await body_as(GradeRequest, request)
+        report = await giving_way(request, lambda: _report(exercise, body, ()))
+        return Response(report, media_type="application/json")
+
+    @router.post(
+        "/grade",
+        operation_id="gradeMany",
+        summary="Grade many submissions",
+        response_description="A result for each submission, in their order.",
+        **posting(GradeManyRequest, GradeManyResponse, "grade-many"),
+    )
+    async def grade_many(request: Request) -> Response:
+        """Grade submissions to any exercises, each as if it came alone. Nothing is recorded.
+
+        The results stand in the order of the submissions. One that cannot be graded, because its
+        exercise or one of its parts does not exist, has a problem in its place and costs no other.
+        """
+        caller = access.require(request, Scope.GRADE)
+        body = await body_as(GradeManyRequest, request)
+        results = []
+        for i, submission in enumerate(body.submissions):
+            if i:
+                await give_way(request)
+            graded = partial(_result, submission, i, request.url.path, caller)
+            results.append(await giving_way(request, graded))
+        content = b'{"results":[%b]}' % b",".join(results)
+        return Response(content, media_type="application/json")
+
+    def _result(value: object, i: int, path: str, caller: Caller) -> bytes:
+        at = ("submissions", i)
+        try:
+            submission = checked(ExerciseSubmission, value, at)
+            require_reach(caller, submission.exercise)
+            exercise = exercise_or_404(catalogue, submission.exercise)
+            return b'{"report":%b}' % _report(exercise, submission, at)
+        except ProblemError as error:
+            problem = error
+        except Exception:  # noqa: BLE001 -- the other submissions are graded all the same
+            _log.exception("submission %d of a request could not be graded", i)
+            problem = failed()
+        return b'{"problem":%b}' % problem.content(f"{path}#/submissions/{i}")
+
+    def _report(exercise: Exercise, body: GradeRequest, at: Location) -> bytes:
+        """The report as JSON. Raises ProblemError for an unknown part of the submission."""
+        require_parts(exercise, ((part, (*at, "answers", part)) for part in body.answers))
+        submission = body.submission(least(exercise.feedback, feedback))
+        began = working_time()
+        report = grade(exercise, submission)
+        if monitor is not None:
+            monitor.graded(report, working_time() - began)
+        return rendered(report)
+
+    return router

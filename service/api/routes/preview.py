@@ -1,0 +1,154 @@
+"""The route that shows how a text is read, while the student still types."""
+
+from functools import partial
+from typing import Final
+
+from fastapi import APIRouter, Request, Response
+
+from service.access.caller import Scope
+from service.api.document.openapi import posting
+from service.api.http.bodies import body_as
+from service.api.http.lookup import Catalogue, require_exercise, require_parts
+from service.api.http.problems import invalid
+from service.api.permissions.access import Access, require_reach
+from service.api.turns import giving_way
+from service.catalogue import Exercise
+from service.contract.preview import (
+    PreviewAnswer,
+    PreviewManyRequest,
+    PreviewManyResponse,
+    PreviewRequest,
+)
+from service.expressions import ExpressionError, Symbol, Vocabulary, joint_variable, read
+from service.grading.reading.preview import CellPreview, preview_entries, preview_pasted
+
+JOINTS: Final = range(1, 10)
+
+# For a text that belongs to no exercise: the letters of a robotics textbook's formulas.
+GENERIC: Final = Vocabulary(
+    [
+        *(joint_variable(i) for i in JOINTS),
+        *(Symbol(f"alpha{i}", "angle") for i in JOINTS),
+        *(Symbol(f"{letter}{i}", "length") for letter in "adl" for i in JOINTS),
+    ],
+    of_books=True,
+)
+
+
+def preview(body: PreviewRequest, vocabulary: Vocabulary) -> PreviewAnswer:
+    """The reading of the text in this vocabulary."""
+    try:
+        expression = read(body.text, vocabulary, quantity=body.quantity, angle_unit=body.angle_unit)
+    except ExpressionError as error:
+        return PreviewAnswer.model_validate({"ok": False, "error": error})
+    return PreviewAnswer.model_validate(
+        {
+            "ok": True,
+            "text": expression.text(),
+            "latex": expression.latex(),
+            "mathml": expression.mathml(),
+            "symbols": sorted(expression.symbols),
+            "notes": expression.notes,
+        }
+    )
+
+
+def preview_many(body: PreviewManyRequest, exercise: Exercise) -> PreviewManyResponse:
+    """The readings of the entries, as a grading reads them; they share its work budget."""
+    entries = [(entry.text, entry.quantity) for entry in body.entries]
+    cells = preview_entries(entries, exercise, body.part, body.angle_unit)
+    return PreviewManyResponse(results=[_answer(cell) for cell in cells])
+
+
+def _answer(cell: CellPreview) -> PreviewAnswer:
+    if cell.problem:
+        return PreviewAnswer.model_validate({"ok": False, "error": cell.problem})
+    read = {name: getattr(cell, name) for name in ("text", "latex", "mathml", "symbols", "notes")}
+    return PreviewAnswer.model_validate({"ok": True, **read})
+
+
+# Characters between the cells of a table or matrix, which no single entry holds.
+_BETWEEN_CELLS: Final = frozenset("\n\t;|&<[,")
+
+
+def preview_grid(body: PreviewRequest, exercise: Exercise, part: str) -> PreviewAnswer:
+    """The reading of a whole pasted table or matrix, cell by cell."""
+    pasted = preview_pasted(body.text, exercise, part, body.angle_unit)
+    symbols = {name for row in pasted.rows for cell in row for name in cell.symbols}
+    return PreviewAnswer.model_validate(
+        {
+            "ok": pasted.ok,
+            "rows": pasted.rows or None,
+            "symbols": sorted(symbols),
+            "notes": pasted.notes,
+            "error": pasted.problem,
+        }
+    )
+
+
+def _shown(body: PreviewRequest, exercise: Exercise | None) -> str:
+    """The reading of the text, as JSON: as one entry, or as a grid if it is none."""
+    shown = preview(body, exercise.vocabulary if exercise else GENERIC)
+    if not shown.ok and exercise and body.part and _BETWEEN_CELLS & set(body.text):
+        grid = preview_grid(body, exercise, body.part)
+        # A text that is no grid either is better explained as the one entry that it may be.
+        is_script = grid.error is not None and grid.error.code == "unread_script"
+        shown = grid if grid.rows or is_script or "\n" in body.text else shown
+    return shown.model_dump_json(exclude_none=True)
+
+
+def routes(catalogue: Catalogue, access: Access) -> APIRouter:
+    """The route that previews."""
+    router = APIRouter(prefix="/v1", tags=["preview"])
+
+    @router.post(
+        "/preview",
+        operation_id="preview",
+        summary="Show how a text is read",
+        response_description="The reading of the text, or the reason why it cannot be read.",
+        **posting(PreviewRequest, PreviewAnswer, "preview"),
+    )
+    async def preview_text(request: Request) -> Response:
+        """Show how a text is read: normal text, LaTeX, MathML; or why not, and the text repaired.
+
+        With `exercise` and `part` the text may also be a whole pasted table or matrix.
+        """
+        caller = access.require(request, Scope.GRADE)
+        body = await body_as(PreviewRequest, request)
+        require_reach(caller, body.exercise)
+        exercise = _exercise(catalogue, body)
+        content = await giving_way(request, partial(_shown, body, exercise))
+        return Response(content, media_type="application/json")
+
+    @router.post(
+        "/previews",
+        operation_id="previewMany",
+        summary="Show how the entries of a part are read",
+        response_description="The reading of each entry, in their order.",
+        **posting(PreviewManyRequest, PreviewManyResponse, "preview-many"),
+    )
+    async def preview_entries_of_part(request: Request) -> Response:
+        """Show how several entries of one part are read, each on its own.
+
+        They are read as a grading reads them: a star marks a joint's variable in a table. Entries
+        beyond the work that one submission may cost are shown as text only.
+        """
+        caller = access.require(request, Scope.GRADE)
+        body = await body_as(PreviewManyRequest, request)
+        require_reach(caller, body.exercise)
+        exercise = require_exercise(catalogue, body.exercise)
+        require_parts(exercise, [(body.part, ("part",))])
+        shown = await giving_way(request, partial(preview_many, body, exercise))
+        return Response(shown.model_dump_json(exclude_none=True), media_type="application/json")
+
+    return router
+
+
+def _exercise(catalogue: Catalogue, body: PreviewRequest) -> Exercise | None:
+    if body.exercise is None and body.part is not None:
+        message = "A part belongs to an exercise; name the exercise as well"
+        raise invalid([{"type": "alone", "loc": ("part",), "msg": message}])
+    exercise = None if body.exercise is None else require_exercise(catalogue, body.exercise)
+    if exercise is not None and body.part is not None:
+        require_parts(exercise, [(body.part, ("part",))])
+    return exercise

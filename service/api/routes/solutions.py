@@ -1,0 +1,47 @@
+"""The route that shows model solutions to tutors."""
+
+from functools import partial
+from http import HTTPStatus
+from typing import Final
+
+from fastapi import APIRouter, Request, Response
+from pydantic import TypeAdapter
+
+from service.api.document.openapi import MAY_NEED_KEY, answers
+from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
+from service.api.http.memoized import Kept
+from service.api.permissions.access import Access
+from service.catalogue import Exercise
+from service.solutions import ModelSolution, solve
+
+_SOLUTION: Final = TypeAdapter(ModelSolution)
+
+
+def _solved(exercise: Exercise) -> bytes:
+    return _SOLUTION.dump_json(solve(exercise), exclude_none=True)
+
+
+def routes(catalogue: Catalogue, access: Access) -> APIRouter:
+    """The route that shows model solutions, or says how to have them shown."""
+    router = APIRouter(prefix="/v1/exercises", tags=["solutions"])
+    solutions = Kept()
+
+    @router.get(
+        "/{exercise_id}/solution",
+        operation_id="getSolution",
+        summary="Show the model solution",
+        response_description="The model solution.",
+        responses=answers(
+            ModelSolution, "solution-response", HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND
+        ),
+        openapi_extra=MAY_NEED_KEY,
+    )
+    async def show_solution(request: Request, exercise_id: ExerciseId) -> Response:
+        """Show the right answer to each part, each link transform and the pose, for tutors."""
+        access.require_solutions(request, exercise_id)
+        exercise = exercise_or_404(catalogue, exercise_id)
+        key = (exercise.id, exercise.version)
+        content = await solutions.of(key, partial(_solved, exercise))
+        return Response(content, 200, {"Cache-Control": "no-store"}, "application/json")
+
+    return router

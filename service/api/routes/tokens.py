@@ -1,0 +1,61 @@
+"""The route that makes tokens for learners."""
+
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from http import HTTPStatus
+
+from fastapi import APIRouter, Request, Response
+
+from service.api.document.openapi import posting
+from service.api.http.bodies import body_as
+from service.api.http.lookup import Catalogue, require_exercises
+from service.api.permissions.access import Access, require_reach
+from service.contract.tokens import TokenRequest, TokenResponse
+
+
+def routes(catalogue: Catalogue, access: Access) -> APIRouter:
+    """The route that makes tokens, for the holders of keys."""
+    router = APIRouter(prefix="/v1", tags=["tokens"])
+
+    @router.post(
+        "/tokens",
+        operation_id="createToken",
+        summary="Make a token for a learner",
+        response_description="The token.",
+        status_code=HTTPStatus.CREATED,
+        **posting(
+            TokenRequest,
+            TokenResponse,
+            "token",
+            HTTPStatus.NOT_FOUND,
+            success=HTTPStatus.CREATED,
+        ),
+    )
+    async def create_token(request: Request) -> Response:
+        """Make a token with which a learner's browser grades, records, and reads its own attempts.
+
+        So a page can call the service without showing the key. The token has no right that its key
+        has not, and is valid no longer than the key. Nothing is kept of it.
+        """
+        caller = access.require_key(request)
+        body = await body_as(TokenRequest, request)
+        exercises = caller.exercises
+        if body.exercises is not None:
+            require_exercises(catalogue, body.exercises, "exercises")
+            for exercise in body.exercises:
+                require_reach(caller, exercise)
+            exercises = frozenset(body.exercises)
+        # Seconds are all that a token holds.
+        now = datetime.now(UTC).replace(microsecond=0)
+        expires_at = now + timedelta(minutes=body.minutes)
+        learner = replace(caller, learner=body.learner, exercises=exercises)
+        token = access.token(learner, expires_at)
+        answer = TokenResponse(token=token, learner=body.learner, expires_at=expires_at)
+        return Response(
+            answer.model_dump_json(),
+            HTTPStatus.CREATED,
+            {"Cache-Control": "no-store"},
+            "application/json",
+        )
+
+    return router

@@ -1,0 +1,1 @@
+"""Regrading of outdated attempts."""

@@ -1,0 +1,269 @@
+"""Attempts graded anew by any number of processes, which share the work through the database.
+
+A worker locks what it takes, and what it has regraded leaves the queue in the same commit. Where it
+dies, the database gives up its locks, and another takes its attempts. In PostgreSQL workers skip
+what others have locked (SKIP LOCKED). In SQLite one writes at a time, and the others wait, those
+too that record attempts: there a worker grades first, and locks the file while it writes.
+"""
+
+import json
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import partial
+from typing import Any, Final
+
+from sqlalchemy import (
+    ColumnElement,
+    Connection,
+    Engine,
+    Row,
+    Select,
+    bindparam,
+    delete,
+    func,
+    insert,
+    literal,
+    or_,
+    select,
+    update,
+)
+
+from service.attempts.graded import AttemptGrading
+from service.attempts.recording import insert_or_ignore, outcome_ids
+from service.attempts.regrades.memoized_reports import KeptReports, PartResults, WrittenReport
+from service.attempts.results.listing import BY_TIME, TimePlace, later_than
+from service.attempts.storage.database import in_transaction, without_time_limit
+from service.attempts.storage.tables import attempts, earlier_reports, regrade_queue
+from service.catalogue import Exercise, FeedbackLevel, least
+from service.submissions.body import GradeRequest
+from service.version import VERSION
+
+# So many are regraded in one commit, or as many as are graded in about this time (seconds).
+BATCH: Final = 50
+_LONGEST: Final = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class RegradedAttempt:
+    """An attempt before and after; ``reasons`` names the parts that are judged otherwise.
+
+    Where a tutor has ``awarded`` points, these stay and count.
+    """
+
+    id: str
+    learner: str
+    ordinal: int | None
+    before: float
+    after: float
+    max_points: float
+    awarded: float | None
+    reasons: tuple[str, ...]
+
+    @property
+    def is_changed(self) -> bool:
+        """Whether the learner gets another report, or other points by it."""
+        return self.before != self.after or bool(self.reasons)
+
+
+class Regrading:
+    """The regrading of an exercise's attempts by its present version and the present program."""
+
+    def __init__(self, exercise: Exercise, ceiling: FeedbackLevel) -> None:
+        self._exercise = exercise
+        self._ceiling = ceiling
+        # The same answers get the same report.
+        self._kept = KeptReports()
+
+    def outdated(self, connection: Connection) -> list[int]:
+        """The numbers of the attempts that another version has graded."""
+        numbers = select(attempts.c.number).where(self._is_outdated()).order_by(attempts.c.number)
+        return list(connection.scalars(numbers))
+
+    def outdated_count(self, connection: Connection) -> int:
+        """How many attempts another version has graded."""
+        return connection.scalar(select(func.count()).where(self._is_outdated())) or 0
+
+    def outdated_after(
+        self, connection: Connection, place: TimePlace | None, most: int
+    ) -> list[TimePlace]:
+        """The next of these in the order of time, at most so many."""
+        following = select(*BY_TIME).where(self._is_outdated())
+        if place is not None:
+            following = following.where(later_than(place))
+        found = connection.execute(following.order_by(*BY_TIME).limit(most))
+        return [(at, number) for at, number in found]
+
+    def preview(self, connection: Connection, numbers: Sequence[int]) -> list[RegradedAttempt]:
+        """What regrading these attempts would change; nothing is written."""
+        return [self._regraded(row)[0] for row in self._rows(connection, numbers)]
+
+    def enqueue(self, connection: Connection) -> None:
+        """Have all outdated attempts wait for workers; those that wait already wait once."""
+        without_time_limit(connection)
+        waiting = select(attempts.c.number, literal(self._exercise.id)).where(self._is_outdated())
+        connection.execute(
+            insert_or_ignore(regrade_queue)[connection.dialect.name].from_select(
+                ["attempt", "exercise"], waiting.order_by(attempts.c.number)
+            )
+        )
+
+    def waiting(self, connection: Connection) -> int:
+        """How many wait, those included that a worker is at."""
+        mine = regrade_queue.c.exercise == self._exercise.id
+        return connection.scalar(select(func.count()).select_from(regrade_queue).where(mine)) or 0
+
+    def next_batch(self, engine: Engine) -> list[RegradedAttempt]:
+        """Regrade some that wait and that nobody else is at, in a transaction.
+
+        None where there is none, or in SQLite where another worker was faster.
+        """
+        prepared = self._prepared(engine) if engine.dialect.name == "sqlite" else None
+        return in_transaction(engine, partial(self.work, among=prepared))
+
+    def work(
+        self, connection: Connection, among: Sequence[int] | None = None
+    ) -> list[RegradedAttempt]:
+        """The same in the caller's transaction: what was taken leaves the queue with its commit.
+
+        ``among`` are the only ones that are taken, where some are named.
+        """
+        waiting = self._waiting()
+        if among is not None:
+            waiting = waiting.where(regrade_queue.c.attempt.in_(among))
+        taken = connection.scalars(waiting.with_for_update(skip_locked=True)).all()
+        rows = self._rows(connection, taken)
+        graded = self._graded_in_time(rows)
+        if done := [(row, *result) for row, result in graded if result]:
+            self._write(connection, done)
+        ended = [row.number for row, _ in graded]
+        connection.execute(delete(regrade_queue).where(regrade_queue.c.attempt.in_(ended)))
+        return [change for _, change, _ in done]
+
+    def _waiting(self) -> Select[int]:
+        """The first that wait, as many as a batch."""
+        waiting = select(regrade_queue.c.attempt).where(
+            regrade_queue.c.exercise == self._exercise.id
+        )
+        return waiting.order_by(regrade_queue.c.attempt).limit(BATCH)
+
+    def _prepared(self, engine: Engine) -> list[int]:
+        """The first that wait; what they need is graded, and its reports are kept."""
+        with engine.connect() as connection:
+            rows = self._rows(connection, connection.scalars(self._waiting()).all())
+        return [row.number for row, _ in self._graded_in_time(rows)]
+
+    def _graded_in_time(
+        self, rows: Sequence[Row[Any]]
+    ) -> list[tuple[Row[Any], tuple[RegradedAttempt, WrittenReport] | None]]:
+        """As many as are graded before the time is over, one at the least.
+
+        None beside one that came into the queue again while another worker was at it: it is done.
+        """
+        graded: list[tuple[Row[Any], tuple[RegradedAttempt, WrittenReport] | None]] = []
+        end = time.monotonic() + _LONGEST
+        for row in rows:
+            graded.append((row, self._regraded(row) if self._needs(row) else None))
+            if time.monotonic() >= end:
+                break
+        return graded
+
+    def _is_outdated(self) -> ColumnElement[bool]:
+        another = or_(attempts.c.version != self._exercise.version, attempts.c.grader != VERSION)
+        return (attempts.c.exercise == self._exercise.id) & another
+
+    def _needs(self, row: Row[Any]) -> bool:
+        return (row.version, row.grader) != (self._exercise.version, VERSION)
+
+    def _rows(self, connection: Connection, numbers: Sequence[int]) -> Sequence[Row[Any]]:
+        chosen = select(attempts).where(attempts.c.number.in_(numbers))
+        return connection.execute(chosen.order_by(attempts.c.number)).all()
+
+    def _regraded(self, row: Row[Any]) -> tuple[RegradedAttempt, WrittenReport]:
+        before = json.loads(row.report)
+        # What a learner was not told once is not told later: the service may have had a ceiling
+        # that nobody has named to this process.
+        level = least(
+            self._exercise.feedback_at(row.ordinal or 1),
+            self._ceiling,
+            FeedbackLevel(before["feedback"]),
+        )
+        report = self._kept.of(row.submission, level, lambda: self._report(row.submission, level))
+        after = round(report.points * row.worth, 6)
+        reasons = tuple(_reasons(_results(before), report.parts))
+        change = RegradedAttempt(
+            row.id,
+            row.learner,
+            row.ordinal,
+            row.points,
+            after,
+            report.max_points,
+            row.awarded,
+            reasons,
+        )
+        return change, report
+
+    def _report(self, submission: str, level: FeedbackLevel) -> WrittenReport:
+        body = GradeRequest.model_validate_json(submission)
+        # A correction may have taken a part away, or given it another id.
+        answers = {part: it for part, it in body.answers.items() if self._exercise.part(part)}
+        body = body.model_copy(update={"answers": answers})
+        graded = AttemptGrading(self._exercise, body).at(level)
+        report = graded.report
+        parts = {part.part: (str(part.verdict), part.points) for part in report.parts}
+        return WrittenReport(graded.text, report.points, report.max_points, parts, graded.outcome)
+
+    def _write(
+        self,
+        connection: Connection,
+        done: Sequence[tuple[Row[Any], RegradedAttempt, WrittenReport]],
+    ) -> None:
+        now = datetime.now(UTC)
+        ids = outcome_ids(connection, [report.outcome for _, _, report in done])
+        kept = ("report", "version", "grader", "points", "max_points")
+        connection.execute(
+            insert(earlier_reports),
+            [
+                {"attempt": row.number, "replaced_at": now}
+                | {name: getattr(row, name) for name in kept}
+                for row, _, _ in done
+            ],
+        )
+        connection.execute(
+            update(attempts).where(attempts.c.number == bindparam("which")),
+            [
+                {
+                    "which": row.number,
+                    "report": report.text,
+                    "version": self._exercise.version,
+                    "grader": VERSION,
+                    "points": change.after,
+                    "max_points": report.max_points,
+                    "outcome": ids[report.outcome],
+                }
+                for row, change, report in done
+            ],
+        )
+
+
+def _results(report: Mapping[str, Any]) -> PartResults:
+    """The results of the parts of a report as it was written."""
+    return {part["part"]: (part["verdict"], part["points"]) for part in report["parts"]}
+
+
+def _reasons(old: PartResults, new: PartResults) -> list[str]:
+    """The parts that are judged otherwise, each in a few words."""
+    told = []
+    for name in dict.fromkeys((*old, *new)):
+        if name not in new:
+            told.append(f"{name} is no part any more")
+        elif name not in old:
+            told.append(f"{name} is new, {new[name][0]}")
+        elif old[name] != new[name]:
+            told.append(f"{name} {_change(old[name][0], new[name][0])}")
+    return told
+
+
+def _change(before: str, after: str) -> str:
+    return f"{before}, other points" if before == after else f"{before} → {after}"

@@ -1,0 +1,87 @@
+"""A regrade step by step, each so short that it fits into one request."""
+
+import re
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from sqlalchemy import Engine
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.attempts.errors import BadCursorError, StoreDownError
+from service.attempts.regrades.outdated import BATCH, RegradedAttempt, Regrading
+from service.attempts.results.listing import TimePlace, cursor_of, place_of
+from service.attempts.storage.database import in_transaction, reason
+
+# A step ends with the batch in which it has lasted so long, or has so many attempts.
+_SECONDS: Final = 1.0
+_MOST: Final = 20 * BATCH
+# A preview looks at the time after so many: fifty costly answers take seconds.
+_FEW: Final = 10
+# Where a step ended, and how many attempts are left after it.
+_CURSOR: Final = re.compile(r"(?P<place>[0-9a-f]{1,20}\.[0-9a-f]{1,20})?:(?P<left>[0-9a-f]{1,15})")
+
+
+@dataclass(frozen=True, slots=True)
+class RegradeStep:
+    """What one step has graded anew, how much is left, and the cursor of the next step if any."""
+
+    regraded: Sequence[RegradedAttempt]
+    left: int
+    following: str | None
+
+
+def preview_step(engine: Engine, regrading: Regrading, cursor: str | None) -> RegradeStep:
+    """Grade some outdated attempts; nothing is written. Raises BadCursorError, StoreDownError."""
+    place, left = (None, 0) if cursor is None else _read(cursor)
+    done: list[RegradedAttempt] = []
+    end = time.monotonic() + _SECONDS
+    try:
+        with engine.connect() as connection:
+            if cursor is None:
+                left = regrading.outdated_count(connection)
+            found = regrading.outdated_after(connection, place, _FEW)
+            while found:
+                done += regrading.preview(connection, [number for _, number in found])
+                place = found[-1]
+                if time.monotonic() >= end or len(done) >= _MOST:
+                    break
+                found = regrading.outdated_after(connection, place, _FEW)
+    except SQLAlchemyError as error:
+        raise StoreDownError(reason(error)) from error
+    # Others may be recorded, or regraded, in the meantime.
+    left = max(left - len(done), 0)
+    following = f"{cursor_of(place)}:{left:x}" if found and place is not None else None
+    return RegradeStep(done, left, following)
+
+
+def apply_step(engine: Engine, regrading: Regrading, cursor: str | None) -> RegradeStep:
+    """Regrade some outdated attempts, beside any other process that does so.
+
+    The first step, without a cursor, has all of them wait. Raises BadCursorError, StoreDownError.
+    """
+    if cursor is not None:
+        _read(cursor)
+    done: list[RegradedAttempt] = []
+    end = time.monotonic() + _SECONDS
+    try:
+        if cursor is None:
+            in_transaction(engine, regrading.enqueue)
+        while batch := regrading.next_batch(engine):
+            done += batch
+            if time.monotonic() >= end or len(done) >= _MOST:
+                break
+        with engine.connect() as connection:
+            left = regrading.waiting(connection)
+    except SQLAlchemyError as error:
+        raise StoreDownError(reason(error)) from error
+    return RegradeStep(done, left, f":{left:x}" if left else None)
+
+
+def _read(cursor: str) -> tuple[TimePlace | None, int]:
+    found = _CURSOR.fullmatch(cursor)
+    if found is None:
+        raise BadCursorError(cursor)
+    place = found["place"]
+    return None if place is None else place_of(place), int(found["left"], 16)

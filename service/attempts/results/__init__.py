@@ -1,0 +1,1 @@
+"""Recorded attempts as lists, grades and statistics."""

@@ -1,0 +1,129 @@
+"""Which attempt counts, and the attempts of a course as tables for other programs."""
+
+import json
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Final, Literal
+
+from sqlalchemy import Connection, select
+
+from service.attempts.attempt import AttemptFilter, GradesFormat, ListedAttempt
+from service.attempts.results.listing import LISTED, condition
+from service.attempts.storage.tables import attempts
+from service.catalogue import Exercise
+from service.catalogue.attempts import AttemptsSpec
+from service.formats.shared import spreadsheet
+
+Counting = Literal["best", "last"]
+
+
+def counting_rules(exercises: Mapping[str, Exercise]) -> Callable[[str], Counting]:
+    """The rule of each exercise by its id; one that is gone has that of a new one."""
+
+    def rule(exercise_id: str) -> Counting:
+        exercise = exercises.get(exercise_id)
+        return (AttemptsSpec() if exercise is None else exercise.attempts).counts
+
+    return rule
+
+
+@dataclass(frozen=True, slots=True)
+class GradedAttempt:
+    """An attempt, and whether it is the one of its learner that counts at the exercise."""
+
+    attempt: ListedAttempt
+    counts: bool
+
+
+def graded_attempts(
+    connection: Connection, wanted: AttemptFilter, counting: Callable[[str], Counting]
+) -> Iterator[GradedAttempt]:
+    """The attempts by exercise, learner and moment; ``counting`` is the rule of an exercise.
+
+    Which one counts is decided among those that are wanted.
+    """
+    ordered = (
+        select(*LISTED)
+        .where(condition(wanted))
+        .order_by(attempts.c.exercise, attempts.c.learner, attempts.c.at, attempts.c.number)
+        .execution_options(yield_per=1000)
+    )
+    found = (ListedAttempt(**row._mapping) for row in connection.execute(ordered))
+    for (exercise, _), group in groupby(found, lambda each: (each.exercise, each.learner)):
+        of_learner = list(group)
+        chosen = _that_counts(of_learner, counting(exercise))
+        yield from (GradedAttempt(each, each is chosen) for each in of_learner)
+
+
+def _that_counts(of_learner: Iterable[ListedAttempt], rule: Counting) -> ListedAttempt | None:
+    """The last attempt, or that with the most points, of several the first."""
+    counted = [each for each in of_learner if each.ordinal is not None]
+    if not counted:
+        return None
+    if rule == "last":
+        return max(counted, key=lambda each: each.ordinal or 0)
+    return max(counted, key=lambda each: (each.earned, -(each.ordinal or 0)))
+
+
+def written(graded: Iterable[GradedAttempt], form: GradesFormat, title: str) -> Iterator[bytes]:
+    """The attempts in a format, line by line.
+
+    ``csv`` and ``jsonl`` have every attempt, ``canvas`` and ``moodle`` the one of each learner that
+    counts, as a gradebook of that platform imports it; there ``title`` names the assignment.
+    """
+    match form:
+        case GradesFormat.CSV:
+            yield spreadsheet.line(_FIELDS)
+            for each in graded:
+                yield spreadsheet.line(map(_as_cell, _values(each)))
+        case GradesFormat.JSONL:
+            for each in graded:
+                named = dict(zip(_FIELDS, _values(each), strict=True))
+                told = {name: value for name, value in named.items() if value is not None}
+                yield json.dumps(told, ensure_ascii=False).encode("utf-8", "replace") + b"\n"
+        case GradesFormat.CANVAS:
+            yield from _canvas((each.attempt for each in graded if each.counts), title)
+        case GradesFormat.MOODLE:
+            yield from _moodle(each.attempt for each in graded if each.counts)
+
+
+_FIELDS: Final = (
+    "exercise", "learner", "attempt", "ordinal", "at", "is_late", "points", "max_points",
+    "report_points", "counts", "version", "grader",
+)  # fmt: skip
+_Value = str | float | bool | None
+
+
+def _values(graded: GradedAttempt) -> tuple[_Value, ...]:
+    """The values of ``_FIELDS``; ``points`` are those of a tutor where one has given some."""
+    each = graded.attempt
+    return (
+        each.exercise, each.learner, each.id, each.ordinal, each.at.isoformat(), each.is_late,
+        each.earned, each.max_points, each.points, graded.counts, each.version, each.grader,
+    )  # fmt: skip
+
+
+def _as_cell(value: _Value) -> str | float | None:
+    return str(value).lower() if isinstance(value, bool) else value
+
+
+def _canvas(counted: Iterable[ListedAttempt], title: str) -> Iterator[bytes]:
+    """A gradebook of Canvas: learners by their login, the second line with the points possible.
+
+    Canvas, "How do I import grades in the Gradebook?".
+    """
+    kept = list(counted)
+    possible = max((each.max_points for each in kept), default=0.0)
+    yield spreadsheet.line(("Student", "ID", "SIS User ID", "SIS Login ID", "Section", title))
+    yield spreadsheet.line(("    Points Possible", "", "", "", "", possible))
+    for each in kept:
+        yield spreadsheet.line((each.learner, "", "", each.learner, "", each.earned))
+
+
+def _moodle(counted: Iterable[ListedAttempt]) -> Iterator[bytes]:
+    """A list of grades for Moodle, with the headings of the format ``gradebook``."""
+    yield spreadsheet.line(spreadsheet.GRADEBOOK_HEAD)
+    for each in counted:
+        late = "late" if each.is_late else ""
+        yield spreadsheet.line((each.learner, each.earned, each.max_points, late))

@@ -1,0 +1,130 @@
+"""Recorded attempts as tutors read them: page by page, or one with all that is known of it."""
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from typing import Any, Final
+
+from sqlalchemy import ColumnElement, Connection, Row, Tuple, and_, literal, select, tuple_
+
+from service.attempts.attempt import AttemptFilter, ListedAttempt
+from service.attempts.errors import BadCursorError
+from service.attempts.storage.tables import UtcTime, attempts, earlier_reports, overrides
+
+_EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
+_TICK: Final = timedelta(microseconds=1)
+# Larger numbers are none that a database holds.
+_LARGEST: Final = 2**62
+_CURSOR: Final = re.compile(r"[0-9a-f]+\.[0-9a-f]+")
+
+
+def condition(wanted: AttemptFilter) -> ColumnElement[bool]:
+    """A filter in the database's words."""
+    return and_(True, *_conditions(wanted))
+
+
+def _conditions(wanted: AttemptFilter) -> Iterator[ColumnElement[bool]]:
+    if wanted.exercise is not None:
+        yield attempts.c.exercise == wanted.exercise
+    if wanted.learner is not None:
+        yield attempts.c.learner == wanted.learner
+    if wanted.since is not None:
+        yield attempts.c.at >= wanted.since
+    if wanted.until is not None:
+        yield attempts.c.at < wanted.until
+    if wanted.counted is not None:
+        has_ordinal = attempts.c.ordinal.is_not(None)
+        yield has_ordinal if wanted.counted else ~has_ordinal
+
+
+@dataclass(frozen=True, slots=True)
+class AttemptHistory:
+    """All that is known of an attempt; ``submission`` and ``report`` are JSON."""
+
+    attempt: ListedAttempt
+    submission: str
+    report: str
+    overrides: Sequence[Row[Any]]
+    earlier: Sequence[Row[Any]]
+
+
+LISTED: Final = [attempts.c[name] for name in ListedAttempt.__dataclass_fields__]
+
+
+def page(
+    connection: Connection, wanted: AttemptFilter, cursor: str | None, most: int
+) -> tuple[list[ListedAttempt], str | None]:
+    """At most ``most`` attempts, the newest first, and the cursor of the next page if there is one.
+
+    Raises BadCursorError.
+    """
+    newest = select(*LISTED).where(condition(wanted))
+    if cursor is not None:
+        newest = newest.where(earlier_than(place_of(cursor)))
+    newest = newest.order_by(attempts.c.at.desc(), attempts.c.number.desc()).limit(most + 1)
+    found = [ListedAttempt(**row._mapping) for row in connection.execute(newest)]
+    if len(found) <= most:
+        return found, None
+    shown = found[:most]
+    return shown, cursor_of((shown[-1].at, shown[-1].number))
+
+
+def history(connection: Connection, attempt_id: str) -> AttemptHistory | None:
+    """An attempt with its answers, reports and overrides; None where there is none."""
+    # PostgreSQL refuses some characters before it looks.
+    if not attempt_id.isalnum():
+        return None
+    found = connection.execute(
+        select(*LISTED, attempts.c.submission, attempts.c.report).where(attempts.c.id == attempt_id)
+    ).one_or_none()
+    if found is None:
+        return None
+    *listed, submission, report = found
+    attempt = ListedAttempt(*listed)
+    changed, replaced = (
+        connection.execute(
+            select(table).where(table.c.attempt == attempt.number).order_by(table.c.id)
+        ).all()
+        for table in (overrides, earlier_reports)
+    )
+    return AttemptHistory(attempt, submission, report, changed, replaced)
+
+
+# The place of an attempt in the order of time: its moment and its number.
+TimePlace = tuple[datetime, int]
+BY_TIME: Final = (attempts.c.at, attempts.c.number)
+
+
+def earlier_than(place: TimePlace) -> ColumnElement[bool]:
+    """That an attempt comes before a place in the order of time."""
+    return tuple_(*BY_TIME) < _literal(place)
+
+
+def later_than(place: TimePlace) -> ColumnElement[bool]:
+    """That an attempt comes after a place in the order of time."""
+    return tuple_(*BY_TIME) > _literal(place)
+
+
+def _literal(place: TimePlace) -> Tuple:
+    at, number = place
+    return tuple_(literal(at, UtcTime()), literal(number))
+
+
+def cursor_of(place: TimePlace) -> str:
+    """The cursor of a place."""
+    at, number = place
+    return f"{(at - _EPOCH) // _TICK:x}.{number:x}"
+
+
+def place_of(cursor: str) -> TimePlace:
+    """The place that a cursor names. Raises BadCursorError."""
+    if not _CURSOR.fullmatch(cursor):
+        raise BadCursorError(cursor)
+    try:
+        ticks, number = (int(part, 16) for part in cursor.split("."))
+        if not (0 <= number < _LARGEST and 0 <= ticks < _LARGEST):
+            raise BadCursorError(cursor)
+        return _EPOCH + ticks * _TICK, number
+    except OverflowError as error:
+        raise BadCursorError(cursor) from error

@@ -1,0 +1,228 @@
+"""The statistics of an exercise, counted from outcomes: a few thousand stand for all attempts."""
+
+import json
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Set
+from dataclasses import dataclass, field
+from typing import Any, Final, TypeAlias
+
+from sqlalchemy import ColumnElement, Connection, String, cast, func, select, type_coerce
+
+from service.attempts.attempt import AttemptFilter
+from service.attempts.results.listing import condition
+from service.attempts.storage.tables import attempts, outcomes
+from service.contract.statistics import (
+    CellFigures,
+    ExerciseStatistics,
+    IdenticalAnswers,
+    MisconceptionFigures,
+    PartFigures,
+    RowFigures,
+    ShareCorrect,
+)
+from service.grading import Verdict
+from service.grading.report import combined
+from service.statistics import Share
+
+# So many misconceptions and groups are told, the commonest first, and so many learners of a group.
+MOST_MISCONCEPTIONS: Final = 100
+MOST_GROUPS: Final = 50
+MOST_LEARNERS: Final = 50
+_WRONG: Final = (Verdict.INCORRECT, Verdict.PARTIAL)
+
+# A part and a code of a message in it.
+_Slip: TypeAlias = tuple[str, str]
+
+
+def exercise_statistics(connection: Connection, wanted: AttemptFilter) -> ExerciseStatistics:
+    """The statistics of the attempts at ``wanted.exercise`` in a span of time."""
+    assert wanted.exercise is not None
+    chosen = condition(wanted)
+    counts = _counts(connection, chosen)
+    contents = _contents(connection, wanted.exercise, counts)
+    parts: dict[str, _PartCount] = defaultdict(_PartCount)
+    slips: dict[_Slip, Counter[str]] = defaultdict(Counter)
+    outcome_with: dict[_Slip, int] = {}
+    for outcome, content in contents.items():
+        times = counts[outcome].total()
+        for part, told in content.items():
+            parts[part].add(told, times)
+            for code in told["codes"]:
+                slips[part, code].update(counts[outcome])
+                outcome_with.setdefault((part, code), outcome)
+    return ExerciseStatistics(
+        exercise=wanted.exercise,
+        attempts=sum(each.total() for each in counts.values()),
+        learners=connection.scalar(select(func.count(attempts.c.learner.distinct())).where(chosen))
+        or 0,
+        parts=[part.figures(name) for name, part in parts.items()],
+        misconceptions=_commonest(connection, chosen, slips, outcome_with),
+        identical=list(_identical(connection, chosen, contents)),
+    )
+
+
+def _counts(connection: Connection, chosen: ColumnElement[bool]) -> dict[int, Counter[str]]:
+    """How many attempts have each outcome on each day (in UTC)."""
+    is_postgresql = connection.dialect.name == "postgresql"
+    # SQLite has moments as texts that begin with the day; to read them as dates takes far longer.
+    day: ColumnElement[str] = (
+        cast(func.date(func.timezone("UTC", attempts.c.at)), String)
+        if is_postgresql
+        else func.substr(type_coerce(attempts.c.at, String), 1, 10)
+    )
+    counted = (
+        select(attempts.c.outcome, day, func.count())
+        .where(chosen)
+        .group_by(attempts.c.outcome, day)
+    )
+    found: dict[int, Counter[str]] = defaultdict(Counter)
+    for outcome, date, times in connection.execute(counted).all():
+        found[outcome][date] = times
+    return found
+
+
+def _contents(
+    connection: Connection, exercise: str, counts: Mapping[int, object]
+) -> dict[int, dict[str, Any]]:
+    told = select(outcomes.c.id, outcomes.c.content).where(outcomes.c.exercise == exercise)
+    return {
+        number: json.loads(content)
+        for number, content in connection.execute(told.order_by(outcomes.c.id))
+        if number in counts
+    }
+
+
+@dataclass(slots=True)
+class _RowCount:
+    """A row in all outcomes that have it."""
+
+    seen: int = 0
+    share: Share = field(default_factory=Share)
+    cells: dict[str, Share] = field(default_factory=lambda: defaultdict(Share))
+
+    def add(self, cells: Mapping[str, Verdict], times: int) -> None:
+        self.seen += times
+        self.share.add(combined(cells.values()), times)
+        for label, verdict in cells.items():
+            self.cells[label].add(verdict, times)
+
+
+@dataclass(slots=True)
+class _PartCount:
+    """A part in all outcomes."""
+
+    share: Share = field(default_factory=Share)
+    detailed: int = 0
+    rows: dict[str, _RowCount] = field(default_factory=lambda: defaultdict(_RowCount))
+
+    def add(self, told: Mapping[str, Any], times: int) -> None:
+        self.share.add(Verdict(told["verdict"]), times)
+        rows: dict[str, dict[str, Verdict]] = defaultdict(dict)
+        for place, verdict in told["cells"].items():
+            row, _, cell = place.partition("/")
+            rows[row][cell] = Verdict(verdict)
+        self.detailed += times * bool(rows)
+        for row, cells in rows.items():
+            self.rows[row].add(cells, times)
+
+    def figures(self, name: str) -> PartFigures:
+        """The figures, without rows that few have: a row too many is no row of the answer."""
+        rows = [
+            RowFigures(
+                label=label,
+                **_share(row.share),
+                cells=[CellFigures(label=cell, **_share(row.cells[cell])) for cell in row.cells],
+            )
+            for label, row in self.rows.items()
+            if 2 * row.seen > self.detailed
+        ]
+        return PartFigures(part=name, **_share(self.share), rows=rows)
+
+
+def _share(share: Share) -> dict[str, Any]:
+    told = ShareCorrect(answered=share.answered, correct=share.correct, share=share.value)
+    return told.model_dump()
+
+
+def _commonest(
+    connection: Connection,
+    chosen: ColumnElement[bool],
+    slips: Mapping[_Slip, Counter[str]],
+    outcome_with: Mapping[_Slip, int],
+) -> list[MisconceptionFigures]:
+    ordered = sorted(slips.items(), key=lambda slip: (-slip[1].total(), slip[0]))
+    told = ordered[:MOST_MISCONCEPTIONS]
+    reports = _newest_reports(connection, chosen, {outcome_with[slip] for slip, _ in told})
+    return [
+        MisconceptionFigures(
+            part=part,
+            code=code,
+            sentence=_sentence(reports[outcome_with[part, code]], part, code),
+            attempts=days.total(),
+            by_day=dict(sorted(days.items())),
+        )
+        for (part, code), days in told
+    ]
+
+
+def _newest_reports(
+    connection: Connection, chosen: ColumnElement[bool], among: Set[int]
+) -> dict[int, Any]:
+    """One report of each outcome: of its newest attempt, since later ones are told more."""
+    newest = (
+        select(func.max(attempts.c.number))
+        .where(chosen, attempts.c.outcome.in_(among))
+        .group_by(attempts.c.outcome)
+    )
+    found = select(attempts.c.outcome, attempts.c.report).where(attempts.c.number.in_(newest))
+    return {outcome: json.loads(report) for outcome, report in connection.execute(found).all()}
+
+
+def _sentence(report: Mapping[str, Any], part: str, code: str) -> str | None:
+    """The first message of a code in a part; None where the report was to tell no more."""
+    told = (each for each in report["parts"] if each["part"] == part)
+    return next((each["message"] for each in _messages(told) if each["code"] == code), None)
+
+
+def _messages(places: Iterable[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]]:
+    """The messages of parts, rows or cells, and of all that is in them."""
+    for place in places:
+        yield from place["feedback"]
+        yield from _messages([*place.get("rows", ()), *place.get("cells", ())])
+
+
+def _identical(
+    connection: Connection, chosen: ColumnElement[bool], contents: Mapping[int, Mapping[str, Any]]
+) -> Iterator[IdenticalAnswers]:
+    """The wrong answers that several learners sent letter by letter."""
+    learners = func.count(attempts.c.learner.distinct())
+    same = (
+        select(attempts.c.outcome, attempts.c.answers_digest, learners, func.count())
+        .where(chosen)
+        .group_by(attempts.c.outcome, attempts.c.answers_digest)
+        .having(learners > 1)
+        .order_by(learners.desc(), func.count().desc(), attempts.c.answers_digest)
+    )
+    wrong = {number: list(_wrong_places(content)) for number, content in contents.items()}
+    groups = [group for group in connection.execute(same) if wrong.get(group.outcome)]
+    for outcome, digest, count, times in groups[:MOST_GROUPS]:
+        named = (
+            select(attempts.c.learner)
+            .distinct()
+            .where(chosen, attempts.c.outcome == outcome, attempts.c.answers_digest == digest)
+            .order_by(attempts.c.learner)
+            .limit(MOST_LEARNERS)
+        )
+        yield IdenticalAnswers(
+            learners=count,
+            attempts=times,
+            wrong=wrong[outcome],
+            among=list(connection.scalars(named)),
+        )
+
+
+def _wrong_places(content: Mapping[str, Mapping[str, Any]]) -> Iterable[str]:
+    for part, told in content.items():
+        for place, verdict in told["cells"].items():
+            if verdict in _WRONG:
+                yield f"{part}/{place}"

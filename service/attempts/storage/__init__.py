@@ -1,0 +1,1 @@
+"""The database of attempts and the thread that writes to it."""

@@ -1,0 +1,175 @@
+"""The database of the attempts: opened by its URL, brought to the newest tables, kept durable."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Final, TypeVar
+
+from alembic import command
+from alembic.config import Config
+from alembic.util import CommandError
+from sqlalchemy import Connection, Engine, create_engine, event, make_url, text
+from sqlalchemy.exc import ArgumentError, SQLAlchemyError
+
+from service.attempts.errors import UnusableDatabaseError
+from service.attempts.storage.database_file import DatabaseFile, make_private
+
+R = TypeVar("R")
+
+_MIGRATIONS: Final = Path(__file__).parent / "migrations"
+# So long a statement waits for another process that is writing (seconds).
+_LOCK_WAIT: Final = 5.0
+# Only one of several processes that start together changes the tables of a PostgreSQL database.
+_MIGRATION_LOCK: Final = 0x6468_6772
+# PostgreSQL, appendix A, "deadlock_detected"; so often a transaction is tried then.
+_TRIES: Final = 5
+_DEADLOCK: Final = "40P01"
+# A server whose machine is gone is given up after half a minute (libpq, "keepalives_idle" and
+# following); without this, TCP goes on for a quarter of an hour.
+_WHEN_SILENT: Final = {
+    "keepalives_idle": 10,
+    "keepalives_interval": 5,
+    "keepalives_count": 3,
+    "tcp_user_timeout": 25_000,
+}
+
+
+def open_database(url: str, *, create: bool = True) -> Engine:
+    """The database at the URL, with the newest tables.
+
+    ``url`` is that of SQLAlchemy (postgresql://…, sqlite:///…) or the path of an SQLite file, which
+    is made where there is none, if ``create``. Raises UnusableDatabaseError.
+    """
+    try:
+        engine = _engine(url)
+    except (ArgumentError, ValueError) as error:
+        # The URL may hold a password: it is not repeated.
+        raise UnusableDatabaseError("is no URL of a database and no path of a file") from error
+    is_sqlite = engine.dialect.name == "sqlite"
+    if is_sqlite and not _is_there(path := engine.url.database or ""):
+        if not create:
+            raise UnusableDatabaseError(f"{safe_url(engine)}: there is no such file")
+        make_private(path)
+    try:
+        file = DatabaseFile(engine) if is_sqlite else None
+        with engine.connect() as connection:
+            if file is not None and not file.note(connection):
+                raise UnusableDatabaseError("would be kept in memory and lost; name a file")
+            connection.rollback()
+            _migrate(connection)
+    except ValueError as error:
+        raise UnusableDatabaseError("has parts that the database does not know") from error
+    except SQLAlchemyError as error:
+        raise UnusableDatabaseError(f"{safe_url(engine)}: {reason(error)}") from error
+    except CommandError as error:
+        newer = "its tables are those of a newer version of the program"
+        raise UnusableDatabaseError(f"{safe_url(engine)}: {newer}") from error
+    finally:
+        engine.dispose()
+    return engine
+
+
+def _is_there(path: str) -> bool:
+    # Another spelling is SQLite's own affair: file:attempts.db?mode=ro, :memory:.
+    return path.startswith((":", "file:")) or not path or Path(path).exists()
+
+
+def _engine(url: str) -> Engine:
+    parsed = make_url(url if "://" in url else f"sqlite:///{url}")
+    match parsed.get_backend_name():
+        case "sqlite" if parsed.drivername in ("sqlite", "sqlite+pysqlite"):
+            engine = create_engine(
+                parsed, connect_args={"timeout": _LOCK_WAIT}, hide_parameters=True
+            )
+            event.listen(engine, "connect", _set_up_sqlite)
+            event.listen(engine, "begin", _begin_sqlite)
+            return engine
+        case "postgresql":
+            # The server gives up the locks of a client whose machine is gone after a minute.
+            options = (
+                f"-c lock_timeout={_LOCK_WAIT:.0f}s -c statement_timeout=60s "
+                "-c tcp_keepalives_idle=30 -c tcp_keepalives_interval=10 -c tcp_keepalives_count=3"
+            )
+            return create_engine(
+                parsed.set(drivername="postgresql+psycopg"),
+                pool_pre_ping=True,
+                # No failure that is logged tells what somebody has answered.
+                hide_parameters=True,
+                connect_args=_WHEN_SILENT | {"connect_timeout": 3, "options": options},
+            )
+        case _:
+            raise UnusableDatabaseError(
+                f"{parsed.drivername} is not supported; use SQLite or PostgreSQL"
+            )
+
+
+def _set_up_sqlite(connection: Any, _: object) -> None:
+    # Transactions begin where SQLAlchemy says so (below) and not where Python's driver guesses.
+    connection.isolation_level = None
+    cursor = connection.cursor()
+    # Deleted and replaced rows are overwritten, so that nothing of a forgotten learner stays.
+    for setting in (
+        "journal_mode = WAL",
+        "synchronous = FULL",
+        "foreign_keys = ON",
+        "secure_delete = ON",
+    ):
+        cursor.execute(f"PRAGMA {setting}")
+    cursor.close()
+
+
+def _begin_sqlite(connection: Connection) -> None:
+    # A transaction that reads first and then writes would fail at once beside another writer.
+    writes = connection.get_execution_options().get("writes", False)
+    connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
+
+
+def _migrate(connection: Connection) -> None:
+    """Bring the tables to the newest form; an empty database gets them all."""
+    connection = connection.execution_options(writes=True)
+    with connection.begin():
+        without_time_limit(connection)
+        if connection.dialect.name == "postgresql":
+            lock = text("SELECT pg_advisory_xact_lock(:key)")
+            connection.execute(lock, {"key": _MIGRATION_LOCK})
+        config = Config()
+        config.set_main_option("script_location", str(_MIGRATIONS).replace("%", "%%"))
+        config.attributes["connection"] = connection
+        command.upgrade(config, "head")
+
+
+def without_time_limit(connection: Connection) -> None:
+    """Let this transaction take as long as it needs: it is at every row of a large table."""
+    if connection.dialect.name == "postgresql":
+        for limit in ("lock_timeout", "statement_timeout"):
+            connection.exec_driver_sql(f"SET LOCAL {limit} = 0")
+
+
+def in_transaction(engine: Engine, work: Callable[[Connection], R]) -> R:
+    """The result of ``work``, committed; it is done anew where others were in its way."""
+    tries = 0
+    while True:
+        try:
+            with engine.connect() as connection:
+                connection = connection.execution_options(writes=True)
+                with connection.begin():
+                    return work(connection)
+        except SQLAlchemyError as error:
+            tries += 1
+            if tries == _TRIES or not is_deadlock(error):
+                raise
+
+
+def is_deadlock(error: Exception) -> bool:
+    """Whether PostgreSQL ended this transaction for another, so that it should be tried again."""
+    return getattr(getattr(error, "orig", None), "sqlstate", None) == _DEADLOCK
+
+
+def safe_url(engine: Engine) -> str:
+    """The URL without its password."""
+    return engine.url.render_as_string(hide_password=True)
+
+
+def reason(error: SQLAlchemyError) -> str:
+    """What the database's driver says, in one line, without the values of a row."""
+    said = str(getattr(error, "orig", None) or error).partition("\nDETAIL:")[0]
+    return " ".join(said.split())[:300]

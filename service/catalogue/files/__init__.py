@@ -1,0 +1,1 @@
+"""Exercise files: fields, schema, and the place of each fault."""

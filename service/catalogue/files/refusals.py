@@ -1,0 +1,187 @@
+"""Faults of a tutor's file -> the field and the reason with a repair, as authors name them."""
+
+import difflib
+import inspect
+import re
+import reprlib
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, Final, get_args
+
+from pydantic import BaseModel, ValidationError
+
+from service.catalogue.files.schema import (
+    CheckSpec,
+    ExerciseSpec,
+    ExpectSpec,
+    RobotSpec,
+    ScrewRobotSpec,
+    SymbolSpec,
+)
+from service.catalogue.parts import SPECS
+from service.catalogue.robots.formulas import FieldError
+
+_Detail = Mapping[str, Any]
+_Location = Sequence[int | str]
+TableAt = Callable[[_Location], type[BaseModel]]
+
+# Pydantic puts the form behind a field that may have several, with a finding for each form.
+_FORM: Final = re.compile(r"(?:literal|str-enum)\[.*\]|str|float|constrained-int")
+_CHOICES: Final = {"literal_error": "expected", "enum": "expected",
+                   "union_tag_invalid": "expected_tags"}  # fmt: skip
+_QUOTED: Final = re.compile(r"'([^']*)'")
+
+
+def refusals(
+    error: ValidationError | FieldError | ExceptionGroup[FieldError], table_at: TableAt
+) -> list[tuple[str, str]]:
+    """The field and the reason of each fault; a value that fits none of several forms is one.
+
+    ``table_at`` is the table of the file that a location of pydantic lies in.
+    """
+    if isinstance(error, ExceptionGroup):
+        return [fault for each in error.exceptions for fault in refusals(each, table_at)]
+    if isinstance(error, FieldError):
+        return [(error.field, error.reason)]
+    found: list[tuple[str, list[_Detail]]] = []
+    for detail in error.errors(include_url=False):
+        location = detail["loc"]
+        is_form = len(location) > 2 and _FORM.fullmatch(str(location[-1])) is not None
+        field = _path(location[:-1] if is_form else location)
+        if detail["type"] == "union_tag_invalid":
+            field = f"{field}.kind"
+        if is_form and found and found[-1][0] == field:
+            found[-1][1].append(detail)
+        else:
+            found.append((field, [detail]))
+    return [(field, _reason(details, table_at)) for field, details in found]
+
+
+def _reason(details: Sequence[_Detail], table_at: TableAt) -> str:
+    """The reason why a value is refused; ``details`` has one finding for each form it may have."""
+    known = [
+        choice
+        for detail in details
+        if detail["type"] in _CHOICES
+        for choice in _QUOTED.findall(detail["ctx"][_CHOICES[detail["type"]]])
+    ]
+    others = (detail for detail in details if detail["type"] not in _CHOICES)
+    reasons = [_advised(detail, table_at) for detail in others]
+    if known:
+        value = details[0]["input"]
+        tagged = details[0]["type"] == "union_tag_invalid"
+        reasons.insert(0, _no_choice(value["kind"] if tagged else value, known))
+    first, *more = reasons
+    return first + "".join(f", or {reason[0].lower()}{reason[1:]}" for reason in more)
+
+
+def _no_choice(value: object, known: Sequence[str]) -> str:
+    """The reason for a value that is not among the known ones, with the nearest of them."""
+    lowered = {choice.lower(): choice for choice in known}
+    near = difflib.get_close_matches(str(value).lower(), lowered, n=1)
+    meant = f"; did you mean {lowered[near[0]]!r}? Write" if near else "; write"
+    return f"is {reprlib.repr(value)}{meant} {alternatives(map(repr, known))}"
+
+
+def alternatives(names: Iterable[str]) -> str:
+    """The names with commas between them and "or" before the last."""
+    *others, last = names
+    return f"{', '.join(others)} or {last}" if others else last
+
+
+def _path(location: _Location) -> str:
+    """A field as an author would name it: ``parts[0].points``.
+
+    Behind the number of a part pydantic puts the part's kind, and behind the robot the way that it
+    is given; neither is a field of the file.
+    """
+    inserted = {"parts": 2, "robot": 1}.get(str(location[0])) if location else None
+    names = {"start": "from"}
+    steps = [names.get(str(step), step) for i, step in enumerate(location) if i != inserted]
+    path = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps)
+    return path.lstrip(".") or "file"
+
+
+def _advised(detail: _Detail, table_at: TableAt) -> str:
+    """One of pydantic's findings, in a sentence with the repair."""
+    reason: str = detail["msg"].removeprefix("Value error, ")
+    location: _Location = detail["loc"]
+    last = location[-1] if location else ""
+    match detail["type"]:
+        case "extra_forbidden":
+            return _no_such_key(str(last), table_at(location[:-1]))
+        case "missing" if isinstance(last, int):
+            return f"{reason}: write entry {last + 1} as well"
+        case "missing":
+            return f"{reason}: write {last} = …"
+        case "string_pattern_mismatch":
+            return f"{reason}: {_advice(str(last), table_at(location[:-1]))}"
+        case "float_type" | "bool_type" if isinstance(detail["input"], str):
+            return f"{reason}: write it without quotation marks"
+        case "bool_type":
+            return f"{reason}: write true or false"
+        case "string_type" if isinstance(detail["input"], bool | int | float):
+            return f"{reason}: write it in quotation marks"
+        case "greater_than" | "greater_than_equal" | "less_than" | "less_than_equal":
+            return _out_of_range(detail["input"], reason, _is_share(str(last), table_at(location)))
+        case "union_tag_not_found":
+            return f'{reason}: write kind = "…", one of {", ".join(SPECS)}'
+        case _:
+            return reason
+
+
+def _out_of_range(value: float, reason: str, is_share: bool) -> str:
+    """The reason for a number out of its range; a share may have been written in per cent."""
+    shown = reprlib.repr(value)
+    if not is_share:
+        return f"is {shown}; {reason.replace('Input should be', 'write a number', 1)}"
+    meant = f", so {value / 100:g} for {value:g} %" if 1 < value <= 100 else ""
+    return f"is {shown}; write a share from 0 to 1{meant}"
+
+
+def _is_share(key: str, model: type[BaseModel]) -> bool:
+    """Whether a field holds a number from 0 to 1."""
+    field = model.model_fields.get(key)
+    limits = field.metadata if field else []
+    return any(getattr(each, "ge", None) == 0 for each in limits) and any(
+        getattr(each, "le", None) == 1 for each in limits
+    )
+
+
+def _no_such_key(key: str, model: type[BaseModel]) -> str:
+    known = [field.alias or name for name, field in model.model_fields.items()]
+    matches = difflib.get_close_matches(key, known, n=1)
+    meant = f"did you mean {matches[0]!r}? The keys are" if matches else "the keys are"
+    return f"there is no key {key!r} here; {meant} {', '.join(known)}"
+
+
+def _advice(key: str, model: type[BaseModel]) -> str:
+    field = model.model_fields.get(key)
+    extra = field.json_schema_extra if field else None
+    return str(extra["advice"]) if isinstance(extra, dict) else "write it so"
+
+
+def exercise_table(location: _Location) -> type[BaseModel]:
+    """The table of an exercise file that a location of pydantic lies in."""
+    match list(location):
+        case ["robot", tag, *_]:
+            return ScrewRobotSpec if tag == "screws" else RobotSpec
+        case ["symbols", *_]:
+            return SymbolSpec
+        case ["parts", int(), str(kind), str(key), int(), *_]:
+            field = SPECS[kind].model_fields.get(key)
+            return table_in(field.annotation if field else None) or SPECS[kind]
+        case ["parts", int(), str(kind), *_]:
+            return SPECS[kind]
+        case ["checks", int(), "expect", *_]:
+            return ExpectSpec
+        case ["checks", *_]:
+            return CheckSpec
+        case _:
+            return ExerciseSpec
+
+
+def table_in(annotation: object) -> type[BaseModel] | None:
+    """The table that a list of tables holds, such as ``list[StepSpec] | None``."""
+    if inspect.isclass(annotation) and issubclass(annotation, BaseModel):
+        return annotation
+    return next(filter(None, map(table_in, get_args(annotation))), None)

@@ -1,0 +1,1 @@
+"""The reference robot of an exercise and its formulas."""

@@ -1,0 +1,171 @@
+"""The formulas of an exercise file: read, and tried at some values of their symbols.
+
+An answer that the file gives is tried before any student is marked against it: a matrix that is no
+rotation is refused here.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from service.catalogue.files.fields import Formula, Homogeneous, Screw
+from service.catalogue.robots.variables import TRIALS, Variable, trial_values
+from service.expressions import Expression, ExpressionError, Kind, Vocabulary, read
+from service.expressions.evaluation.samples import SymbolValues
+from service.kinematics.transforms import Numbers
+
+FormulaGrid = tuple[tuple[Expression, ...], ...]
+# The field of a formula, the formula, and its quantity.
+FormulaField = tuple[str, Expression, Kind]
+
+# What rounding may leave of a 0 or 1 in an author's formulas.
+EXACT = 1e-9
+
+_LINE: tuple[Kind, ...] = ("number", "number", "number", "length")
+HOMOGENEOUS: tuple[tuple[Kind, ...], ...] = (_LINE, _LINE, _LINE, ("number",) * 4)
+ROTATION: tuple[tuple[Kind, ...], ...] = (("number",) * 3,) * 3
+# A pitch is a length per radian, and a moment arm a length.
+SCREW: tuple[Kind, ...] = ("number", "number", "number", "length", "length", "length")
+
+
+@dataclass
+class FieldError(Exception):
+    """A value of an exercise file that cannot stand; ``field`` is its path in the file."""
+
+    field: str
+    reason: str
+
+    def __str__(self) -> str:
+        """Field and reason on one line."""
+        return f"{self.field}: {self.reason}"
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenFormulas:
+    """Formulas as the file has them, row by row; ``quantities`` has the quantity of each.
+
+    ``path`` is the field of row i and column j, such as ``expected[{i}][{j}]``. ``check`` takes the
+    field of them all and their numbers ``(rows, columns, TRIALS)``, and raises FieldError where
+    these cannot be right.
+    """
+
+    path: str
+    rows: Sequence[Sequence[Formula]]
+    quantities: Sequence[Sequence[Kind]]
+    check: Callable[[str, Numbers], None] | None = None
+
+
+def matrix_of(
+    field: str,
+    rows: Sequence[Sequence[Formula]],
+    quantities: Sequence[Sequence[Kind]],
+    check: Callable[[str, Numbers], None] | None = None,
+) -> WrittenFormulas:
+    """The formulas of a matrix."""
+    return WrittenFormulas(f"{field}[{{i}}][{{j}}]", rows, quantities, check)
+
+
+def list_of(path: str, formulas: Sequence[Formula], quantities: Sequence[Kind]) -> WrittenFormulas:
+    """The formulas of a list, kept as one row; ``path`` is such as ``steps[{j}].angle``."""
+    return WrittenFormulas(path, (formulas,), (quantities,))
+
+
+def transform_of(field: str, rows: Homogeneous) -> WrittenFormulas:
+    """The formulas of a homogeneous transform."""
+    return matrix_of(field, rows, HOMOGENEOUS, check_transform)
+
+
+def screws_of(field: str, axes: Sequence[Screw]) -> WrittenFormulas:
+    """The formulas of screw axes (ω; v), each of unit length."""
+    return matrix_of(field, axes, (SCREW,) * len(axes), _check_screws)
+
+
+def fields_of(
+    path: str, grid: FormulaGrid, quantities: Sequence[Sequence[Kind]]
+) -> Iterator[FormulaField]:
+    """The formulas of a grid with their fields, as ``path`` names them."""
+    for i, (row, kinds) in enumerate(zip(grid, quantities, strict=True)):
+        for j, (formula, kind) in enumerate(zip(row, kinds, strict=True)):
+            yield path.format(i=i, j=j), formula, kind
+
+
+def grid_values(grid: FormulaGrid, values: SymbolValues, samples: int) -> Numbers:
+    """The numbers that formulas give, ``(rows, columns, samples)``."""
+    numbers = np.empty((len(grid), len(grid[0]), samples))
+    for i, row in enumerate(grid):
+        for j, formula in enumerate(row):
+            numbers[i, j] = formula.evaluate(values)
+    return numbers
+
+
+class FormulaReader:
+    """Reads and tries the formulas of one exercise."""
+
+    def __init__(self, vocabulary: Vocabulary, variables: tuple[Variable, ...]) -> None:
+        self._vocabulary = vocabulary
+        self._values = trial_values(variables)
+
+    def read(self, field: str, source: Formula, quantity: Kind) -> Expression:
+        """The formula at ``field``. Raises FieldError where it cannot be read."""
+        try:
+            return read(source, self._vocabulary, quantity=quantity)
+        except ExpressionError as error:
+            hint = f"; did you mean {error.suggestion!r}?" if error.suggestion else ""
+            raise FieldError(field, f"{error.message}{hint}") from error
+
+    def grid(self, written: WrittenFormulas, prefix: str = "") -> FormulaGrid:
+        """All formulas, tried; ``prefix`` stands before each field. Raises FieldError."""
+        path = prefix + written.path
+        rows = enumerate(zip(written.rows, written.quantities, strict=True))
+        grid = tuple(
+            tuple(
+                self.read(path.format(i=i, j=j), source, quantity)
+                for j, (source, quantity) in enumerate(zip(row, quantities, strict=True))
+            )
+            for i, (row, quantities) in rows
+        )
+        numbers = self.tried(grid, lambda i, j: path.format(i=i, j=j))
+        if written.check is not None:
+            written.check(prefix + written.path.partition("[")[0], numbers)
+        return grid
+
+    def tried(self, grid: FormulaGrid, field: Callable[[int, int], str]) -> Numbers:
+        """The numbers ``(rows, columns, TRIALS)``. Raises FieldError where one is undefined."""
+        numbers = grid_values(grid, self._values, TRIALS)
+        for i, j in np.argwhere(~np.isfinite(numbers).all(axis=-1)).tolist():
+            raise FieldError(
+                field(i, j),
+                f"{grid[i][j].text()} has no value for some values of its symbols; mend it, or "
+                f"narrow their ranges",
+            )
+        return numbers
+
+
+def check_rotation(field: str, numbers: Numbers) -> None:
+    """Check that numbers ``(3 or 4, 3 or 4, samples)`` hold rotations. Raises FieldError."""
+    rotation = np.moveaxis(numbers[:3, :3], -1, 0)
+    if np.abs(np.swapaxes(rotation, 1, 2) @ rotation - np.eye(3)).max() > EXACT:
+        raise FieldError(
+            field, "is no rotation: its columns must be unit vectors at right angles to each other"
+        )
+    if (np.linalg.det(rotation) < 0).any():
+        raise FieldError(field, "is left-handed: the determinant of a rotation is 1, not −1")
+
+
+def check_transform(field: str, numbers: Numbers) -> None:
+    """Check that numbers ``(4, 4, samples)`` are homogeneous transforms. Raises FieldError."""
+    check_rotation(field, numbers)
+    if np.abs(numbers[3] - np.array([[0.0], [0.0], [0.0], [1.0]])).max() > EXACT:
+        raise FieldError(field, "must end in the row 0, 0, 0, 1")
+
+
+def _check_screws(field: str, numbers: Numbers) -> None:
+    omega, v = np.linalg.norm(numbers.reshape(-1, 2, 3, numbers.shape[-1]), axis=2).swapaxes(0, 1)
+    turns, slides = np.abs(omega - 1) < EXACT, (omega < EXACT) & (np.abs(v - 1) < EXACT)
+    for i, fits in enumerate((turns.all(axis=1) | slides.all(axis=1)).tolist()):
+        if not fits:
+            raise FieldError(
+                f"{field}[{i}]",
+                "is no screw axis (ω; v): either ω is a unit vector, or it is 0 and v is one",
+            )

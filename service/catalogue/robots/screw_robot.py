@@ -1,0 +1,58 @@
+"""The reference robot by its product of exponentials: its home pose and its screw axes."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from service.catalogue.robots.formulas import (
+    HOMOGENEOUS,
+    SCREW,
+    FormulaField,
+    FormulaGrid,
+    fields_of,
+    grid_values,
+)
+from service.catalogue.robots.robot import Joint, Robot
+from service.expressions.evaluation.samples import SymbolValues
+from service.kinematics.screws import product_in_space
+from service.kinematics.transforms import Matrices, Numbers
+
+
+@dataclass(frozen=True, slots=True)
+class ScrewRobot:
+    """The reference mechanism. ``home`` is 4×4, ``axes`` holds a six-vector (ω; v) per joint."""
+
+    structure: str
+    joints: tuple[Joint, ...]
+    home: FormulaGrid
+    axes: FormulaGrid
+
+    def fields(self) -> Iterator[FormulaField]:
+        """Every formula that its author has written."""
+        yield from fields_of("robot.home[{i}][{j}]", self.home, HOMOGENEOUS)
+        yield from fields_of("robot.screws[{i}][{j}]", self.axes, (SCREW,) * len(self.axes))
+
+    @property
+    def frames(self) -> tuple[int | str, ...]:
+        """The names of its frames: the base (space) frame and the tool (body) frame."""
+        return ("base", "tool")
+
+    def has_frame(self, name: int | str) -> bool:
+        """Whether ``frame`` takes this name."""
+        return name in self.frames
+
+    def frame(self, name: int | str, values: SymbolValues, samples: int) -> Matrices:
+        """The pose of a frame in the base frame, ``(samples, 4, 4)``."""
+        if name == "base":
+            return np.broadcast_to(np.eye(4), (samples, 4, 4))
+        home = np.moveaxis(grid_values(self.home, values, samples), -1, 0)
+        amounts = np.array([values[joint.variable] for joint in self.joints])
+        return product_in_space(self.screws(values, samples), amounts, home)
+
+    def screws(self, values: SymbolValues, samples: int) -> Numbers:
+        """The screw axis of each joint in the base frame at home, ``(joints, samples, 6)``."""
+        return np.swapaxes(grid_values(self.axes, values, samples), 1, 2)
+
+
+Reference = Robot | ScrewRobot

@@ -1,0 +1,263 @@
+"""`dh-grader attempts`: the recorded attempts of this installation."""
+
+import getpass
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Annotated, Final
+
+import typer
+from sqlalchemy import Engine
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.attempts.attempt import AttemptFilter, GradesFormat
+from service.attempts.errors import (
+    UnknownAttemptError,
+    UnusableDatabaseError,
+    UnusablePointsError,
+)
+from service.attempts.results.grades import counting_rules, graded_attempts, written
+from service.attempts.results.listing import page
+from service.attempts.results.statistics import exercise_statistics
+from service.attempts.storage.database import in_transaction, open_database, reason
+from service.attempts.storage.erasure import overwrite_deleted
+from service.attempts.tutoring import (
+    LearnerData,
+    data_of,
+    forget,
+    override,
+)
+from service.cli.files.output import write
+from service.cli.terminal import give_up, installed, installed_exercise, stdout
+from service.formats.shared.plain_text import number, visible, whole_percent
+from service.settings import load_settings
+
+commands = typer.Typer(
+    help="Recorded attempts: read, export, regrade, forget.",
+    no_args_is_help=True,
+    add_completion=False,
+)
+
+_MOST_SLIPS: Final = 15
+_MOST_LISTED: Final = 1_000_000
+_STILL_THERE: Final = (
+    "It is still in the file -wal beside the database, because another program is reading. A "
+    "service that uses the database overwrites it within a minute after that program has ended; "
+    "without a service, run this command again then."
+)
+
+
+def encodable(value: str | None) -> str | None:
+    """What was given to the program, if it is text that a database can hold; else it ends."""
+    if value is not None and not value.isascii():
+        try:
+            value.encode()
+        except UnicodeEncodeError:
+            give_up(f"{value.encode(errors='replace').decode()}: this is no text in UTF-8.")
+    return value
+
+
+ExerciseArgument = Annotated[
+    str,
+    typer.Argument(help="The id of an exercise.", show_default=False, callback=encodable),
+]
+ExerciseOption = Annotated[str | None, typer.Option(help="Only this exercise.", callback=encodable)]
+
+
+@contextmanager
+def database(*, create: bool = False) -> Iterator[Engine]:
+    """The database of this installation; ends the program where it cannot be used.
+
+    A file is made where there is none only if ``create``.
+    """
+    url = load_settings().database
+    if url is None:
+        give_up("No attempts are recorded here: DH_GRADER_DATABASE names no database.")
+    try:
+        engine = open_database(url.get_secret_value(), create=create)
+    except UnusableDatabaseError as error:
+        give_up(f"DH_GRADER_DATABASE: {error}")
+    try:
+        yield engine
+    except SQLAlchemyError as error:
+        give_up(f"The database does not answer: {reason(error)}")
+    finally:
+        engine.dispose()
+
+
+@commands.command("list")
+def list_attempts(
+    exercise: ExerciseOption = None,
+    learner: Annotated[
+        str | None, typer.Option(help="Only this learner.", callback=encodable)
+    ] = None,
+    limit: Annotated[int, typer.Option(min=1, max=_MOST_LISTED, help="How many.")] = 20,
+) -> None:
+    """List the newest attempts."""
+    wanted = AttemptFilter(exercise, learner)
+    with database() as engine, engine.connect() as connection:
+        shown, following = page(connection, wanted, None, limit)
+    screen = stdout()
+    if not shown:
+        screen.print(_nothing(exercise))
+    for each in shown:
+        told = (
+            each.id,
+            f"{each.at:%Y-%m-%d %H:%M}",
+            each.exercise,
+            visible(each.learner),
+            "does not count" if each.ordinal is None else f"no. {each.ordinal}",
+            f"{number(each.earned)} of {number(each.max_points)}",
+            "by a tutor" if each.awarded is not None else "",
+            "late" if each.is_late else "",
+        )
+        screen.print("  ".join(filter(None, told)), soft_wrap=True)
+    if following is not None:
+        screen.print(f"There are more; --limit {2 * limit} shows twice as many.")
+
+
+@commands.command("statistics")
+def show_statistics(exercise: ExerciseArgument) -> None:
+    """Show who is right where, and which mistakes are common."""
+    with database() as engine, engine.connect() as connection:
+        told = exercise_statistics(connection, AttemptFilter(exercise))
+    screen = stdout()
+    if not told.attempts:
+        screen.print(_nothing(exercise))
+        return
+    screen.print(f"{exercise}: {told.attempts} attempts of {told.learners} learners")
+    for part in told.parts:
+        right = "nobody answered"
+        if part.share is not None:
+            right = f"{whole_percent(part.share)} right of {part.answered}"
+        screen.print(f"{part.part}: {right}")
+        for row in part.rows:
+            cells = "  ".join(f"{cell.label} {_share(cell.share)}" for cell in row.cells)
+            screen.print(f"  {row.label}: {cells}")
+    for slip in told.misconceptions[:_MOST_SLIPS]:
+        screen.print(f"{slip.attempts:>6} {slip.code} ({slip.part})")
+    for group in told.identical[:_MOST_SLIPS]:
+        among = ", ".join(visible(each) for each in group.among)
+        screen.print(f"{group.learners} learners sent the same wrong answers: {among}")
+
+
+def _nothing(exercise: str | None) -> str:
+    """That no attempts are recorded; with the exercises there are, if none has this name."""
+    found = "No attempts are recorded."
+    if exercise is None or exercise in (known := installed()):
+        return found
+    return f"{found} No exercise is called {visible(exercise)}; there are {', '.join(known)}."
+
+
+def _share(share: float | None) -> str:
+    return "-" if share is None else whole_percent(share)
+
+
+@commands.command("export")
+def export(
+    exercise: ExerciseOption = None,
+    form: Annotated[
+        GradesFormat,
+        typer.Option(
+            "--format",
+            help="csv or jsonl: every attempt; canvas or moodle: the one that counts, for the "
+            "gradebook.",
+        ),
+    ] = GradesFormat.CSV,
+    output: Annotated[Path | None, typer.Option(help="The file to write.")] = None,
+) -> None:
+    """Export attempts, for a spreadsheet or a gradebook."""
+    if form.is_gradebook and exercise is None:
+        give_up(f"A gradebook has one column for one exercise: --format {form} needs --exercise.")
+    rules = counting_rules(installed())
+    with database() as engine, engine.connect() as connection:
+        graded = graded_attempts(connection, AttemptFilter(exercise), rules)
+        write(written(graded, form, exercise or ""), output, at_once=False)
+
+
+@commands.command("regrade")
+def regrade(
+    exercise: ExerciseArgument,
+    apply: Annotated[
+        bool, typer.Option("--apply", help="Write it; without this only show what would change.")
+    ] = False,
+    jobs: Annotated[
+        int, typer.Option(min=1, max=64, help="How many processes; PostgreSQL only.")
+    ] = 1,
+) -> None:
+    """Grade the attempts at a corrected exercise anew."""
+    # Only here: no other of these commands grades.
+    from service.cli.commands.regrade import regrade_all, show_what_would_change
+
+    corrected = installed_exercise(exercise)
+    with database() as engine:
+        if not apply:
+            show_what_would_change(engine, corrected)
+            return
+        if jobs > 1 and engine.dialect.name != "postgresql":
+            give_up("SQLite has one writer at a time: leave --jobs out, or use PostgreSQL.")
+        regrade_all(engine, corrected, jobs)
+
+
+@commands.command("override")
+def override_points(
+    attempt: Annotated[str, typer.Argument(help="The id of an attempt.", callback=encodable)],
+    points: Annotated[
+        float | None, typer.Argument(help="Its points; without them earlier ones are withdrawn.")
+    ] = None,
+    reason_given: Annotated[
+        str, typer.Option("--reason", help="Why; always needed.", callback=encodable)
+    ] = "",
+    author: Annotated[
+        str | None, typer.Option("--by", help="Who. [your user name]", callback=encodable)
+    ] = None,
+) -> None:
+    """Give an attempt other points than its report's, with a reason."""
+    if not reason_given.strip():
+        give_up("Say why: --reason.")
+    by = author or getpass.getuser()
+    now = datetime.now(UTC)
+    with database() as engine:
+        try:
+            in_transaction(
+                engine,
+                lambda connection: override(connection, attempt, points, reason_given, by, now),
+            )
+        except UnknownAttemptError:
+            give_up(f"No attempt has the id {attempt}; dh-grader attempts list shows them.")
+        except UnusablePointsError as error:
+            give_up(str(error))
+    typer.echo("Withdrawn." if points is None else f"The attempt has {number(points)} points.")
+
+
+@commands.command("forget")
+def forget_learner(
+    learner: Annotated[
+        str, typer.Argument(help="The learner, as the course names them.", callback=encodable)
+    ],
+    yes: Annotated[bool, typer.Option("--yes", help="Do not ask.")] = False,
+) -> None:
+    """Delete all that is recorded of a learner."""
+    with database() as engine:
+        with engine.connect() as connection:
+            found = data_of(connection, learner)
+        if not found.attempts:
+            # An earlier call may have left something to overwrite.
+            left = overwrite_deleted(engine) is False
+            give_up("Nothing is recorded of this learner." + (f" {_STILL_THERE}" if left else ""))
+        if not yes:
+            question = f"Forget {visible(learner)}? For ever deleted are {_told(found)}."
+            typer.confirm(question, abort=True)
+        deleted = in_transaction(engine, lambda connection: forget(connection, learner))
+        erased = overwrite_deleted(engine)
+    typer.echo(f"Deleted: {_told(deleted)}.")
+    if erased is False:
+        typer.echo(_STILL_THERE)
+
+
+def _told(data: LearnerData) -> str:
+    return (
+        f"attempts: {data.attempts}, earlier reports: {data.earlier_reports}, "
+        f"points given by tutors: {data.overrides}"
+    )

@@ -1,0 +1,95 @@
+"""`dh-grader exercises check`: faults in exercise files, for their authors."""
+
+import math
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.text import Text
+
+from service.authoring import Level, Remark, examine, lazy_shares
+from service.catalogue import CatalogueError, Exercise, exercise_files, load_exercise
+from service.catalogue.files.lines import line_of, value_lines
+from service.cli.terminal import UNUSABLE, complain, stdout
+from service.settings import load_settings
+
+FAILED = 1
+
+STYLES = {Level.FAILED: "red", Level.WARNING: "yellow"}
+
+
+def command(
+    path: Annotated[
+        Path | None,
+        typer.Argument(help="A file, or a folder of files; by default the whole catalogue."),
+    ] = None,
+    strict: Annotated[bool, typer.Option("--strict", help="Let warnings fail as well.")] = False,
+) -> None:
+    """Check exercise files: shape, model answer, the file's own checks, and what looks wrong.
+
+    Exit code 0: every file can be used and passes, with warnings or without.
+
+    Exit code 1: a check failed, or with --strict there is a warning.
+
+    Exit code 2: a file cannot be used; other files are checked all the same.
+    """
+    console = stdout()
+    if path is None:
+        files = exercise_files(*load_settings().exercises_dir)
+    else:
+        files = exercise_files(path) if path.is_dir() else [path]
+    levels = [_check(file, console) for file in files]
+    unusable = levels.count(None)
+    found = Counter(level for remarked in levels for level in remarked or ())
+    if len(files) > 1:
+        console.print(Text(_summary(len(files), unusable, found), "bold"))
+    if unusable:
+        raise SystemExit(UNUSABLE)
+    raise SystemExit(FAILED if found[Level.FAILED] or (strict and found[Level.WARNING]) else 0)
+
+
+def _check(file: Path, console: Console) -> set[Level] | None:
+    """The levels of the remarks on a file, which are printed; None for a file that is unusable."""
+    try:
+        exercise = load_exercise(file)
+    except CatalogueError as error:
+        complain(str(error))
+        return None
+    remarks = examine(exercise)
+    for line in _lines(exercise, remarks, file):
+        # A line of its own for each remark, however long: other programs read this, too.
+        console.print(line, soft_wrap=True)
+    return {remark.level for remark in remarks}
+
+
+def _lines(exercise: Exercise, remarks: list[Remark], file: Path) -> Iterator[Text]:
+    failed = any(remark.level is Level.FAILED for remark in remarks)
+    verdict = ("failed", STYLES[Level.FAILED]) if failed else ("ok", "green")
+    parts = _count(len(exercise.parts), "part")
+    checks = _count(len(exercise.checks), "check")
+    earned = ", ".join(
+        f"{math.floor(100 * share)} % of {part}" for part, share in lazy_shares(exercise).items()
+    )
+    lazy = f"; a lazy answer earns {earned}"
+    yield Text.assemble((exercise.id, "bold"), ": ", verdict, f", {parts}, {checks}{lazy}")
+    lines = value_lines(file.read_text(encoding="utf-8")) if remarks else {}
+    for remark in remarks:
+        line = line_of(remark.field, lines)
+        place = remark.field if line is None else f"{remark.field} (line {line})"
+        yield Text.assemble(
+            "  ", (remark.level.value, STYLES[remark.level]), f": {place}: {remark.text}"
+        )
+
+
+def _summary(files: int, unusable: int, found: Counter[Level]) -> str:
+    failed = found[Level.FAILED]
+    ok = f"{_count(files, 'exercise')}: {files - unusable - failed} ok"
+    others = {"failed": failed, "cannot be used": unusable, "with warnings": found[Level.WARNING]}
+    return ", ".join([ok, *(f"{number} {sort}" for sort, number in others.items() if number)])
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}{'' if number == 1 else 's'}"

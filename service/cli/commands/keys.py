@@ -1,0 +1,111 @@
+"""`dh-grader keys …`: who may use the service, and for what."""
+
+from datetime import UTC, datetime, timedelta
+from typing import Annotated
+
+import typer
+from sqlalchemy import Connection
+
+from service.access.caller import Scope
+from service.access.key_table import add_key, all_keys, fits, revoke_key, settle
+from service.access.key_text import new_key_text
+from service.access.keys import WRONG_SECRET, Key
+from service.attempts.storage.database import in_transaction
+from service.cli.commands.attempts import database, encodable
+from service.cli.terminal import give_up, installed_exercise, stdout
+from service.formats.shared.plain_text import visible
+from service.settings import load_settings
+
+commands = typer.Typer(
+    help="Who may use the service, and for what: create, list, revoke keys.",
+    no_args_is_help=True,
+    add_completion=False,
+)
+
+
+@commands.command("create")
+def create(
+    name: Annotated[
+        str,
+        typer.Argument(
+            help="What it is for, such as the name of a course.",
+            show_default=False,
+            callback=encodable,
+        ),
+    ],
+    scope: Annotated[
+        list[Scope] | None, typer.Option(help="What it may do besides grading. Repeatable.")
+    ] = None,
+    exercise: Annotated[
+        list[str] | None, typer.Option(help="Only this exercise. Repeatable. [all]")
+    ] = None,
+    days: Annotated[int, typer.Option(min=1, max=3650, help="How long it is valid.")] = 365,
+) -> None:
+    """Create a key and show it, once."""
+    secret = load_settings().known_secret()
+    if secret is None:
+        give_up(
+            "Keys need a secret, which the service must know as well. Make one with "
+            "openssl rand -hex 32, and set DH_GRADER_SECRET, or DH_GRADER_SECRET_FILE."
+        )
+    bound = [installed_exercise(each).id for each in exercise] if exercise else None
+    text = new_key_text()
+    digest = secret.key_digest(text)
+    now = datetime.now(UTC)
+    until = now + timedelta(days=days)
+    scopes = {Scope.GRADE, *(scope or ())}
+
+    def added(connection: Connection) -> Key | None:
+        if not settle(connection, secret, now):
+            return None
+        return add_key(connection, name[:200], digest, scopes, bound, now, until)
+
+    with database(create=True) as engine:
+        key = in_transaction(engine, added)
+    if key is None:
+        give_up(WRONG_SECRET)
+    # Alone on standard output, for a script that puts it where it belongs.
+    typer.echo(text)
+    typer.echo(
+        f"Key {key.id}, valid until {key.expires_at:%Y-%m-%d}. Keep it now: it is not shown again.",
+        err=True,
+    )
+
+
+@commands.command("list")
+def list_keys() -> None:
+    """List the keys, without their texts."""
+    secret = load_settings().known_secret()
+    with database() as engine, engine.connect() as connection:
+        found = all_keys(connection)
+        has_their_secret = secret is None or fits(connection, secret)
+    now = datetime.now(UTC)
+    screen = stdout()
+    for key in found:
+        bound = "all exercises" if key.exercises is None else ", ".join(sorted(key.exercises))
+        used = f"used {key.last_used_at:%Y-%m-%d %H:%M}" if key.last_used_at else "never used"
+        told = (key.id, visible(key.name), " ".join(sorted(key.scopes)), bound, _state(key, now))
+        screen.print("  ".join((*told, used)), soft_wrap=True)
+    # After the list: whoever has lost the secret finds there what to revoke.
+    if not has_their_secret:
+        give_up(WRONG_SECRET)
+
+
+@commands.command("revoke")
+def revoke(
+    key: Annotated[
+        str, typer.Argument(help="The id of a key, as list shows it.", callback=encodable)
+    ],
+) -> None:
+    """Revoke a key, and with it all tokens that it has made."""
+    with database() as engine:
+        now = datetime.now(UTC)
+        if not in_transaction(engine, lambda connection: revoke_key(connection, key, now)):
+            give_up(f"There is no key {key} that could be revoked; dh-grader keys list shows them.")
+    typer.echo("Revoked. Each running service knows it within seconds.")
+
+
+def _state(key: Key, now: datetime) -> str:
+    if key.revoked_at is not None:
+        return f"revoked {key.revoked_at:%Y-%m-%d}"
+    return f"{'expired' if key.expires_at <= now else 'until'} {key.expires_at:%Y-%m-%d}"

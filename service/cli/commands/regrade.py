@@ -1,0 +1,102 @@
+"""The regrading of an exercise's attempts, by one process or several."""
+
+import time
+from multiprocessing import get_context
+from typing import Final
+
+from sqlalchemy import Engine
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.attempts.errors import UnusableDatabaseError
+from service.attempts.regrades.outdated import BATCH, RegradedAttempt, Regrading
+from service.attempts.storage.database import in_transaction, open_database
+from service.catalogue import Exercise
+from service.cli.running.progress import progress
+from service.cli.terminal import installed_exercise, stdout
+from service.formats.shared.plain_text import number, visible
+from service.settings import load_settings
+
+# Between two looks at what is left, and while others are at the last attempts (seconds).
+_PAUSE: Final = 0.2
+_MOST_SHOWN: Final = 200
+
+
+def show_what_would_change(engine: Engine, exercise: Exercise) -> None:
+    """Grade all outdated attempts, and print who would get another result and why."""
+    regrading = Regrading(exercise, load_settings().feedback)
+    changes: list[RegradedAttempt] = []
+    with engine.connect() as connection:
+        numbers = regrading.outdated(connection)
+        with progress(len(numbers)) as bar:
+            for i in range(0, len(numbers), BATCH):
+                for each in regrading.preview(connection, numbers[i : i + BATCH]):
+                    bar.advance()
+                    if each.is_changed:
+                        changes.append(each)
+    screen = stdout()
+    for each in changes[:_MOST_SHOWN]:
+        points = f"{number(each.before)} → {number(each.after)} of {number(each.max_points)}"
+        why = "; ".join(each.reasons) or "what a late attempt earns"
+        if each.awarded is not None:
+            why += f"; a tutor's {number(each.awarded)} stays"
+        screen.print(f"{visible(each.learner)}, attempt {each.ordinal or '-'}: {points} ({why})")
+    if len(changes) > _MOST_SHOWN:
+        screen.print(f"… and {len(changes) - _MOST_SHOWN} more")
+    kept = sum(each.awarded is not None for each in changes)
+    of_which = f", of which {kept} would keep the points of a tutor" if kept else ""
+    screen.print(
+        f"{len(numbers)} attempts were graded by another version; {len(changes)} would change"
+        f"{of_which}."
+    )
+    if numbers:
+        screen.print("Nothing is written yet: --apply does that, and keeps the old reports.")
+
+
+def regrade_all(engine: Engine, exercise: Exercise, jobs: int) -> None:
+    """Regrade what is outdated, beside any other process that does so, until nothing waits."""
+    regrading = Regrading(exercise, load_settings().feedback)
+    in_transaction(engine, regrading.enqueue)
+    with engine.connect() as connection:
+        total = left = regrading.waiting(connection)
+    context = get_context("spawn")
+    others = [
+        context.Process(target=work_off, args=(exercise.id,), daemon=True) for _ in range(jobs - 1)
+    ]
+    for each in others:
+        each.start()
+    try:
+        with progress(total) as bar:
+            look_again = 0.0
+            while left:
+                done = regrading.next_batch(engine)
+                begun = time.monotonic()
+                if done and begun < look_again:
+                    continue
+                with engine.connect() as connection:
+                    before, left = left, regrading.waiting(connection)
+                # A count of millions takes as long as regrading many.
+                look_again = begun + max(_PAUSE, 20 * (time.monotonic() - begun))
+                for _ in range(before - left):
+                    bar.advance()
+                if left and not done:
+                    time.sleep(_PAUSE)
+    finally:
+        for each in others:
+            each.kill()
+            each.join()
+    stdout().print(f"Regraded: {total}. The reports before are kept.")
+
+
+def work_off(exercise_id: str) -> None:
+    """Regrade what waits and nobody else is at, in a process of its own; then end."""
+    settings = load_settings()
+    assert settings.database is not None
+    try:
+        engine = open_database(settings.database.get_secret_value(), create=False)
+        regrading = Regrading(installed_exercise(exercise_id), settings.feedback)
+        while regrading.next_batch(engine):
+            pass
+        engine.dispose()
+    except (SQLAlchemyError, UnusableDatabaseError):
+        # What it was at goes back to the queue, and the process that started it takes that.
+        return

@@ -1,0 +1,44 @@
+"""The files that runs have written among submissions, so that no student's is replaced."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from service.cli.files.output_folder import WRITTEN
+from service.cli.terminal import give_up
+
+
+def require_own(output: Path, folders: Iterable[Path]) -> None:
+    """End the program with exit code 2 where the output would take the place of a student's file.
+
+    A file that stands in one of the folders must be written by an earlier run.
+    """
+    if output.is_file() and _holds(folders, output) and output.name not in _written(output):
+        give_up(
+            f"{output}: stands among the submissions, and no earlier run has written it; "
+            "name another --output"
+        )
+
+
+def remember(output: Path | None, folders: Iterable[Path]) -> None:
+    """Note an output that was written into one of the folders: a later run may replace it."""
+    if output is not None and output.is_file() and _holds(folders, output):
+        names = _written(output)
+        if output.name not in names:
+            lines = "".join(f"{name}\n" for name in [*names, output.name])
+            _list_beside(output).write_text(lines, encoding="utf-8")
+
+
+def _holds(folders: Iterable[Path], output: Path) -> bool:
+    place = output.resolve()
+    return any(place.is_relative_to(folder.resolve()) for folder in folders)
+
+
+def _list_beside(output: Path) -> Path:
+    return output.with_name(WRITTEN)
+
+
+def _written(output: Path) -> list[str]:
+    try:
+        return _list_beside(output).read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError):
+        return []

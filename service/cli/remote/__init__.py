@@ -1,0 +1,1 @@
+"""Grading by a server in the place of this program."""

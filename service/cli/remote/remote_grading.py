@@ -1,0 +1,122 @@
+"""The grading of what students handed in by a server. It loads httpx: import it late."""
+
+from collections.abc import Collection
+from dataclasses import replace
+from http import HTTPStatus
+from typing import Final
+
+from service.cli.remote.journal import Journal, digest
+from service.client import GraderClient, GraderClientError, RequestRefusedError
+from service.formats.shared.graded import GradedSubmission
+from service.grading import Report, Submission
+from service.grading.report import rounded_points
+from service.local_grading import GradingTerms, graded, unknown_part
+from service.submissions.assignment import AssignedExercise
+from service.submissions.body import GradeRequest
+from service.submissions.handed_in import HandedIn
+from service.submissions.lookup import UnknownExerciseError
+from service.submissions.outline import ExerciseOutline, PartOutline
+
+# The statuses for a key or a connection that is no good; others from 400 on are about the answers.
+_ABOUT_ALL: Final = {HTTPStatus.UNAUTHORIZED, HTTPStatus.FORBIDDEN, HTTPStatus.REQUEST_TIMEOUT}
+
+
+def exercise_of(server: GraderClient, exercise_id: str) -> ExerciseOutline:
+    """The exercise of a server. Raises UnknownExerciseError or GraderClientError."""
+    try:
+        told = server.exercise(exercise_id)
+    except RequestRefusedError as error:
+        if error.code != "unknown-exercise":
+            raise
+        known = tuple(each.id for each in server.exercises())
+        raise UnknownExerciseError(exercise_id, known) from error
+    parts = tuple(PartOutline(part.id, part.title, part.points) for part in told.parts)
+    return ExerciseOutline(told.id, told.version, told.title, told.source, told.feedback, parts)
+
+
+class RemoteGrading:
+    """Has submissions graded by a server, but for those on which the journal has a report already.
+
+    ``ungraded`` are the names of the submissions that the server could not grade now, and
+    ``reason`` is why. After an error that others would meet as well, nothing more is sent. Several
+    threads may use it. ``key`` is the one that is shown to the server: it may tell another more.
+    """
+
+    def __init__(
+        self, server: GraderClient, key: str | None, terms: GradingTerms, journal: Journal
+    ) -> None:
+        self._server = server
+        self._key = key
+        self._terms = terms
+        self._journal = journal
+        self._has_ended = False
+        self.reason = ""
+        self.ungraded: set[str] = set()
+
+    def graded(self, handed: HandedIn) -> GradedSubmission:
+        """The submission with a report on each exercise, or the problem because of which not."""
+
+        def report_on(
+            body: GradeRequest, assigned: AssignedExercise, terms: GradingTerms
+        ) -> tuple[Report | None, str]:
+            if problem := unknown_part(body, assigned):
+                return None, problem
+            try:
+                return self._report(assigned, terms.submission(body, assigned)), ""
+            except GraderClientError as error:
+                if _refuses_these(error):
+                    return None, f"is refused by the server: {error}"
+                self.reason = self.reason or str(error)
+                self.ungraded.add(handed.name)
+                return None, f"is not graded: {error}"
+
+        return graded(handed, self._terms, report_on)
+
+    def _report(self, assigned: AssignedExercise, submission: Submission) -> Report:
+        """The report of an earlier run or of the server. Raises GraderClientError."""
+        exercise = assigned.exercise
+        parts = tuple(part.id for part in exercise.parts)
+        terms = (submission.angle_unit, submission.feedback, submission.echo)
+        asked = (self._server.server, self._key, exercise.id, exercise.version)
+        of = digest((*asked, parts, terms, submission.answers))
+        if (known := self._journal.report(of)) is not None:
+            return known
+        if self._has_ended:
+            raise GraderClientError(self.reason)
+        try:
+            report = self._server.grade(
+                exercise.id,
+                submission.answers,
+                angle_unit=submission.angle_unit,
+                feedback=submission.feedback,
+                echo=submission.echo,
+            )
+        except GraderClientError as error:
+            if _concerns_all(error):
+                self._has_ended = True
+            raise
+        report = restricted(report, parts)
+        self._journal.add(of, report)
+        return report
+
+
+def restricted(report: Report, parts: Collection[str]) -> Report:
+    """The report as if these parts alone were set, and answered."""
+    kept = tuple(part for part in report.parts if part.part in parts)
+    points = rounded_points(sum(part.points for part in kept))
+    max_points = rounded_points(sum(part.max_points for part in kept))
+    score = round(points / max_points, 6)
+    return replace(report, parts=kept, points=points, max_points=max_points, score=score)
+
+
+def _concerns_all(error: GraderClientError) -> bool:
+    """Whether other answers would meet the same error."""
+    if isinstance(error, RequestRefusedError):
+        return error.status in _ABOUT_ALL or error.is_temporary
+    return True
+
+
+def _refuses_these(error: GraderClientError) -> bool:
+    """Whether the server refuses these answers, and would again."""
+    is_refusal = isinstance(error, RequestRefusedError) and 400 <= error.status < 500
+    return is_refusal and not _concerns_all(error)

@@ -1,0 +1,104 @@
+"""A server that grades in the place of this program. What loads httpx is imported late."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from service.cli.remote.journal import Journal, journal_beside
+from service.cli.running.threads import mapped_in_threads
+from service.cli.terminal import complain, give_up, installed_exercise
+from service.formats.shared.graded import GradedSubmission
+from service.formats.shared.plain_text import visible
+from service.local_grading import GradingTerms
+from service.settings import Settings
+from service.submissions.assignment import Assignment
+from service.submissions.handed_in import HandedIn
+from service.submissions.outline import SetExercise
+
+if TYPE_CHECKING:
+    from service.client import GraderClient
+
+# Requests at once, unless --jobs says otherwise: the server has work while answers are on the way.
+REQUESTS: Final = 4
+
+
+@contextmanager
+def server_of(settings: Settings) -> Iterator["GraderClient | None"]:
+    """A client of the server that the settings name; None where they name none.
+
+    The program ends with exit code 2 where these are no address and key.
+    """
+    if settings.server is None:
+        yield None
+        return
+    from service.client import GraderClient
+
+    try:
+        client = GraderClient(settings.server, _key(settings))
+    except ValueError as error:
+        give_up(visible(str(error)))
+    with client:
+        yield client
+
+
+def _key(settings: Settings) -> str | None:
+    return None if settings.key is None else settings.key.get_secret_value()
+
+
+def set_exercise(exercise_id: str, *, server: "GraderClient | None") -> SetExercise:
+    """The exercise with this id of the server, or else of this installation.
+
+    Raises UnknownExerciseError. The program ends with exit code 2 where the server does not answer.
+    """
+    if server is None:
+        return installed_exercise(exercise_id)
+    from service.cli.remote.remote_grading import exercise_of
+    from service.client import GraderClientError
+
+    try:
+        return exercise_of(server, exercise_id)
+    except GraderClientError as error:
+        give_up(visible(str(error)))
+
+
+def require_no_own_files(assignment: Assignment) -> None:
+    """End the program with exit code 2 for an exercise that no server has."""
+    for assigned in assignment.exercises:
+        if assigned.path is not None:
+            give_up(
+                f"{assigned.path} is a file of yours, and a server grades by its own exercises: "
+                'name one of them in the assignment, by id = "…".'
+            )
+
+
+@contextmanager
+def graded_by(
+    server: "GraderClient",
+    terms: GradingTerms,
+    found: Sequence[HandedIn],
+    requests: int,
+    output: Path | None,
+    settings: Settings,
+) -> Iterator[Iterator[GradedSubmission]]:
+    """The submissions in order, graded by the server, with so many requests at once.
+
+    ``settings`` are those of the client. Where the server fails, the reports that it gave stay
+    beside the output, and the end says what to do.
+    """
+    from service.cli.remote.remote_grading import RemoteGrading
+
+    journal = Journal(journal_beside(output))
+    grading = RemoteGrading(server, _key(settings), terms, journal)
+    with mapped_in_threads(grading.graded, found, requests) as graded:
+        yield graded
+    if not grading.ungraded:
+        journal.remove()
+        return
+    complain(visible(f"Not graded: {len(grading.ungraded)} of {len(found)}, for {grading.reason}"))
+    complain(
+        visible(
+            f"The reports on the others are kept in {journal.path}. Give the same command again, "
+            "and only the rest is sent."
+        )
+    )

@@ -1,0 +1,1 @@
+"""Long runs: several processes or threads, progress, interrupts."""

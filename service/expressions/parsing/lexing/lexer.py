@@ -1,0 +1,218 @@
+"""Plain characters -> tokens: numbers, operators, brackets and words."""
+
+import math
+import re
+from typing import Final
+
+from service.expressions.characters.unicode import CLOSE, MARKER, OPEN
+from service.expressions.errors import Span, UnreadableError
+from service.expressions.parsing.lexing.brackets import WRAPPING, partners
+from service.expressions.parsing.lexing.indices import INDEX
+from service.expressions.parsing.lexing.joint_markers import read_star
+from service.expressions.parsing.lexing.tokens import END, OPERAND_ENDS, Token
+from service.expressions.parsing.lexing.word_lexer import WordLexer
+from service.expressions.parsing.lexing.words import RUN
+from service.expressions.tree import Number
+
+NUMBER: Final = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_TOKEN: Final = re.compile(
+    rf"\s*(?:({RUN})|({NUMBER})|(\*\*|\.[*/^]|[-+*/^(),°√\[\]{{}}|{OPEN}{CLOSE}{MARKER}])|(.))",
+    re.DOTALL,
+)
+_TERMINALS: Final = {
+    "+": "PLUS", "-": "MINUS", "*": "STAR", "/": "SLASH", "^": "POWER", "**": "POWER",
+    ".*": "STAR", "./": "SLASH", ".^": "POWER", ",": "COMMA",
+}  # fmt: skip
+_E_NAME: Final = re.compile(r"([eE])([+-]?)([0-9]+)$")
+_NUMERIC_FRACTION: Final = re.compile(rf"{OPEN}\{{?\s*[0-9]+\s*\}}?/\{{?\s*[0-9]+\s*\}}?{CLOSE}")
+_BEGINS_WRAPPED: Final = re.compile(r"\{\s*\(")
+_ENDS_WRAPPED: Final = re.compile(r"\)\s*\}")
+# A bar that LaTeX says to be a left one, and how far in front of it that is looked for.
+_LEFT_REACH: Final = 40
+_LEFT_BAR: Final = re.compile(r"(?:\\(?:m?left|[bB]igg?l)\s*(?:\||\\[a-z]*)|\\lvert)\Z")
+_SIGNS: Final = frozenset({"PLUS", "MINUS"})
+_TERM_STARTS: Final = frozenset({"LEFT", "OPEN", "COMMA"})
+_FACTOR_OPERATORS: Final = frozenset({"STAR", "SLASH", "POWER"})
+
+
+class Lexer(WordLexer):
+    """One pass over the ``characters`` of ``source``."""
+
+    __slots__ = ()
+
+    def run(self) -> list[Token]:
+        """The tokens, with END last. Raises UnreadableError."""
+        text, match, position = self.text, _TOKEN.match, 0
+        in_place, length = self.starts is None, len(text)
+        while position < length:
+            found = match(text, position)
+            # The last alternative takes any character, so something is always found.
+            assert found is not None
+            group = found.lastindex or 0
+            start, position = found.span(group)
+            if group == 1:
+                position = self._word(found[1], start, position)
+            elif group == 3:
+                operator = found[3]
+                terminal = _TERMINALS.get(operator)
+                if terminal is None or (operator == "*" and self._is_joint()):
+                    position = self._operator(operator, start, position)
+                    continue
+                # Fast, for most tokens are such: an operator of one meaning in an unchanged text.
+                a, b = (start, position) if in_place else self._span(start, position)
+                self.tokens.append((terminal, None, a, b))
+                self.last = terminal
+            elif group == 2:
+                self._number(found[2], start, position)
+            elif not self._is_percent_pi(found[4], position):
+                raise self._stray(found[4], self._span(start, position))
+        end = len(self.source)
+        self.tokens.append((END, None, end, end))
+        if self.indices:
+            self._check_indices()
+        return self.tokens
+
+    # --- numbers
+
+    def _number(self, literal: str, start: int, end: int) -> None:
+        span = self._span(start, end)
+        value = float(literal)
+        if not math.isfinite(value):
+            raise UnreadableError("not_finite", span)
+        if "e" in literal or "E" in literal:
+            self._check_power_of_ten(literal, span)
+        self._operand("NUMBER", Number(value, literal, *span), *span)
+
+    def _check_power_of_ten(self, literal: str, span: Span) -> None:
+        """Refuse 2e1 where e1 is declared, and 2e-1 where e is."""
+        match = _E_NAME.search(literal)
+        assert match is not None
+        letter, sign, digits = match.groups()
+        if (letter if sign else letter + digits) in self.vocabulary.by_name:
+            product = f"{literal[: match.start()]}*{match.group()}"
+            raise UnreadableError("ambiguous_number", span, product=product)
+
+    # --- operators and brackets
+
+    def _operator(self, text: str, start: int, end: int) -> int:
+        """Read an operator or a bracket; return where to go on."""
+        span = self._span(start, end)
+        if text in "([{":
+            self._open(text, start, span)
+        elif text in ")]}":
+            return self._close(text, span, end)
+        elif text == "*" and self._is_joint():
+            self._star(start, end, span)
+        elif text in _TERMINALS:
+            self._emit(_TERMINALS[text], None, *span)
+        elif text == "°":
+            self._emit("UNIT", "deg", *span)
+        elif text == "√":
+            self._operand("ROOT", None, *span)
+        elif text == "|":
+            self._bar(span)
+        elif text == MARKER:
+            self._marker(span)
+        elif text == OPEN:
+            self._open_fraction(start, span)
+        else:
+            self._close_fraction(span)
+        return end
+
+    def _close(self, bracket: str, span: Span, end: int) -> int:
+        """Close a bracket; return where to go on."""
+        opener = self.brackets.close(bracket, span)
+        if bracket == "}" and self.last == "FUNCTION" and opener == len(self.tokens) - 2:
+            # Braces around the name of a function mean nothing: {cos}^2 θ.
+            _, (name, power), a, b = self.tokens.pop()
+            self.tokens.pop()
+            if power is None:
+                power, end = self._function_power(name, end, a, b)
+            self._emit("FUNCTION", (name, power), a, b)
+        elif opener != WRAPPING:
+            self._emit("RIGHT", None, *span)
+        return end
+
+    def _is_wrapped(self, start: int) -> bool:
+        r"""Whether braces hold nothing but round brackets: \sin{(q_1)}, as SymPy prints it."""
+        inner = _BEGINS_WRAPPED.match(self.text, start)
+        if inner is None:
+            return False
+        if self.partners is None:
+            self.partners = partners(self.text)
+        end = self.partners.get(inner.end() - 1)
+        return end is not None and _ENDS_WRAPPED.match(self.text, end) is not None
+
+    def _open(self, bracket: str, start: int, span: Span) -> None:
+        is_index = bracket == "[" and self.last in OPERAND_ENDS
+        if is_index and (index := INDEX.match(self.text, start)):
+            place = self._span(start, index.end())
+            raise UnreadableError("index", place, reason="no_stem", digits=index[1])
+        if bracket == "{" and self.last == "FUNCTION" and self._is_wrapped(start):
+            self.brackets.open(bracket, span, WRAPPING)
+        else:
+            self.brackets.open(bracket, span, len(self.tokens))
+            self._operand("LEFT", None, *span)
+
+    def _bar(self, span: Span) -> None:
+        r"""Read |x|: a bar behind an operand closes, any other opens, and so does \left|."""
+        closes = self.last in OPERAND_ENDS and self.brackets.in_bars()
+        if closes and not _LEFT_BAR.search(self.source, max(0, span[0] - _LEFT_REACH), span[1]):
+            self.brackets.close("|", span)
+            self._emit("RIGHT", None, *span)
+        else:
+            self._operand("FUNCTION", ("abs", None), *span)
+            self.brackets.open("|", span, len(self.tokens))
+            self._emit("LEFT", None, *span)
+
+    def _open_fraction(self, start: int, span: Span) -> None:
+        if self.last == "NUMBER" and (match := _NUMERIC_FRACTION.match(self.text, start)):
+            whole = self._span(start, match.end())
+            fraction = re.sub(rf"[{OPEN}{CLOSE}{{}}\s]", "", match.group())
+            raise UnreadableError("mixed_number", whole, fraction=fraction)
+        self._operand("OPEN", None, *span)
+        self.brackets.open(OPEN, span, len(self.tokens) - 1)
+
+    def _close_fraction(self, span: Span) -> None:
+        opener = self.brackets.close(CLOSE, span)
+        self._emit("CLOSE", None, *span)
+        if opener and self.tokens[opener - 1][0] == "FUNCTION":
+            inside = {token[0] for token in self.tokens[opener:]}
+            if inside <= {"OPEN", "CLOSE", "LEFT", "RIGHT", "NUMBER", "SLASH"}:
+                self.fraction_end = len(self.tokens) - 1
+
+    def _star(self, start: int, end: int, span: Span) -> None:
+        """Read the * right behind a joint variable: its marker, or a product."""
+        typed = self.source[slice(*span)]
+        star = read_star(self.text, start, end, typed, first=self._is_first_factor())
+        if star == "ambiguous":
+            variable = self.tokens[-1][2]
+            raise UnreadableError("ambiguous_star", (variable, span[1]), star=span)
+        if star in {"product", "noted_product"}:
+            self._emit("STAR", None, *span)
+        self.notes.star(star, span)
+
+    def _is_first_factor(self) -> bool:
+        """Whether the last operand begins a term: nothing, a bracket or a sign is before it."""
+        before = [token[0] for token in self.tokens[-3:-1]]
+        if before and before[-1] in _SIGNS:
+            before.pop()
+            return not before or before[-1] not in _FACTOR_OPERATORS
+        return not before or before[-1] in _TERM_STARTS
+
+    def _marker(self, span: Span) -> None:
+        """Read a raised star, which marks a joint variable and nothing else."""
+        if not self._is_joint():
+            raise UnreadableError("character", span)
+        self.notes.star("marker", span)
+
+    # --- characters that cannot be read
+
+    def _is_percent_pi(self, letter: str, at: int) -> bool:
+        """Whether a % begins Maxima's %pi, and no comment behind a value."""
+        return letter == "%" and self.last not in OPERAND_ENDS and self.text.startswith("pi", at)
+
+    def _stray(self, letter: str, span: Span) -> UnreadableError:
+        if letter == "'":
+            return UnreadableError("transpose", span)
+        return UnreadableError("values" if letter == ";" else "character", span, number=False)

@@ -1,0 +1,211 @@
+"""Words -> tokens: names, functions with their powers, units, indices in brackets."""
+
+import re
+from dataclasses import replace
+from typing import Final
+
+from service.expressions.errors import UnreadableError
+from service.expressions.parsing.lexing.indices import indexed, is_family
+from service.expressions.parsing.lexing.letter_case import split_in_other_case
+from service.expressions.parsing.lexing.programs import (
+    MEMBER,
+    constant,
+    counts_from_one,
+    degrees_function_end,
+    subscripted,
+)
+from service.expressions.parsing.lexing.tokens import OPERAND_ENDS, TokenWriter
+from service.expressions.parsing.lexing.words import LONGEST_RUN, Piece, split
+from service.expressions.tree import Binary, Call, Node, Number, Pi, SymbolNode
+from service.expressions.vocabulary.functions import IN_DEGREES, MODULES, UNIT_FUNCTIONS
+
+_FUNCTION_POWER: Final = re.compile(r"\s*(?:\^|\*\*)\s*")
+_EXPONENT: Final = re.compile(
+    r"([0-9]+)(?![0-9.eE])|\(\s*([0-9]+)\s*\)|\{\s*([0-9]+)\s*\}|\[\s*([0-9]+)\s*\]"
+)
+
+
+class WordLexer(TokenWriter):
+    """Reads the runs of letters and digits of a text."""
+
+    __slots__ = ()
+
+    def _word(self, run: str, start: int, end: int) -> int:
+        """Read a run of letters and digits; return where to go on."""
+        if run in MODULES and (member := MEMBER.match(self.text, end)):
+            return self._after_module(member.end())
+        pieces = split(run, self.vocabulary)
+        if pieces is None:
+            if self._is_float_suffix(run, start):
+                return end
+            pieces, end = self._unsplit(run, start, end)
+        in_place = self.starts is None
+        for piece in pieces:
+            kind, a, stop = piece.kind, start + piece.start, start + piece.end
+            a, b = (a, stop) if in_place else self._span(a, stop)
+            if kind == "symbol":
+                symbol = piece.symbols[0]
+                self._operand("NAME", SymbolNode(symbol, a, b), a, b)
+                if piece.word:
+                    self.notes.other_capitals(piece.word, a, b)
+                if symbol.kind == "angle" and piece.start:
+                    self._note_product(run, pieces, piece, start)
+            elif kind == "function":
+                end = self._function(piece.word, stop, end, a, b)
+            elif kind == "shorthand":
+                self._shorthand(piece, piece is pieces[-1], stop, a, b)
+            else:
+                end = self._piece(piece, start, end)
+        return end
+
+    def _note_product(self, run: str, pieces: tuple[Piece, ...], angle: Piece, start: int) -> None:
+        """Note cβ where c is a symbol: the product, and not the cosine."""
+        before = pieces[pieces.index(angle) - 1]
+        if before.kind == "symbol":
+            a, b = self._span(start + before.start, start + angle.end)
+            self.notes.product(run[before.start : before.end], angle.symbols[0], a, b)
+
+    def _piece(self, piece: Piece, start: int, end: int) -> int:
+        """Emit a constant, a number or a unit of a run that begins at ``start``.
+
+        Return where to go on, which is at ``end`` unless more was read than the run.
+        """
+        kind, word, stop = piece.kind, piece.word, start + piece.end
+        a, b = self._span(start + piece.start, stop)
+        if kind == "pi":
+            self.notes.pi(a, b)
+            self._operand("NAME", Pi(a, b), a, b)
+            # A spreadsheet's pi is a function of nothing: PI().
+            return end + 2 * self.text.startswith("()", end)
+        if kind == "constant":
+            self._operand("NAME", constant(word, a, b), a, b)
+        elif kind == "number":
+            self._operand("NUMBER", Number(float(word), word, a, b), a, b)
+        elif kind == "unit":
+            self._unit(word, start + piece.start, stop, a, b)
+        else:
+            raise UnreadableError("invalid_shorthand", (a, b), joint=piece.joint)
+        return end
+
+    def _after_module(self, at: int) -> int:
+        """Read what follows ``np.``, where radians(90) is 90 degrees; return where to go on."""
+        end = degrees_function_end(self.text, at)
+        if end is None:
+            return at
+        a, b = self._span(at, end)
+        self._operand("FUNCTION", ("deg", None), a, b)
+        return end
+
+    def _is_float_suffix(self, run: str, start: int) -> bool:
+        """Whether ``run`` is the mark of C's short numbers: 0.5f."""
+        return (
+            run == "f"
+            and self.last == "NUMBER"
+            and "." in self.tokens[-1][1].literal
+            and self.text[start - 1].isdigit()
+        )
+
+    def _unsplit(self, run: str, start: int, end: int) -> tuple[tuple[Piece, ...], int]:
+        """Read a run that has no reading by itself; return the pieces and where to go on."""
+        if len(run) > LONGEST_RUN:
+            raise self._unknown(run, start, end)
+        if run == "Subscript" and (found := subscripted(self.text, end)):
+            name, stop = found
+            pieces = split(name, self.vocabulary)
+            if pieces and len(pieces) == 1 and pieces[0].kind == "symbol":
+                return (Piece("symbol", 0, stop - start, symbols=pieces[0].symbols),), stop
+        other = split_in_other_case(run, self.vocabulary)
+        return (other, end) if other else self._index(run, start, end)
+
+    def _index(self, run: str, start: int, end: int) -> tuple[tuple[Piece, ...], int]:
+        """Read q[0], q(1) or q{1}; return the pieces and where to go on."""
+        if self.from_one is None:
+            self.from_one = counts_from_one(self.text)
+        found = indexed(run, self.text, end, self.vocabulary, from_one=self.from_one)
+        if found is None or (found.pieces is None and not is_family(run, self.vocabulary)):
+            raise self._unknown(run, start, end)
+        span = self._span(start, found.end)
+        last = found.pieces[-1] if found.pieces else None
+        if found.pieces is None or last is None or last.kind != "symbol":
+            reason = "unknown" if last is None else "shorthand"
+            raise UnreadableError(
+                "index", span, reason=reason, run=run, style=found.style, digits=found.digits
+            )
+        symbol = last.symbols[0]
+        stem = run[last.start :]
+        place = self._span(start + last.start, found.end)
+        self.indices.append((found, stem, place))
+        self.notes.index(found.style, symbol, place)
+        stretched = replace(last, end=found.end - start)
+        return (*found.pieces[:-1], stretched), found.end
+
+    def _check_indices(self) -> None:
+        """Refuse q[0] beside q(1), and beside q1: together they have no one reading."""
+        stems = set()
+        for found, stem, span in self.indices:
+            if found.style != self.indices[0][0].style:
+                raise UnreadableError("index", span, reason="mixed")
+            if found.style == "[" and stem not in stems:
+                stems.add(stem)
+                if re.search(rf"{re.escape(stem)}_?[0-9]", self.text):
+                    raise UnreadableError("index", span, reason="mixed")
+
+    def _shorthand(self, piece: Piece, last: bool, end: int, a: int, b: int) -> None:
+        first, *others = piece.symbols
+        total: Node = SymbolNode(first, a, b)
+        for symbol in others:
+            total = Binary("+", total, SymbolNode(symbol, a, b), a, b)
+        if piece.ambiguous:
+            goes_on = not last or self.text[end : end + 1] in {"(", "[", "{", ".", "°", "√", "^"}
+            if self.degrees or goes_on:
+                names = "+".join(symbol.name for symbol in piece.symbols)
+                raise UnreadableError(
+                    "ambiguous_shorthand", (a, b), function=piece.word, names=names
+                )
+        self.notes.shorthand(piece, a, b)
+        self._operand("NAME", Call(piece.word, (total,), a, b), a, b)
+
+    def _function(self, name: str, at: int, end: int, a: int, b: int) -> int:
+        """Emit a function with the power written on it; return where to go on."""
+        if name == "rad2deg" or (name in IN_DEGREES and not self.degrees):
+            raise UnreadableError("degrees", (a, b), name=name)
+        self.notes.function(name, a, b)
+        name = IN_DEGREES.get(name, name)
+        power: int | None = None
+        # As most are called with a bracket, look at one character first.
+        if at == end and self.text[at : at + 1] != "(":
+            power, end = self._function_power(name, at, a, b)
+            # Julia writes cos.(q).
+            end += self.text.startswith(".(", end)
+        self._operand("FUNCTION", (name, power), a, b)
+        return end
+
+    def _function_power(self, name: str, at: int, a: int, b: int) -> tuple[int | None, int]:
+        """The power behind a function's name, if any, and where to go on."""
+        raised = _FUNCTION_POWER.match(self.text, at)
+        if raised is None:
+            return None, at
+        exponent = _EXPONENT.match(self.text, raised.end())
+        if exponent is None or len(exponent[exponent.lastindex or 0]) > 4:
+            end = self._span(at, raised.end())[1]
+            raise UnreadableError(
+                "function_power", (a, end), name=name, function=(a, b),
+                exponent=self.text[raised.end() :],
+            )  # fmt: skip
+        return int(exponent[exponent.lastindex or 0]), exponent.end()
+
+    def _unit(self, unit: str, start: int, end: int, a: int, b: int) -> None:
+        opens = self.text[end : end + 1] == "("
+        if self.last in OPERAND_ENDS and not opens:
+            self._emit("UNIT", unit, a, b)
+        elif self.last not in OPERAND_ENDS and opens and self.text[start:end] in UNIT_FUNCTIONS:
+            self._emit("FUNCTION", (unit, None), a, b)
+        else:
+            raise UnreadableError("ambiguous_unit", (a, b), opens=opens)
+
+    def _unknown(self, run: str, start: int, end: int) -> UnreadableError:
+        span = self._span(start, end)
+        if run.lower() in {"nan", "inf", "infinity"}:
+            return UnreadableError("not_finite", span)
+        called = self.text[end : end + 1] == "("
+        return UnreadableError("name", span, run=run, called=called, before=self.last)

@@ -1,0 +1,85 @@
+"""Arrows that say how a joint moves: around its axis, or along it."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from service.figures.drawing.dimensions import arrowhead
+from service.figures.drawing.placing import TakenRoom
+from service.figures.drawing.solids import Camera, perpendicular, polyline
+from service.kinematics.transforms import Numbers
+
+_HEAD = 8.0
+
+
+@dataclass(frozen=True, slots=True)
+class MotionArrow:
+    """An arrow in the picture, ``(points, 2)``; with ``both`` it has a head at either end."""
+
+    line: Numbers
+    both: bool
+
+    @property
+    def middle(self) -> Numbers:
+        """The point that its name belongs to."""
+        return np.asarray(self.line[len(self.line) // 2])
+
+    def svg(self) -> Iterator[str]:
+        """The line and its heads."""
+        line = self.line
+        yield polyline(line, "motion-halo")
+        yield polyline(line, "motion")
+        ends = [(line[-1], line[-3])] + ([(line[0], line[2])] if self.both else [])
+        for tip, before in ends:
+            step = tip - before
+            direction = step / max(float(np.linalg.norm(step)), 1e-9)
+            yield arrowhead(tip + 0.5 * _HEAD * direction, direction, "motion-head", _HEAD)
+
+
+def turning_arrow(
+    camera: Camera, centre: Numbers, axis: Numbers, offset: float, radius: float,
+    room: TakenRoom, *, both: bool,
+) -> MotionArrow:  # fmt: skip
+    """An arc around the axis, on the viewer's side, at the freer end of the joint."""
+    front = perpendicular(axis, camera.towards)
+    aside = np.cross(axis, front)
+    angles = np.radians(np.linspace(-95, 70, 24))
+    arc = radius * (np.cos(angles)[:, None] * front + np.sin(angles)[:, None] * aside)
+    lines = [
+        camera.seen(centre + end * offset * axis + arc) for end in _nearer_end_first(camera, axis)
+    ]
+    best = min(lines, key=lambda line: room.crowd(line, 5.0))
+    return MotionArrow(best, both)
+
+
+def _nearer_end_first(camera: Camera, axis: Numbers) -> tuple[float, float]:
+    return (1.0, -1.0) if axis @ camera.towards >= 0 else (-1.0, 1.0)
+
+
+def sliding_arrow(
+    camera: Camera, centre: Numbers, axis: Numbers, half: float, offset: float,
+    room: TakenRoom, *, both: bool,
+) -> MotionArrow:  # fmt: skip
+    """A straight arrow beside the joint, on its freer side in the picture.
+
+    Where it would cross an axis, a part or a name there, it stands farther along or away.
+    """
+    aside = np.cross(perpendicular(axis, camera.towards), axis)
+    steps = np.linspace(-half, half, 9)[:, None] * axis
+
+    def beside(reach: float, along: float) -> list[Numbers]:
+        middle = centre + along * half * axis
+        return [camera.seen(middle + side * offset * aside + steps) for side in (reach, -reach)]
+
+    def crossings(line: Numbers) -> int:
+        # With its heads the arrow is longer.
+        return room.crossings(1.3 * line - 0.3 * line.mean(axis=0))
+
+    best = min(beside(1, 0), key=lambda line: room.crowd(line, 7.0))
+    for reach in (1, 1.6, 2.2):
+        if crossings(best):
+            others = [line for along in (0, 1, -1) for line in beside(reach, along)]
+            freest = sorted(others, key=lambda line: room.crowd(line, 7.0))
+            best = min([best, *freest], key=crossings)
+    return MotionArrow(best, both)

@@ -1,0 +1,144 @@
+"""TakenRoom in the picture: what is taken, and the best of several places for what is yet to come.
+
+All in pixels, x to the right and y down. The same figure is always placed alike.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+
+import numpy as np
+
+from service.figures.drawing.names import SIZE, Label
+from service.kinematics.transforms import Numbers
+
+# TakenRoom that is kept between two labels.
+_APART = 3.0
+# Half the height of a label: letters with their indices.
+HALF_HEIGHT = 0.56 * SIZE
+_TURNS = np.radians([-35, 35, 145, -145, 0, 180, 90, -90, 65, -65, 115, -115])
+# Places around a point; labels are wider than high.
+_AROUND = np.stack([1.25 * np.cos(_TURNS), np.sin(_TURNS)], axis=-1)
+
+
+@dataclass(frozen=True, slots=True)
+class Rectangle:
+    """The room of a label: its middle, half its width and half its height."""
+
+    x: float
+    y: float
+    half_width: float
+    half_height: float
+
+    @classmethod
+    def of(cls, label: Label, x: float, y: float) -> "Rectangle":
+        """The room of a label around the point (x, y)."""
+        return cls(x, y, label.width / 2 + 1, HALF_HEIGHT)
+
+    def overlaps(self, other: "Rectangle", apart: float = 0.0) -> bool:
+        """Whether two rectangles share room, or are less than ``apart`` from each other."""
+        across = self.half_width + other.half_width + apart
+        upright = self.half_height + other.half_height + apart
+        return abs(self.x - other.x) < across and abs(self.y - other.y) < upright
+
+    def holds_any(self, points: Numbers) -> bool:
+        """Whether one of the points ``(points, 2)`` is in it."""
+        offset = np.abs(points - (self.x, self.y))
+        return bool((offset < (self.half_width, self.half_height)).all(axis=1).any())
+
+    @property
+    def points(self) -> Numbers:
+        """Points all over it, ``(15, 2)``."""
+        x = np.linspace(self.x - self.half_width, self.x + self.half_width, 5)
+        y = np.linspace(self.y - self.half_height, self.y + self.half_height, 3)
+        return np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+
+
+@dataclass(slots=True)
+class TakenRoom:
+    """What is taken: strokes with a radius and a weight, and the rectangles of labels.
+
+    ``hasty`` keeps labels off each other only: keeping them off strokes, too, is most of the work.
+    """
+
+    hasty: bool = False
+    _starts: list[Numbers] = field(default_factory=list)
+    _ends: list[Numbers] = field(default_factory=list)
+    _radii: list[float] = field(default_factory=list)
+    _weights: list[float] = field(default_factory=list)
+    labels: list[Rectangle] = field(default_factory=list)
+
+    def take_line(self, points: Numbers, radius: float, weight: float = 1.0) -> None:
+        """Take the room along a line ``(points, 2)``."""
+        for start, end in pairwise(points):
+            self._starts.append(start)
+            self._ends.append(end)
+            self._radii.append(radius)
+            self._weights.append(weight)
+
+    @property
+    def ends(self) -> list[Numbers]:
+        """The ends of all strokes."""
+        return [np.array([start, end]) for start, end in zip(self._starts, self._ends, strict=True)]
+
+    def crowd(self, points: Numbers, clearance: float) -> float:
+        """How much of what is taken the points ``(points, 2)`` come nearer than ``clearance``."""
+        if not self._starts:
+            return 0.0
+        starts, ends = np.array(self._starts), np.array(self._ends)
+        step = ends - starts
+        square = np.maximum((step**2).sum(axis=1), 1e-12)
+        offset = points[:, None] - starts
+        share = np.clip((offset * step).sum(axis=-1) / square, 0.0, 1.0)
+        distance = np.linalg.norm(offset - share[..., None] * step, axis=-1)
+        lacking = np.clip(1 - (distance - np.array(self._radii)) / clearance, 0.0, 1.5)
+        return float((lacking * np.array(self._weights)).max(axis=1).sum())
+
+    def crossings(self, line: Numbers) -> int:
+        """How many labels and strokes of full weight a straight line ``(points, 2)`` crosses."""
+        written = sum(label.holds_any(line) for label in self.labels)
+        if not self._starts:
+            return written
+        starts, ends, first, last = np.array(self._starts), np.array(self._ends), line[0], line[-1]
+        # Two pieces cross where each has its ends on either side of the other.
+        parted = _turn(first, last, starts) * _turn(first, last, ends) < 0
+        parting = _turn(starts, ends, first) * _turn(starts, ends, last) < 0
+        return written + int((parted & parting & (np.array(self._weights) >= 1)).sum())
+
+    def place(self, label: Label, wanted: Iterable[Numbers]) -> Rectangle:
+        """The best free place for a label, and take it; the first of ``wanted`` points is best.
+
+        No place overlaps another label: where all wanted ones do, the label goes farther away.
+        """
+        best: tuple[float, Rectangle] | None = None
+        size = Rectangle.of(label, 0.0, 0.0)
+        for rank, point in enumerate(_farther(list(wanted))):
+            if best is not None and best[0] <= 0.08 * rank:
+                break
+            place = replace(size, x=float(point[0]), y=float(point[1]))
+            if any(place.overlaps(other, _APART) for other in self.labels):
+                continue
+            badness = 0.08 * rank + (0.0 if self.hasty else self.crowd(place.points, 5.0))
+            if best is None or badness < best[0]:
+                best = (badness, place)
+        assert best is not None
+        self.labels.append(best[1])
+        return best[1]
+
+
+def _turn(start: Numbers, end: Numbers, point: Numbers) -> Numbers:
+    """Positive on one side of the line from ``start`` to ``end``, negative on the other."""
+    (x, y), (u, v) = (end - start).T, (point - start).T
+    return np.asarray(x * v - y * u)
+
+
+def around(point: Numbers, near: float) -> list[Numbers]:
+    """Points around a point, the nearest first."""
+    return [*np.concatenate([point + near * growth * _AROUND for growth in (1.0, 1.3, 1.7, 2.2)])]
+
+
+def _farther(wanted: list[Numbers]) -> Iterator[Numbers]:
+    """The wanted points, and then points ever farther from the first."""
+    yield from wanted
+    for i in range(2, 60):
+        yield from around(wanted[0], 12.0 * i)[:12]

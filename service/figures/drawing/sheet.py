@@ -1,0 +1,80 @@
+"""The sheet that a figure is drawn on: layers, the room that is taken, and the SVG of it all."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import chain
+from xml.sax.saxutils import escape
+
+import numpy as np
+
+from service.figures.drawing.placing import TakenRoom
+from service.figures.drawing.solids import Camera, numbers
+from service.figures.drawing.style import Theme, style_sheet
+from service.figures.geometry.view import View
+from service.kinematics.transforms import Numbers
+
+# The room of the mechanism itself, in pixels; lengths and names stand around it.
+_WIDTH, _HEIGHT, _LARGEST = 460.0, 430.0, 540.0
+_MARGIN = 14.0
+
+
+@dataclass(frozen=True, slots=True)
+class Caption:
+    """Words for whoever does not see a figure. ``name`` is part of ids inside the SVG."""
+
+    name: str
+    title: str
+    description: str
+
+
+@dataclass(slots=True)
+class Sheet:
+    """A figure being drawn: what stands on it in layers, and the room that is left."""
+
+    camera: Camera
+    size: float
+    room: TakenRoom = field(default_factory=TakenRoom)
+    below: list[str] = field(default_factory=list)
+    above: list[str] = field(default_factory=list)
+    points: list[Numbers] = field(default_factory=list)
+
+    @property
+    def unit(self) -> float:
+        """The size of the mechanism's parts in pixels."""
+        return self.size * self.camera.scale
+
+    def take(self, points: Numbers, radius: float, weight: float = 1.0) -> None:
+        """Note that a line of the picture is drawn here."""
+        self.room.take_line(points, radius, weight)
+        self.points += [points - radius, points + radius]
+
+    def svg(self, solids: Sequence[str], caption: Caption, theme: Theme) -> str:
+        """The whole figure, as large as what stands on it; ``solids`` are between the layers."""
+        labels = self.room.labels
+        corners = [np.array([[r.x - r.half_width, r.y - r.half_height]]) for r in labels]
+        corners += [np.array([[r.x + r.half_width, r.y + r.half_height]]) for r in labels]
+        taken = np.concatenate([*self.room.ends, *self.points, *corners])
+        low, high = taken.min(axis=0) - _MARGIN, taken.max(axis=0) + _MARGIN
+        edges = (*np.floor(low), *np.ceil(high - np.floor(low)))
+        left, top, width, height = (float(edge) for edge in edges)
+        body = "\n".join(chain(self.below, solids, self.above))
+        return f"""\
+<svg xmlns="http://www.w3.org/2000/svg" role="img" aria-labelledby="{caption.name}-title \
+{caption.name}-desc" viewBox="{numbers(left, top, width, height)}" \
+width="{numbers(width)}" height="{numbers(height)}">
+<title id="{caption.name}-title">{escape(caption.title)}</title>
+<desc id="{caption.name}-desc">{escape(caption.description)}</desc>
+<style>{style_sheet(theme)}</style>
+<rect class="paper" x="{numbers(left)}" y="{numbers(top)}" width="{numbers(width)}" \
+height="{numbers(height)}"/>
+{body}
+</svg>
+"""
+
+
+def camera_for(points: Numbers, view: View) -> Camera:
+    """The camera that has all points ``(points, 3)`` in the room for them."""
+    width, height = np.ptp(Camera.of(view, 1.0).seen(points), axis=0)
+    longest = float(np.linalg.norm(np.ptp(points, axis=0)))
+    scale = min(_WIDTH / max(width, 1e-9), _HEIGHT / max(height, 1e-9), _LARGEST / longest)
+    return Camera.of(view, scale)

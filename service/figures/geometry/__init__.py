@@ -1,0 +1,1 @@
+"""The geometry of a figure: the chain, its mechanism and the view."""

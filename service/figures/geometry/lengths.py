@@ -1,0 +1,59 @@
+"""The names of the lengths in a figure: which symbols each piece of the path is as long as."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from service.catalogue import Variable
+from service.catalogue.robots.screw_robot import Reference
+from service.catalogue.robots.variables import TRIALS, trial_values
+from service.figures.geometry.path import path_of
+from service.kinematics.transforms import Numbers
+
+_EXACT = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class NamedLength:
+    """A piece of the path from one corner to another, as long as the sum of these symbols.
+
+    The corners are numbers of ``ChainPath``.
+    """
+
+    start: int
+    end: int
+    names: tuple[str, ...]
+
+
+def named_lengths(reference: Reference, variables: tuple[Variable, ...]) -> list[NamedLength]:
+    """The pieces that are as long as one symbol, or as several together; none by a number.
+
+    Every symbol of an exercise is known to whoever is asked, so no name tells too much.
+    """
+    turning = {joint.variable for joint in reference.joints if not joint.prismatic}
+    values = {
+        name: np.zeros(TRIALS) if name in turning else trial
+        for name, trial in trial_values(variables).items()
+    }
+    path = path_of(reference, values, TRIALS)
+    lengths = [variable for variable in variables if variable.kind == "length"]
+    # A sum begins with what is constant: l4 + q4.
+    names = [each.name for each in sorted(lengths, key=lambda each: each.joint or 0)]
+    terms = np.array([*(values[name] for name in names), np.ones(TRIALS)]).T
+    found = []
+    for i, step in enumerate(np.diff(path.corners, axis=0)):
+        share = _sum_of(step, terms)
+        if share is not None:
+            whole = tuple(name for name, each in zip(names, share, strict=False) if each)
+            found.append(NamedLength(i, i + 1, whole))
+    return found
+
+
+def _sum_of(step: Numbers, terms: Numbers) -> Numbers | None:
+    """Which of the terms add up to the length of a piece ``(samples, 3)``; None for any other."""
+    length = np.linalg.norm(step, axis=1)
+    solved = np.linalg.lstsq(terms, length, rcond=None)[0]
+    share = np.asarray(np.round(solved), dtype=np.float64)
+    exact = np.abs(terms @ share - length).max() < _EXACT
+    plain = share.any() and not share[-1] and set(share.tolist()) <= {0.0, 1.0}
+    return share if exact and plain else None

@@ -1,0 +1,334 @@
+"""The mechanism as a picture shows it: joints on their axes, links between, base and tool.
+
+It is built from the axes and the path between them, once for some lengths, and then moves with the
+joints. A joint may sit anywhere on its axis: it is moved along the path to where it does not hide
+its neighbours. No frame of a table is in it.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.catalogue import Joint
+from service.catalogue.robots.screw_robot import Reference
+from service.expressions.evaluation.samples import SymbolValues
+from service.figures.geometry.path import ChainPath, axis_directions, motions, path_of
+from service.kinematics.screws import moved
+from service.kinematics.transforms import Matrices, Numbers, inverse
+
+# The sizes of what is drawn, as shares of the size of the mechanism's parts.
+JOINT_LENGTH, JOINT_RADIUS = 0.15, 0.046
+GRIPPER_LENGTH = 0.09
+_CLEARANCE = 0.035
+# That size as a share of the path's extent: the largest at which the joints have room.
+_SIZES = (1.2, 1.1, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5)
+_SAME = 1e-7
+_NOTHING = 1e-5
+
+
+@dataclass(frozen=True, slots=True)
+class Configuration:
+    """The mechanism at some joint values; points ``(3,)`` and unit vectors in the base frame.
+
+    ``links`` has one more than there are joints: link i leads from joint i to the next, link 0
+    from the base, the last one to the tool; each is ``(corners, 3)``. A sliding joint may bring two
+    corners together.
+    """
+
+    centres: Numbers
+    axes: Numbers
+    links: tuple[Numbers, ...]
+    base: Numbers
+    base_normal: Numbers
+    tool: Numbers
+    tool_direction: Numbers
+
+
+@dataclass(frozen=True, slots=True)
+class MovableMechanism:
+    """The mechanism with all joint variables 0, ready to be moved.
+
+    ``corners`` holds for each body, the base first, its points ``(corners, 3)``; ``centres`` the
+    middle of each joint as the body before it carries it. ``extent`` is the size of the whole,
+    ``size`` that of its parts.
+    """
+
+    reference: Reference
+    lengths: Mapping[str, float]
+    extent: float
+    size: float
+    corners: tuple[Numbers, ...]
+    centres: Numbers
+    base_normal: Numbers
+    tool_direction: Numbers
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        """The robot's joints."""
+        return self.reference.joints
+
+    def at(self, amounts: Numbers) -> list[Configuration]:
+        """The mechanism at values of the joint variables, ``(configurations, joints)``."""
+        count = len(amounts)
+        values = one_by_one(self.lengths, count) | {
+            joint.variable: amounts[:, i] for i, joint in enumerate(self.joints)
+        }
+        bodies = motions(self.reference, values, count)
+        axes = axis_directions(moved(bodies[:-1], self.reference.screws(values, count)))
+        carried = [
+            _moved(body, corners) for body, corners in zip(bodies, self.corners, strict=True)
+        ]
+        centres = np.stack(
+            [_moved(body, c[None])[:, 0] for body, c in zip(bodies, self.centres, strict=False)]
+        )
+        directions = bodies[-1, :, :3, :3] @ self.tool_direction
+        return [
+            Configuration(
+                centres=centres[:, s],
+                axes=axes[:, s],
+                links=tuple(_links([points[s] for points in carried], centres[:, s])),
+                base=carried[0][s, 0],
+                base_normal=self.base_normal,
+                tool=carried[-1][s, -1],
+                tool_direction=directions[s],
+            )
+            for s in range(count)
+        ]
+
+
+def _links(carried: Sequence[Numbers], centres: Numbers) -> Iterator[Numbers]:
+    """The lines of the links: the points that each body carries, between the joints' middles."""
+    starts, ends = [carried[0][:0], *centres[:, None]], [*centres[:, None], carried[-1][:0]]
+    for start, points, end in zip(starts, carried, ends, strict=True):
+        yield np.concatenate([start, points, end])
+
+
+def one_by_one(numbers: Mapping[str, float], count: int) -> dict[str, Numbers]:
+    """Each number ``count`` times, as formulas want them."""
+    return {name: np.full(count, number) for name, number in numbers.items()}
+
+
+def distinct(points: Numbers) -> Numbers:
+    """The points ``(points, 3)`` of a line without those that repeat the one before."""
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    return np.asarray(points[np.concatenate([[True], steps > _SAME])])
+
+
+def _moved(body: Matrices, points: Numbers) -> Numbers:
+    """Points ``(points, 3)`` that a body ``(..., 4, 4)`` carries: ``(..., points, 3)``."""
+    turned = points @ np.swapaxes(body[..., :3, :3], -1, -2)
+    return np.asarray(turned + body[..., None, :3, 3])
+
+
+def mechanism_of(reference: Reference, numbers: Mapping[str, float]) -> MovableMechanism:
+    """The mechanism with these numbers for all symbols; the joint variables are those to draw."""
+    values: SymbolValues = one_by_one(numbers, 1)
+    path = path_of(reference, values, 1)
+    bodies = motions(reference, values, 1)[:, 0]
+    screws = moved(bodies[:-1], reference.screws(values, 1)[:, 0])
+    track = _roomiest(path, screws, reference.joints)
+    at = track.placed()
+    marks = [-np.inf, *at, np.inf]
+    corners = tuple(
+        _moved(inverse(bodies[i]), track.corners_between(first, last))
+        for i, (first, last) in enumerate(pairwise(marks))
+    )
+    centres = [_moved(inverse(bodies[i]), track.point(s)[None])[0] for i, s in enumerate(at)]
+    variables = {joint.variable for joint in reference.joints}
+    return MovableMechanism(
+        reference=reference,
+        lengths={name: number for name, number in numbers.items() if name not in variables},
+        extent=track.extent,
+        size=track.size,
+        corners=corners,
+        centres=np.array(centres),
+        base_normal=track.base_normal,
+        tool_direction=bodies[-1, :3, :3].T @ track.arrival,
+    )
+
+
+def _roomiest(path: ChainPath, screws: Numbers, joints: Sequence[Joint]) -> "_Track":
+    """The track with the largest parts that have room on it."""
+    tracks = [_Track.of(path, screws, joints, share) for share in _SIZES]
+    return next((track for track in tracks if track.has_room), tracks[-1])
+
+
+@dataclass(frozen=True, slots=True)
+class _Track:
+    """The path with a foot below it, and where on it each joint may sit.
+
+    ``reached`` is the length of the path up to each corner; ``first`` and ``last`` are the ends of
+    the stretch of each joint, ``own`` the ends of the piece along its axis.
+    """
+
+    corners: Numbers
+    reached: Numbers
+    first: Numbers
+    last: Numbers
+    own: Numbers
+    slides: tuple[bool, ...]
+    extent: float
+    size: float
+    base_normal: Numbers
+
+    @classmethod
+    def of(
+        cls, path: ChainPath, screws: Numbers, joints: Sequence[Joint], share: float
+    ) -> "_Track":
+        corners = path.corners[:, 0]
+        extent = float(np.linalg.norm(np.ptp(corners, axis=0)))
+        # A robot without lengths has joints all the same.
+        extent = extent if extent > _NOTHING else 1.0
+        size = share * extent
+        directions = axis_directions(screws)
+        pieces = [path.joints.index(i) for i in range(len(joints))]
+        lines = [
+            (corners[piece] if joint.prismatic else np.cross(screw[:3], screw[3:]), direction)
+            for piece, joint, screw, direction in zip(
+                pieces, joints, screws, directions, strict=True
+            )
+        ]
+        foot, normal = _foot(corners, pieces[0], lines[0], size)
+        corners = np.concatenate([foot[None], corners])
+        pieces = [piece + 1 for piece in pieces]
+        reached = np.concatenate(
+            [[0.0], np.cumsum(np.linalg.norm(np.diff(corners, axis=0), axis=1))]
+        )
+        stretches = []
+        for i, (point, direction) in enumerate(lines):
+            on_line = np.linalg.norm(np.cross(corners - point, direction), axis=1) < _SAME * extent
+            # Beyond its neighbours' pieces the line is this joint's by chance only.
+            low = pieces[i - 1] if i else 0
+            high = pieces[i + 1] + 1 if i + 1 < len(pieces) else len(corners) - 1
+            first = last = pieces[i]
+            last += 1
+            while first > low and on_line[first - 1]:
+                first -= 1
+            while last < high and on_line[last + 1]:
+                last += 1
+            stretches.append((reached[first], reached[last]))
+        first_last = np.array(stretches)
+        return cls(
+            corners=corners,
+            reached=reached,
+            first=first_last[:, 0],
+            last=first_last[:, 1],
+            own=np.array([(reached[piece], reached[piece + 1]) for piece in pieces]),
+            slides=tuple(joint.prismatic for joint in joints),
+            extent=extent,
+            size=size,
+            base_normal=normal,
+        )
+
+    def point(self, s: float) -> Numbers:
+        """The point ``(3,)`` of the path after the length ``s``."""
+        return np.array([np.interp(s, self.reached, column) for column in self.corners.T])
+
+    def corners_between(self, first: float, last: float) -> Numbers:
+        """The corners strictly between two lengths."""
+        inside = (self.reached > first + _SAME) & (self.reached < last - _SAME) & self.bent
+        inside[-1] = last == np.inf
+        return self.corners[inside]
+
+    @property
+    def bent(self) -> NDArray[np.bool_]:
+        """At which corners the path begins, bends or ends; at one of several in the same place."""
+        kept = np.flatnonzero(np.concatenate([[True], np.diff(self.reached) > _SAME]))
+        steps = np.diff(self.corners[kept], axis=0)
+        steps /= np.linalg.norm(steps, axis=1, keepdims=True)
+        turns = np.linalg.norm(np.cross(steps[:-1], steps[1:]), axis=1) > _SAME
+        found = np.zeros(len(self.corners), dtype=np.bool_)
+        found[kept[1:-1][turns]] = True
+        found[0] = True
+        return found
+
+    @property
+    def arrival(self) -> Numbers:
+        """The direction ``(3,)`` in which the path arrives at its end."""
+        line = distinct(self.corners)
+        step = line[-1] - line[-2] if len(line) > 1 else self.base_normal
+        return np.asarray(step / np.linalg.norm(step))
+
+    @property
+    def _across(self) -> NDArray[np.bool_]:
+        """Which joints a link reaches at right angles, where their own piece begins.
+
+        Not where the joint before has no other place than that.
+        """
+        only = np.where(np.ptp([self.first, self.last], axis=0) > _SAME, -np.inf, self.last)
+        before = np.concatenate([[-np.inf], only[:-1]])
+        return np.asarray(self.first > self.own[:, 0] - _SAME) & (before < self.own[:, 0] - _SAME)
+
+    @property
+    def _halves(self) -> tuple[Numbers, Numbers]:
+        """How far each joint reaches along the path, before and behind its middle."""
+        extended = self.last - self.first > _SAME
+        length, side = JOINT_LENGTH / 2 * self.size, 1.3 * JOINT_RADIUS * self.size
+        behind = np.where(extended, length, side)
+        return np.where(self._across, side, behind), behind
+
+    @property
+    def _apart(self) -> Numbers:
+        """How far the middles of neighbours should be from each other."""
+        before, behind = self._halves
+        return np.asarray(behind[:-1] + before[1:] + _CLEARANCE * self.size)
+
+    @property
+    def has_room(self) -> bool:
+        """Whether the joints and the gripper have their places without touching each other."""
+        at = np.array(self.placed())
+        to_tool = self.reached[-1] - at[-1] - self._halves[1][-1] - GRIPPER_LENGTH * self.size
+        return bool((np.diff(at) > self._apart - _SAME).all() and to_tool > -_SAME)
+
+    def placed(self) -> list[float]:
+        """The place of each joint: where it begins to lead, clear of its neighbours."""
+        apart = self._apart
+        low, high = self.first.copy(), self.last.copy()
+        low[0] = max(low[0], min(JOINT_LENGTH / 2 * self.size, high[0]))
+        high[-1] = max(high[-1] - GRIPPER_LENGTH * self.size - self._halves[1][-1], low[-1])
+        for i, gap in enumerate(apart):
+            low[i + 1] = min(max(low[i + 1], low[i] + gap), high[i + 1])
+        for i in range(len(apart) - 1, -1, -1):
+            high[i] = max(min(high[i], high[i + 1] - apart[i]), low[i])
+        at: list[float] = []
+        for i, wanted in enumerate(self._wanted(low[0])):
+            if at:
+                low[i] = min(max(low[i], at[-1] + apart[i - 1]), high[i])
+            at.append(float(min(max(wanted, low[i]), high[i])))
+        return at
+
+    def _wanted(self, lowest: float) -> Iterator[float]:
+        """The place that each joint would have by itself.
+
+        A turntable stands on the ground. A sliding joint lies where its displacement begins, a
+        turning one there, too, if a link arrives across, or in the middle of its own piece.
+        """
+        for i, (start, end) in enumerate(self.own):
+            if i == 0 and not self.slides[0]:
+                yield lowest
+            else:
+                yield start if self.slides[i] or self._across[i] else (start + end) / 2
+
+
+def _foot(
+    corners: Numbers, piece: int, line: tuple[Numbers, Numbers], size: float
+) -> tuple[Numbers, Numbers]:
+    """The point on the ground, and the normal of the ground.
+
+    Where the first joint has no room on its axis between the origin and the first link, the ground
+    lies below the origin, and below all that hangs down.
+    """
+    up = np.array([0.0, 0.0, 1.0])
+    origin = corners[0]
+    point, direction = line
+    on_axis = np.linalg.norm(np.cross(origin - point, direction)) < _SAME * size
+    room = np.linalg.norm(corners[piece + 1] - origin) if on_axis else np.inf
+    if room > (JOINT_LENGTH + _CLEARANCE) * size:
+        return origin, up
+    hanging = float(origin[2] - corners[:, 2].min())
+    depth = max((JOINT_LENGTH + 0.1) * size, hanging + 3 * _CLEARANCE * size)
+    along = direction * np.sign(direction @ up) if abs(direction @ up) > 0.7 else up
+    return origin - depth * along, along

@@ -1,0 +1,1 @@
+"""A student's table as frames and formulas."""

@@ -1,0 +1,65 @@
+"""The symbols and joints that a table to be drawn may speak of: an exercise's, or a book's."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Final
+
+from service.catalogue import Exercise, Joint, Variable
+from service.catalogue.compile import DEFAULT_RANGES
+from service.expressions import Kind, Symbol, Vocabulary, joint_variable
+from service.figures.geometry.symbol_numbers import drawing_numbers
+
+# The rows of a free table: ten joints and a fixed row or two.
+_ROWS: Final = range(1, 13)
+
+
+@dataclass(frozen=True, slots=True)
+class DrawingScope:
+    """What a table may be written in, and the numbers to draw it with."""
+
+    joints: tuple[Joint, ...]
+    variables: tuple[Variable, ...]
+    vocabulary: Vocabulary
+
+    @classmethod
+    def of(cls, exercise: Exercise) -> "DrawingScope":
+        """The scope of an exercise."""
+        return cls(exercise.joints, exercise.variables, exercise.vocabulary)
+
+    def numbers(self, given: Mapping[str, float]) -> dict[str, float]:
+        """A number for each symbol: the one given, or one that is good to draw with."""
+        numbers = drawing_numbers(self.variables)
+        return numbers | {name: given[name] for name in numbers.keys() & given.keys()}
+
+
+@lru_cache(maxsize=256)
+def free_scope(structure: str) -> DrawingScope:
+    """The letters of a robotics book for a robot with these joints, such as "RRP".
+
+    Joint i turns by theta_i (or q_i), or slides by d_i (or q_i). All else that a table may hold,
+    a1, alpha1, d1, theta1 and l1 to those of row 12, is a length or an angle.
+    """
+    joints = tuple(
+        Joint(i, f"d{i}" if letter == "P" else f"theta{i}", prismatic=letter == "P")
+        for i, letter in enumerate(structure, 1)
+    )
+    moving = {joint.variable: joint for joint in joints}
+    symbols = [joint_variable(joint.index, sliding=joint.prismatic) for joint in joints]
+    symbols += [symbol for symbol in _parameters() if symbol.name not in moving]
+    variables = tuple(_variable(symbol) for symbol in symbols)
+    return DrawingScope(joints, variables, Vocabulary(symbols, of_books=True))
+
+
+def _parameters() -> Iterator[Symbol]:
+    kinds: dict[str, Kind] = {
+        "a": "length", "alpha": "angle", "d": "length", "theta": "angle", "l": "length",
+    }  # fmt: skip
+    for letter, kind in kinds.items():
+        yield from (Symbol(f"{letter}{i}", kind) for i in _ROWS)
+
+
+def _variable(symbol: Symbol) -> Variable:
+    low, high = DEFAULT_RANGES[symbol.kind]
+    unit = "m" if symbol.kind == "length" else "rad"
+    return Variable(symbol.name, symbol.kind, unit, "", low, high, symbol.joint)

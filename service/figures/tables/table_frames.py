@@ -1,0 +1,191 @@
+"""The frames of a table as somebody has written it, right or wrong, at given joint values."""
+
+from collections.abc import Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.catalogue import Joint
+from service.expressions import AngleUnit, Expression, evaluate_all
+from service.figures.tables.scope import DrawingScope
+from service.grading.diagnosis.wording import listed
+from service.grading.feedback import Finding, reading_error
+from service.grading.numerics.samples import SAMPLES, Samples
+from service.grading.reading.entry import Reader
+from service.grading.reading.tables.table import StudentRow, StudentTable, read_table
+from service.grading.work_budget import WorkBudget
+from service.kinematics.chain import COLUMNS, Table, frames
+from service.kinematics.dh import Convention
+from service.kinematics.jacobian import coincident, rank, space_jacobian
+from service.kinematics.transforms import Matrices, Numbers
+
+# Postures that stand for a generic one.
+_GENERIC = 4
+# Beyond so many metres or radians there is nothing to draw.
+LARGEST = 1e6
+
+
+@dataclass(frozen=True, slots=True)
+class CellWithoutNumber:
+    """A cell without a number: its place by the labels of a report, and why."""
+
+    row: str
+    column: str
+    finding: Finding
+
+
+@dataclass(frozen=True, slots=True)
+class FreedomLoss:
+    """Joints that do no more together than fewer would, by their indices, and how they lie."""
+
+    joints: tuple[int, ...]
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class TableFrames:
+    """The frames of a table ``(configurations, frames, 4, 4)``, the base frame first.
+
+    They end before the first row with a cell that has no number: ``unread`` says which.
+    ``row_joints`` has for each row before that the joint whose variable stands in it. Only a
+    complete table has ``freedoms``, how many degrees of freedom its joints have. ``symbols`` are
+    those that stand in it.
+    """
+
+    frames: Matrices
+    row_joints: tuple[Joint | None, ...]
+    symbols: Set[str]
+    unread: tuple[CellWithoutNumber, ...] = ()
+    complete: bool = True
+    freedoms: int | None = None
+    lost: tuple[FreedomLoss, ...] = ()
+
+
+def table_to_draw(
+    answer: object, scope: DrawingScope, budget: WorkBudget, angle_unit: AngleUnit = "radians"
+) -> StudentTable:
+    """A table as it would be handed in; its cells are read as grading reads them.
+
+    Raises UnreadableAnswerError where there are no rows.
+    """
+    # Nobody asks for its numbers at these samples.
+    samples = Samples({variable.name: np.full(SAMPLES, 0.5) for variable in scope.variables})
+    return read_table(answer, Reader(scope.vocabulary, samples, angle_unit, "m", budget))
+
+
+def table_frames(
+    written: StudentTable,
+    convention: Convention,
+    scope: DrawingScope,
+    numbers: Mapping[str, float],
+    amounts: Numbers,
+) -> TableFrames:
+    """The frames of a table at values of the joint variables, ``(configurations, joints)``.
+
+    ``numbers`` are those of all symbols.
+    """
+    count = len(amounts)
+    values = {name: np.full(count + _GENERIC, number) for name, number in numbers.items()}
+    rng = np.random.default_rng(0)
+    for variable in scope.variables:
+        values[variable.name][count:] = rng.uniform(variable.low, variable.high, _GENERIC)
+    for i, joint in enumerate(scope.joints):
+        values[joint.variable][:count] = amounts[:, i]
+    table = _numbers(written, values, count + _GENERIC)
+    with np.errstate(invalid="ignore"):
+        is_number = np.asarray((np.abs(table) <= LARGEST).all(axis=-1))
+    unread = tuple(_unread(written, is_number, scope))
+    whole = np.asarray(is_number.all(axis=-1))
+    end = len(whole) if whole.all() else int(whole.argmin())
+    reached = np.moveaxis(frames(table[:end, :, :count], convention), 1, 0)
+    used = [_symbols(row) for row in written.rows]
+    symbols = set[str]().union(*used)
+    joints = tuple(_joint(row, scope) for row in used[:end])
+    if unread or end < len(scope.joints):
+        return TableFrames(reached, joints, symbols, unread, complete=False)
+    freedoms, lost = _freedoms(table[..., count:], convention, scope, symbols)
+    return TableFrames(reached, joints, symbols, freedoms=freedoms, lost=lost)
+
+
+def _symbols(row: StudentRow) -> Set[str]:
+    return set[str]().union(*(each.symbols for each in row.expressions if each is not None))
+
+
+def _joint(symbols: Set[str], scope: DrawingScope) -> Joint | None:
+    """The first joint whose variable is among the symbols of a row."""
+    return next((joint for joint in scope.joints if joint.variable in symbols), None)
+
+
+def _numbers(written: StudentTable, values: Mapping[str, Numbers], count: int) -> Table:
+    """The table in numbers, ``(rows, 4, values)``; NaN in a cell that has none."""
+    known = values.keys()
+    cells: list[Expression | None] = [
+        each if each is not None and each.symbols <= known else None
+        for row in written.rows
+        for each in row.expressions
+    ]
+    table = np.empty((len(cells), count))
+    for i, found in enumerate(evaluate_all(cells, values, {})):
+        table[i] = found
+    return table.reshape(len(written.rows), len(COLUMNS), count)
+
+
+def _unread(
+    written: StudentTable, is_number: NDArray[np.bool_], scope: DrawingScope
+) -> Iterator[CellWithoutNumber]:
+    names = {variable.name for variable in scope.variables}
+    for i, row in enumerate(written.rows):
+        for j, entry in enumerate(row.entries):
+            place = str(i + 1), COLUMNS[j]
+            if entry.expression is None:
+                yield CellWithoutNumber(*place, entry.findings[0] if entry.findings else _NOTHING)
+            elif absent := sorted(entry.expression.symbols - names):
+                message = f"The robot has no joint variable {absent[0]}."
+                yield CellWithoutNumber(*place, reading_error("unknown_joint", message))
+            elif not is_number[i, j]:
+                yield CellWithoutNumber(*place, _NO_NUMBER)
+
+
+_NOTHING = reading_error("missing", "Nothing is written here; if the value is zero, write 0.")
+_NO_NUMBER = reading_error(
+    "undefined", "This has no value at these joint values, or one too large to draw."
+)
+
+
+def _freedoms(
+    table: Table, convention: Convention, scope: DrawingScope, used: Set[str]
+) -> tuple[int, tuple[FreedomLoss, ...]]:
+    """How many degrees of freedom the joints have at a generic configuration, and the lost ones."""
+    moving = [i for i, joint in enumerate(scope.joints) if joint.variable in used]
+    still = tuple(joint for joint in scope.joints if joint.variable not in used)
+    lost = [
+        FreedomLoss(
+            (joint.index,),
+            f"Joint {joint.index} does not move: nothing in the table depends on {joint.variable}.",
+        )
+        for joint in still
+    ]
+    if not moving:
+        return 0, tuple(lost)
+    slides = [scope.joints[i].prismatic for i in moving]
+    screws = space_jacobian(table, convention, moving, slides)
+    scale = float(np.abs(table[:, [0, 2]]).max(initial=0.0)) or 1.0
+    screws[:, 3:] /= np.where(slides, 1.0, scale)
+    joined = np.triu(coincident(screws))
+    done: set[int] = set()
+    for i, others in enumerate(joined):
+        together = [i, *np.flatnonzero(others).tolist()]
+        if len(together) > 1 and not done.intersection(together):
+            done.update(together)
+            lost.append(_one_axis([moving[k] for k in together], scope))
+    return rank(screws), tuple(lost)
+
+
+def _one_axis(together: Sequence[int], scope: DrawingScope) -> FreedomLoss:
+    joints = [scope.joints[i] for i in together]
+    motion = "turn about one and the same line"
+    if joints[0].prismatic:
+        motion = "slide along one and the same direction"
+    named = listed([str(joint.index) for joint in joints])
+    return FreedomLoss(tuple(joint.index for joint in joints), f"Joints {named} {motion}.")

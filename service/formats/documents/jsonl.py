@@ -1,0 +1,16 @@
+"""Reports as JSON lines: one line for each file, written as soon as it is graded."""
+
+from collections.abc import Iterable, Iterator
+from typing import Final
+
+from service.formats.documents.json import entries
+from service.formats.shared.graded import GradedSubmission
+from service.formats.shared.report_format import ReportFormat, Setting
+
+
+def _pieces(submissions: Iterable[GradedSubmission], _: Setting) -> Iterator[bytes]:
+    for entry in entries(submissions):
+        yield entry + b"\n"
+
+
+FORMAT: Final = ReportFormat(_pieces, is_stream=True)

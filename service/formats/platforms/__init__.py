@@ -1,0 +1,1 @@
+"""Reports for grading platforms, one format in each file."""

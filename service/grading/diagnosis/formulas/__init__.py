@@ -1,0 +1,1 @@
+"""The formulas that the writer of a wrong one may have intended."""

@@ -1,0 +1,145 @@
+"""Slips in an angle that is a sum of angles, such as the direction of a planar arm's last link."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import chain, combinations, product
+
+import numpy as np
+
+from service.grading.diagnosis.wording import listed
+from service.grading.diagnosis.wrong_value import Hypotheses, WrongValue, finding_on
+from service.grading.feedback import Finding
+from service.grading.misconception import Written, explanation
+from service.grading.numerics.comparison import difference
+from service.grading.numerics.tolerances import CONSTANT, WHOLE_MULTIPLE
+from service.kinematics.transforms import Numbers
+
+# An angle of more addends is not taken apart: the subsets of ten are a thousand.
+MAX_ADDENDS = 6
+
+SUMMED = "Check which angles add up to it."
+BETWEEN = "check which two directions it is measured between."
+
+
+def addends(case: WrongValue) -> dict[str, int]:
+    """How often the right angle contains each symbol; empty where it is no sum of angles."""
+    names = list(case.samples.values)
+    columns = [case.samples.values[name] for name in names]
+    system = np.stack([*columns, np.ones_like(case.expected)], axis=1)
+    found = np.linalg.lstsq(system, case.expected, rcond=None)[0]
+    counts = np.round(found[:-1])
+    is_sum = np.abs(found[:-1] - counts).max(initial=0.0) < WHOLE_MULTIPLE
+    if is_sum and np.abs(system @ found - case.expected).max() < WHOLE_MULTIPLE:
+        return {name: int(count) for name, count in zip(names, counts, strict=True) if count}
+    return _computed(case, names)
+
+
+def _computed(case: WrongValue, names: Sequence[str]) -> dict[str, int]:
+    """The same for an angle that was computed, and so may be whole turns away from its sum."""
+    sums = [
+        dict(zip(some, signs, strict=True))
+        for count in (1, 2)
+        for some in combinations(names, count)
+        for signs in product((1, -1), repeat=count)
+    ]
+    rest = case.expected - np.array([_sum_of(case, counts) for counts in sums])
+    off = np.abs(difference(rest, rest[:, :1], angle=True)).max(axis=1)
+    return sums[int(off.argmin())] if off.min() < WHOLE_MULTIPLE else {}
+
+
+def _sum_of(case: WrongValue, counts: Mapping[str, int]) -> Numbers:
+    return np.asarray(sum(count * case.samples.values[name] for name, count in counts.items()))
+
+
+@dataclass(frozen=True, slots=True)
+class WrongSum:
+    """A wrong angle, and how often the right one contains each symbol."""
+
+    case: WrongValue
+    counts: Mapping[str, int]
+
+    @classmethod
+    def of(cls, case: WrongValue) -> "WrongSum":
+        """That of a wrong angle."""
+        return cls(case, addends(case))
+
+    def named(self, names: Iterable[str]) -> str:
+        """The symbols as the student writes them."""
+        return listed([self.case.spelling.names.get(name, name) for name in names])
+
+    def subsets(self) -> Iterator[tuple[tuple[str, ...], Numbers]]:
+        """Some of the angles, but not all, with what they add to the sum; the fewest first."""
+        names = list(self.counts) if len(self.counts) <= MAX_ADDENDS else []
+        for some in chain.from_iterable(combinations(names, k) for k in range(1, len(names))):
+            yield some, _sum_of(self.case, {name: self.counts[name] for name in some})
+
+    def others(self) -> Iterator[tuple[str, Numbers]]:
+        """The symbols that the student wrote and the right angle does not contain."""
+        for name in sorted(self.case.expression.symbols) if self.counts else ():
+            if name not in self.counts:
+                yield name, self.case.samples.values[name]
+
+
+def left_out(wrong: WrongSum) -> Hypotheses:
+    """Some of the angles are not counted: the last joint's alone for the sum of all."""
+    for names, part in wrong.subsets():
+        verb = "is" if len(names) == 1 else "are"
+        hint = f"{wrong.named(names)} {verb} missing from this angle. {SUMMED}"
+        yield Written(
+            wrong.case.expected - part, finding_on(wrong.case, "joint_variable_missing", hint)
+        )
+
+
+def constant(wrong: WrongSum) -> Hypotheses:
+    """No angle is counted."""
+    if wrong.counts and np.ptp(wrong.case.actual) < CONSTANT:
+        hint = "This angle is constant, but it must not be: check which variables it depends on."
+        yield Written(wrong.case.actual, finding_on(wrong.case, "joint_variable_missing", hint))
+
+
+def reversed_addends(wrong: WrongSum) -> Hypotheses:
+    """Some of the angles are subtracted that are to be added, or the other way."""
+    for names, part in wrong.subsets():
+        verb = "has" if len(names) == 1 else "have"
+        hint = (
+            f"{wrong.named(names)} {verb} the wrong sign in this angle: check which way this turn "
+            "counts positive."
+        )
+        yield Written(
+            wrong.case.expected - 2 * part, finding_on(wrong.case, "joint_variable_sign", hint)
+        )
+
+
+def counted_twice(wrong: WrongSum) -> Hypotheses:
+    """An angle is counted twice."""
+    for name, count in wrong.counts.items():
+        hint = f"{wrong.named([name])} counts twice in this angle. {SUMMED}"
+        written = wrong.case.expected + count * wrong.case.samples.values[name]
+        yield Written(written, finding_on(wrong.case, "joint_variable_doubled", hint))
+
+
+def added(wrong: WrongSum) -> Hypotheses:
+    """An angle is counted that does not turn the direction."""
+    for name, value in wrong.others():
+        hint = f"{wrong.named([name])} does not belong in this angle: {BETWEEN}"
+        for sign in (1, -1):
+            finding = finding_on(wrong.case, "joint_variable_extra", hint)
+            yield Written(wrong.case.expected + sign * value, finding)
+
+
+def of_another_joint(wrong: WrongSum) -> Hypotheses:
+    """An angle is counted in place of another."""
+    for other, value in wrong.others():
+        for name, count in wrong.counts.items():
+            hint = f"{wrong.named([other])} stands in the place of another angle: {BETWEEN}"
+            written = wrong.case.expected + count * (value - wrong.case.samples.values[name])
+            yield Written(written, finding_on(wrong.case, "joint_variable_index", hint))
+
+
+MISCONCEPTIONS = (left_out, reversed_addends, counted_twice, added, of_another_joint, constant)
+
+
+def explain_sum(case: WrongValue) -> Finding | None:
+    """The finding that explains a wrong sum of angles."""
+    found = explanation(case, MISCONCEPTIONS, WrongSum.of(case))
+    return found.findings[0] if found else None

@@ -1,0 +1,121 @@
+"""Slips in three angles that describe a rotation together."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+
+from service.grading.diagnosis.lists import angle
+from service.grading.feedback import Finding
+from service.grading.misconception import AnyHypothesis, Repaired, explanation
+from service.grading.numerics.tolerances import ROUNDED_VALUE
+from service.kinematics.rotations import SEQUENCES, from_angles
+from service.kinematics.transforms import Matrices, Numbers
+
+
+@dataclass(frozen=True)
+class WrongTriple:
+    """Three angles that do not describe the right rotation.
+
+    ``angles`` is ``(3, SAMPLES)``, all of them with a value everywhere; ``rotation`` is the right
+    one, ``(SAMPLES, 3, 3)``; ``sequence`` names the axes, which move or are ``fixed``.
+    ``arctangents`` says which angles were written with an arctangent.
+    """
+
+    angles: Numbers
+    rotation: Matrices
+    sequence: str
+    fixed: bool
+    arctangents: Sequence[bool] = (False, False, False)
+
+    @property
+    def is_right(self) -> bool:
+        """Whether the angles do describe the rotation."""
+        described = from_angles(self.sequence, self.angles.T, fixed=self.fixed)
+        return bool(np.abs(described - self.rotation).max() < ROUNDED_VALUE)
+
+    def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterator[AnyHypothesis]:
+        """Those hypotheses that make the triple right, each tried when it is asked for."""
+        return (hypothesis for hypothesis in hypotheses if hypothesis.answer.is_right)
+
+
+RepairedTriple = Repaired[WrongTriple]
+
+
+def some_angles(case: WrongTriple) -> Iterator[RepairedTriple]:
+    """The same slip was made in one, two or all three of the angles."""
+    angles = case.angles
+    repairs = (
+        (-angles, Finding("sign", angle.WRONG_SIGN, "Change its sign.")),
+        (np.radians(angles), Finding("degrees_as_radians", angle.FITS_IN_DEGREES)),
+        (np.degrees(angles), Finding("radians_as_degrees", angle.FITS_IN_RADIANS)),
+        (np.pi / 2 - angles, Finding("swapped_atan2", angle.ARGUMENTS_SWAPPED, "Exchange them.")),
+    )
+    may_be_swapped = (np.ptp(angles, axis=1) > ROUNDED_VALUE) | np.array(case.arctangents)
+    for count in (1, 2, 3):
+        for repaired, finding in repairs:
+            for subset in combinations(range(3), count):
+                slipped = np.isin(np.arange(3), subset)
+                if finding.code == "swapped_atan2" and not may_be_swapped[slipped].all():
+                    continue
+                mixed = np.where(slipped[:, None], repaired, angles)
+                told = _told_of(finding, angles[slipped])
+                yield Repaired(replace(case, angles=mixed), told, slipped)
+
+
+def _told_of(finding: Finding, angles: Numbers) -> Finding:
+    """The finding on some angles; a formula in the wrong unit has a factor in it."""
+    is_of_unit = finding.hint in (angle.FITS_IN_DEGREES, angle.FITS_IN_RADIANS)
+    if is_of_unit and not all(map(angle.is_constant, angles)):
+        return replace(finding, hint=angle.CONVERTED)
+    return finding
+
+
+def other_order(case: WrongTriple) -> Iterator[RepairedTriple]:
+    """The angles were written down in another order, most often from last to first."""
+    finding = Finding(
+        "angle_order",
+        "These angles are right, but in another order: the first angle is that of the first axis "
+        "of the sequence.",
+        f"The order here is that of the axes {case.sequence}.",
+    )
+    for order in ([2, 1, 0], [1, 0, 2], [0, 2, 1], [1, 2, 0], [2, 0, 1]):
+        yield Repaired(replace(case, angles=case.angles[order]), finding)
+
+
+def inverse_rotation(case: WrongTriple) -> Iterator[RepairedTriple]:
+    """The angles describe the first frame in the last."""
+    finding = Finding(
+        "inverse_rotation",
+        "These angles describe the inverse rotation: the first frame as seen from the last.",
+        "Take them from the matrix whose columns are the axes of the last frame.",
+    )
+    yield Repaired(replace(case, rotation=np.swapaxes(case.rotation, 1, 2)), finding)
+
+
+def other_sequence(case: WrongTriple) -> Iterator[RepairedTriple]:
+    """The angles are those of another sequence of axes, or of fixed axes for moving ones."""
+    others = sorted(
+        ((sequence, fixed) for sequence in SEQUENCES for fixed in (False, True)),
+        key=lambda other: (other[0] != case.sequence, other[1] != case.fixed),
+    )
+    for sequence, fixed in others:
+        finding = Finding(
+            "other_euler_sequence",
+            f"These are the right angles of another sequence: {_named(sequence, fixed)}.",
+            f"Asked for are those of {_named(case.sequence, case.fixed)}.",
+        )
+        yield Repaired(replace(case, sequence=sequence, fixed=fixed), finding)
+
+
+def _named(sequence: str, fixed: bool) -> str:
+    return f"{sequence} about {'fixed' if fixed else 'moving'} axes"
+
+
+MISCONCEPTIONS = (some_angles, other_order, inverse_rotation, other_sequence)
+
+
+def explain_triple(case: WrongTriple) -> RepairedTriple | None:
+    """The first hypothesis that explains the angles together; its entries are those with a slip."""
+    return None if case.is_right else explanation(case, MISCONCEPTIONS)

@@ -1,0 +1,98 @@
+"""Slips in a product of exponentials."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from service.catalogue import Exercise, ScrewRobot
+from service.catalogue.robots.robot import at_home
+from service.grading.diagnosis.matrices.matrix_case import Explanation, MatrixCase, as_explanations
+from service.grading.diagnosis.wrong_value import Hypotheses
+from service.grading.feedback import Finding
+from service.grading.misconception import Written, explanation
+from service.grading.numerics.samples import Samples
+from service.kinematics.screws import moved, product_in_body, product_in_space
+from service.kinematics.transforms import Matrices, Numbers, inverse
+
+
+@dataclass(frozen=True, slots=True)
+class Exponentials:
+    """Screw axes ``(n, SAMPLES, 6)`` seen from the base and from the tool, amounts, home pose."""
+
+    space: Numbers
+    body: Numbers
+    amounts: Numbers
+    home: Matrices
+
+    @classmethod
+    def of(cls, robot: ScrewRobot, samples: Samples) -> "Exponentials":
+        """Those of the reference robot."""
+        values, count = samples.values, samples.count
+        home = robot.frame("tool", at_home(robot.joints, values, count), count)
+        space = robot.screws(values, count)
+        amounts = np.array([values[joint.variable] for joint in robot.joints])
+        return cls(space, moved(inverse(home), space), amounts, home)
+
+
+def _pose(pose: Matrices, finding: Finding) -> Written[Numbers]:
+    return Written(np.moveaxis(pose, 0, -1), finding)
+
+
+def home_on_the_wrong_side(product: Exponentials) -> Hypotheses:
+    """Space axes were multiplied behind M, or body axes in front of it."""
+    finding = Finding(
+        "home_on_wrong_side",
+        "M stands on the wrong side of the exponentials: space axes are multiplied in front of M, "
+        "body axes behind it.",
+        "T = e^[S1]θ1 … e^[Sn]θn M = M e^[B1]θ1 … e^[Bn]θn.",
+    )
+    yield _pose(product_in_body(product.space, product.amounts, product.home), finding)
+    yield _pose(product_in_space(product.body, product.amounts, product.home), finding)
+
+
+def missing_home(product: Exponentials) -> Hypotheses:
+    """The home pose was left out."""
+    finding = Finding(
+        "missing_home",
+        "This is the product of the exponentials alone: the home pose M is missing.",
+        "Multiply M behind the space axes' exponentials.",
+    )
+    for axes in (product.space, product.body):
+        yield _pose(product_in_space(axes, product.amounts, np.eye(4)), finding)
+
+
+def reversed_product(product: Exponentials) -> Hypotheses:
+    """The exponentials were multiplied from the last joint to the first."""
+    finding = Finding(
+        "reversed_product",
+        "The exponentials are multiplied in reverse order: check which joint comes first.",
+        "Begin with that of joint 1, nearest to the base.",
+    )
+    amounts = product.amounts[::-1]
+    yield _pose(product_in_space(product.space[::-1], amounts, product.home), finding)
+    yield _pose(product_in_body(product.body[::-1], amounts, product.home), finding)
+
+
+def moment_sign(product: Exponentials) -> Hypotheses:
+    """V was taken to be ω × q for every turning joint."""
+    finding = Finding(
+        "moment_sign",
+        "v has the wrong sign in the screw axes behind this: check the order of ω and q in the "
+        "cross product.",
+    )
+    for axes, multiply in ((product.space, product_in_space), (product.body, product_in_body)):
+        turns = np.abs(axes[..., :3]).max(axis=-1, keepdims=True) > 0.5
+        signs = np.where(turns, [1, 1, 1, -1, -1, -1], 1)
+        yield _pose(multiply(axes * signs, product.amounts, product.home), finding)
+
+
+MISCONCEPTIONS = (home_on_the_wrong_side, missing_home, reversed_product, moment_sign)
+
+
+def explain_product(case: MatrixCase, exercise: Exercise, samples: Samples) -> list[Explanation]:
+    """What explains the whole of a wrong pose that is a product of exponentials."""
+    if not isinstance(exercise.reference, ScrewRobot):
+        return []
+    subset = samples.subset(case.actual.shape[-1] // 2)
+    product = Exponentials.of(exercise.reference, subset)
+    return as_explanations(case, explanation(case, MISCONCEPTIONS, product))

@@ -1,0 +1,40 @@
+"""Joint variables in what is taken in the home position: the pose M, a screw axis."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from service.catalogue import Exercise
+from service.grading.diagnosis.matrices.matrix_case import Explanation, MatrixCase
+from service.grading.diagnosis.wrong_value import Mask
+from service.grading.feedback import Finding
+from service.grading.reading.entry import Entry
+
+NOT_AT_HOME = Finding(
+    "not_at_home",
+    "In the home position every joint variable is 0: no joint variable belongs here.",
+    "Put 0 for each joint variable.",
+)
+
+
+def with_joint_variable(entries: Sequence[Sequence[Entry]], exercise: Exercise) -> Mask:
+    """Which entries ``(rows, columns)`` contain a joint variable."""
+    variables = {joint.variable for joint in exercise.joints}
+    return np.array(
+        [
+            [
+                entry.expression is not None and not variables.isdisjoint(entry.expression.symbols)
+                for entry in row
+            ]
+            for row in entries
+        ],
+        dtype=np.bool_,
+    )
+
+
+def explain_moving(
+    case: MatrixCase, entries: Sequence[Sequence[Entry]], exercise: Exercise
+) -> list[Explanation]:
+    """The explanation of the wrong entries of a home pose that contain a joint variable."""
+    moving = np.asarray(case.wrong & with_joint_variable(entries, exercise))
+    return [Explanation(NOT_AT_HOME, moving)] if moving.any() else []

@@ -1,0 +1,212 @@
+"""Slips in a single matrix entry."""
+
+from collections.abc import Callable, Iterator, Mapping
+
+from service.expressions import Symbol
+from service.expressions.parsing.degrees import in_degrees
+from service.expressions.tree import Node, Number, Unit, children
+from service.grading.diagnosis.formulas import formula_rewriting as rewriting
+from service.grading.diagnosis.formulas.formula_repair import Rewritten, WrongEntry
+from service.grading.diagnosis.upstream.missing_symbol import (
+    Required,
+    Requirements,
+    explain_dependence,
+)
+from service.grading.diagnosis.wrong_value import differs, finding_on, undefined
+from service.grading.feedback import Finding
+from service.grading.misconception import Written, diagnosed
+from service.kinematics.transforms import Numbers
+
+# A planar arm of three joints has three runs of joints whose angles add up.
+MAX_RUNS = 3
+# In so many sines and cosines a joint angle may be missing in one place alone.
+MAX_PLACES = 3
+# How many nodes of unexplained formulas are taken apart before the rest of a matrix is only
+# compared: where so much has another cause, the rest will have it too. What can be explained costs
+# less of it, but not nothing: the work must be bounded.
+WORK_BUDGET = 100.0
+COST_IF_EXPLAINED = 0.25
+# The work of an entry, and of each node of a formula that is taken apart, as the budget of the
+# submission counts it.
+ENTRY_WORK, NODE_WORK = 1.0, 0.2
+
+Formulas = Iterator[Rewritten]
+
+
+def sign(case: WrongEntry) -> Iterator[Written[Numbers]]:
+    """The size is right, the direction is not."""
+    yield Written(-case.expected, finding_on(case, "sign", "The sign is wrong."))
+
+
+def degrees_as_radians(case: WrongEntry) -> Formulas:
+    """A number in degrees was written in a sine or cosine where radians are read."""
+    finding = Finding(
+        "degrees_as_radians",
+        "A number in a sine or cosine was read in radians, but it fits in degrees: write the unit "
+        "behind it (deg or °).",
+    )
+    if any(map(_has_bare_number, case.sines_and_cosines)):
+        yield Rewritten(in_degrees(case.tree, is_angle=False, notes=[]), finding)
+
+
+def _has_bare_number(node: Node) -> bool:
+    """Whether a number other than 0 stands in it without a unit."""
+    if isinstance(node, Number):
+        return node.value != 0
+    return not isinstance(node, Unit) and any(map(_has_bare_number, children(node)))
+
+
+def radians_as_degrees(case: WrongEntry) -> Formulas:
+    """A number in radians was written in a sine or cosine where degrees are read."""
+    finding = Finding(
+        "radians_as_degrees",
+        "A number in a sine or cosine was read in degrees, but it fits in radians: write the unit "
+        "behind it (rad).",
+    )
+    yield Rewritten(rewriting.everywhere(case.tree, rewriting.without_degrees), finding)
+
+
+def sine_for_cosine(case: WrongEntry) -> Formulas:
+    """Sine was taken for cosine, or cosine for sine: throughout, or in one place."""
+    count = len(case.sines_and_cosines)
+    if count > 0:
+        finding = Finding("sine_for_cosine", "Sine and cosine are exchanged.")
+        yield Rewritten(rewriting.at_sines_and_cosines(case.tree, rewriting.exchanged), finding)
+    if count > 1:
+        in_one_place = Finding("sine_for_cosine", "Sine and cosine are exchanged in one place.")
+        for tree, _ in rewriting.one_place(case.tree, rewriting.exchanged):
+            yield Rewritten(tree, in_one_place)
+
+
+def sum_of_cosines(case: WrongEntry) -> Formulas:
+    """The cosine of a sum was taken to be the sum of the cosines; the sine likewise."""
+    finding = Finding(
+        "sum_of_cosines",
+        "cos(a + b) is not cos(a) + cos(b), and sin(a + b) is not sin(a) + sin(b): add the angles "
+        "first.",
+    )
+    if len(case.sines_and_cosines) > 1:
+        yield Rewritten(rewriting.sums_merged(case.tree), finding)
+
+
+def product_for_sum_angle(case: WrongEntry) -> Formulas:
+    """The shorthand c12 was read as c1 c2, s12 as s1 s2, in all places or for some joints."""
+    finding = Finding(
+        "product_for_sum_angle",
+        "Check this product of sines or cosines: the direction of a link has one sine or cosine of "
+        "a sum of joint angles.",
+    )
+    if len(case.sines_and_cosines) > 1:
+        yield Rewritten(rewriting.products_merged(case.tree), finding)
+        for joints in rewriting.joints_multiplied(case.tree, sorted(case.turning))[:MAX_RUNS]:
+            yield Rewritten(rewriting.products_merged(case.tree, joints), finding)
+
+
+def relative_angle(case: WrongEntry) -> Formulas:
+    """A joint angle was taken to be measured from the base, though it counts from the link before.
+
+    So c2 stands where the sum of the angles belongs, c12.
+    """
+    finding = Finding(
+        "relative_angle",
+        "A joint angle is measured from the link before: the direction of a link is the sum of all "
+        "joint angles up to it.",
+    )
+    for first in sorted(case.turning)[:-1] if case.sines_and_cosines else ():
+        summed = rewriting.summed_from(first, case.turning)
+        yield Rewritten(rewriting.at_sines_and_cosines(case.tree, summed), finding)
+
+
+def angle_left_out(case: WrongEntry) -> Formulas:
+    """A joint angle is not counted in a sum of joint angles: c23 stands for c123."""
+    for symbol in _joint_angles(case):
+        finding = Finding(
+            "joint_variable_missing",
+            f"{case.spelling.name(symbol)} is missing in a sine or cosine: the direction of a link "
+            "is the sum of all joint angles up to it.",
+        )
+        yield from _with_angles_changed(case, rewriting.with_angle(symbol), finding)
+
+
+def angle_too_many(case: WrongEntry) -> Formulas:
+    """A joint angle is counted in a sum of joint angles that ends before it: c123 for c12."""
+    for symbol in _joint_angles(case):
+        finding = Finding(
+            "joint_variable_extra",
+            f"{case.spelling.name(symbol)} does not belong in a sine or cosine here: the direction "
+            "of a link is the sum of the joint angles up to it, and of none after it.",
+        )
+        yield from _with_angles_changed(case, rewriting.without_angle(symbol), finding)
+
+
+def _joint_angles(case: WrongEntry) -> list[Symbol]:
+    """The joint angles, where there is a sine or cosine that may hold one."""
+    return [case.turning[k] for k in sorted(case.turning)] if case.sines_and_cosines else []
+
+
+def _with_angles_changed(
+    case: WrongEntry, change: rewriting.Rewriting, finding: Finding
+) -> Formulas:
+    """The formula with ``change`` throughout, and in one place where there are few."""
+    yield Rewritten(rewriting.at_sines_and_cosines(case.tree, change), finding, signed=True)
+    if 1 < len(case.sines_and_cosines) <= MAX_PLACES:
+        for tree, _ in rewriting.one_place(case.tree, change):
+            yield Rewritten(tree, finding, signed=True)
+
+
+def term_sign(case: WrongEntry) -> Formulas:
+    """One term of a sum has the wrong sign."""
+    finding = Finding("term_sign", "One term has the wrong sign.")
+    for change in (rewriting.other_operator, rewriting.first_term_negated):
+        for tree, _ in rewriting.one_place(case.tree, change):
+            yield Rewritten(tree, finding, signed=True)
+
+
+CHECKS = (undefined,)
+OF_UNIT = (degrees_as_radians, radians_as_degrees)
+OF_ANGLES = (sine_for_cosine, sum_of_cosines, product_for_sum_angle, relative_angle)
+OF_SUMS = (angle_left_out, angle_too_many)
+MISCONCEPTIONS = (sign, *OF_UNIT, *OF_ANGLES, term_sign, *OF_SUMS)
+
+
+def diagnose(
+    case: WrongEntry, *, take_apart: bool = True, required: Required | None = None
+) -> Finding:
+    """The finding on a wrong entry; its formula is rewritten only if ``take_apart`` allows.
+
+    ``required`` is what the right entry depends on, where that is known.
+    """
+    return _explained(case, take_apart=take_apart) or _unexplained(case, required)
+
+
+def diagnose_entries(
+    wrong: Mapping[tuple[int, int], WrongEntry],
+    affords: Callable[[float], bool],
+    work_budget: float = WORK_BUDGET,
+    requirements: Requirements | None = None,
+) -> dict[tuple[int, int], Finding]:
+    """The finding on each wrong entry, as far as the work budget ``affords`` it.
+
+    Once ``work_budget``, that of the matrix, is used up, formulas stay whole.
+    """
+    findings: dict[tuple[int, int], Finding] = {}
+    for place, entry in wrong.items():
+        if not affords(ENTRY_WORK + (NODE_WORK * entry.size if work_budget > 0 else 0.0)):
+            continue
+        explained = _explained(entry, take_apart=work_budget > 0)
+        work_budget -= entry.size * (COST_IF_EXPLAINED if explained else 1.0)
+        required = requirements.of(*place) if requirements and not explained else None
+        findings[place] = explained or _unexplained(entry, required)
+    return findings
+
+
+def _explained(case: WrongEntry, *, take_apart: bool) -> Finding | None:
+    misconceptions = MISCONCEPTIONS if take_apart and case.can_be_repaired else (sign,)
+    return diagnosed(case, misconceptions, CHECKS)
+
+
+def _unexplained(case: WrongEntry, required: Required | None) -> Finding:
+    return (required and explain_dependence(case, required)) or differs(
+        case,
+        "This is not right. Check each term: its factor, length, angle and sign.",
+    )

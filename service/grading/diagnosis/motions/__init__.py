@@ -1,0 +1,1 @@
+"""The slips in a product of transforms or motions."""

@@ -1,0 +1,206 @@
+"""Slips in a product of link transforms.
+
+Each misconception leads to another pose ``(SAMPLES, 4, 4)``. A student may hand in the whole of it,
+its rotation or its position; so the first sentence of the finding lacks its subject, which
+``named`` puts in front: "This matrix is …", "The position comes from …".
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from service.catalogue import Exercise
+from service.grading.feedback import Finding
+from service.grading.misconception import Written, hypotheses_of
+from service.grading.numerics.samples import Samples
+from service.kinematics.chain import Table, compound, links
+from service.kinematics.dh import Convention
+from service.kinematics.transforms import Matrices
+
+LinkPose = Written[Matrices]
+
+
+@dataclass(frozen=True)
+class Chain:
+    """The links of the reference.
+
+    ``table`` is ``(rows, 4, SAMPLES)``. ``frames`` names the frame that each row starts from, then
+    the last frame.
+    """
+
+    table: Table
+    convention: Convention
+    frames: tuple[str, ...]
+
+    @cached_property
+    def links(self) -> Matrices:
+        """The link transform of each row, ``(rows, SAMPLES, 4, 4)``."""
+        return links(self.table, self.convention)
+
+    @cached_property
+    def from_base(self) -> Matrices:
+        """The pose of the frame behind each row in the base frame: A_1, A_1 A_2 and so on."""
+        return _running_products(self.links)
+
+    @cached_property
+    def to_end(self) -> Matrices:
+        """The pose of the last frame in the one before each row: A_1 … A_n first, A_n last."""
+        turned = np.swapaxes(self.links[::-1], -1, -2)
+        return np.swapaxes(_running_products(turned), -1, -2)[::-1]
+
+    @cached_property
+    def misread_links(self) -> Matrices:
+        """The link transforms of the same numbers in the other convention."""
+        return links(self.table, self.convention.other)
+
+    def product(self, order: Sequence[int]) -> str:
+        """The product of the links in this order as a formula: A1·A2·A3."""
+        return "·".join(f"A{self.frames[i + 1]}" for i in order)
+
+    def frame(self, i: int) -> str:
+        """Frame ``i`` as a textbook writes it."""
+        return f"{{{self.frames[i]}}}"
+
+
+def _running_products(transforms: Matrices) -> Matrices:
+    products = np.empty_like(transforms)
+    products[0] = transforms[0]
+    for i in range(1, len(transforms)):
+        np.matmul(products[i - 1], transforms[i], out=products[i])
+    return products
+
+
+def chains_of(exercise: Exercise, samples: Samples) -> tuple[Chain, ...]:
+    """The links of the exercise's robot, in its own convention: a student knows no other."""
+    robot = exercise.robot
+    table = robot.tables[robot.convention]
+    base = str(robot.joints[0].index - 1)
+    values = table.values(samples.values, samples.count)
+    return (Chain(values, robot.convention, frames=(base, *table.labels)),)
+
+
+def reversed_product(chain: Chain) -> Iterator[LinkPose]:
+    """The link transforms were multiplied in reverse order."""
+    order = range(len(chain.links))
+    finding = Finding(
+        "reversed_product",
+        f"the product of the link transforms in reverse order, {chain.product(order[::-1])}. "
+        "Each link transform describes its frame in the one before.",
+        f"Multiply {chain.product(order)}.",
+    )
+    yield Written(compound(chain.links[::-1]), finding)
+
+
+def other_convention(chain: Chain) -> Iterator[LinkPose]:
+    """The table's numbers were put into the link transform of the other convention."""
+    used, right = chain.convention.other.value, chain.convention.value
+    finding = Finding(
+        "other_convention",
+        f"the product that the table gives with the link transform of the {used} convention. "
+        "Check in which order a link transform moves about and along z and x.",
+        f"The table is written in the {right} convention.",
+    )
+    yield Written(compound(chain.misread_links), finding)
+
+
+def wrong_frame(chain: Chain) -> Iterator[LinkPose]:
+    """The pose of a frame before the last was handed in."""
+    last = len(chain.links)
+    for k in reversed(range(1, last)):
+        finding = Finding(
+            "wrong_frame",
+            f"the pose of frame {chain.frame(k)}. The pose of frame {chain.frame(last)} is asked "
+            "for.",
+            f"Go on with {chain.product(range(k, last))}.",
+        )
+        yield Written(chain.from_base[k - 1], finding)
+
+
+def wrong_base(chain: Chain) -> Iterator[LinkPose]:
+    """The pose was described in a frame after the base frame."""
+    for k in range(1, len(chain.links)):
+        finding = Finding(
+            "wrong_base",
+            f"the pose seen from frame {chain.frame(k)}. The pose in frame {chain.frame(0)} is "
+            "asked for.",
+            f"Put {chain.product(range(k))} in front.",
+        )
+        yield Written(chain.to_end[k], finding)
+
+
+def missing_link(chain: Chain) -> Iterator[LinkPose]:
+    """One link transform between the first and the last was left out of the product."""
+    last = len(chain.links)
+    poses = chain.from_base[: last - 2] @ chain.to_end[2:]
+    for k, pose in enumerate(poses, start=1):
+        finding = Finding(
+            "missing_link",
+            f"the product without A{chain.frames[k + 1]}. Check that each row of the table takes "
+            "part in the product.",
+            f"Multiply {chain.product(range(last))}.",
+        )
+        yield Written(pose, finding)
+
+
+def premultiplied(chain: Chain) -> Iterator[LinkPose]:
+    """One link transform was multiplied from the left, as if it turned about the base axes.
+
+    Multiplied so throughout, the whole product is reversed, down to the turns and shifts in a link.
+    """
+    order = list(range(len(chain.links)))
+    advice = "Check on which side a motion about a moving axis is multiplied."
+    correction = f"Multiply from the right throughout: {chain.product(order)}."
+    poses = chain.links[1:] @ chain.from_base[:-1]
+    poses[:-1] = poses[:-1] @ chain.to_end[2:]
+    for k, pose in zip(order[1:], poses, strict=True):
+        wrong_order = chain.product([k, *order[:k], *order[k + 1 :]])
+        used = f"the product with A{chain.frames[k + 1]} multiplied from the left, {wrong_order}."
+        yield Written(pose, Finding("premultiplied", f"{used} {advice}", correction))
+    used = "the product of all rotations and translations, each put on the left."
+    throughout = Finding("premultiplied", f"{used} {advice}", correction)
+    yield Written(compound(chain.misread_links[::-1]), throughout)
+
+
+def row_order(chain: Chain) -> Iterator[LinkPose]:
+    """One row of the table, or its link transform, stands at another place.
+
+    Two that are next to each other are exchanged, which is a slip of the table
+    (``rows_and_columns``); and one in front of all was multiplied from the left.
+    """
+    count = len(chain.links)
+    orders = [
+        [*rest[:place], row, *rest[place:]]
+        for row in range(count)
+        for place in range(1, count)
+        if abs(place - row) > 1
+        for rest in [[i for i in range(count) if i != row]]
+    ]
+    if not orders:
+        return
+    poses = compound(np.swapaxes(chain.links[orders], 0, 1))
+    for order, pose in zip(orders, poses, strict=True):
+        finding = Finding(
+            "row_order",
+            f"the product in the order {chain.product(order)}. Check which joint each row of the "
+            "table belongs to.",
+            f"Multiply {chain.product(range(count))}.",
+        )
+        yield Written(pose, finding)
+
+
+OF_FRAMES = (wrong_frame, wrong_base)
+OF_FACTORS = (missing_link, premultiplied, row_order)
+MISCONCEPTIONS = (reversed_product, other_convention, *OF_FRAMES, *OF_FACTORS)
+
+
+def other_poses(chains: tuple[Chain, ...]) -> list[LinkPose]:
+    """The poses that all misconceptions lead to."""
+    return [pose for chain in chains for pose in hypotheses_of(chain, MISCONCEPTIONS)]
+
+
+def named(pose: LinkPose, subject: str, *others: Finding) -> Callable[[], tuple[Finding, ...]]:
+    """``others``, then the finding on the pose with the subject of its first sentence."""
+    [finding] = pose.findings
+    return lambda: (*others, replace(finding, hint=f"{subject} {finding.hint}"))

@@ -1,0 +1,199 @@
+"""Slips in a screw axis (ω; v)."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from service.grading.diagnosis.wrong_value import Hypotheses, WrongNumbers
+from service.grading.feedback import Finding
+from service.grading.misconception import Written, diagnosed
+from service.grading.numerics.comparison import nearly_equal
+from service.grading.numerics.tolerances import EXACT_VALUE, ROUNDED_VALUE
+from service.kinematics.transforms import Numbers
+
+
+@dataclass(frozen=True)
+class WrongScrew(WrongNumbers):
+    """A screw axis that is not the expected one, ``(6, SAMPLES)`` each.
+
+    ``elsewhere`` is the same axis seen from the other frame, the tool's for the base's or the other
+    way; None where that is not known. ``frame`` is "space" or "body", whichever is asked for.
+    """
+
+    elsewhere: Numbers | None
+    frame: str
+
+    @property
+    def length_scale(self) -> float:
+        """The typical length that v is measured against."""
+        return float(np.asarray(self.scale)[-1])
+
+    @property
+    def direction(self) -> Numbers:
+        """The expected ω, ``(3, SAMPLES)``."""
+        return self.expected[:3]
+
+    @cached_property
+    def turns(self) -> bool:
+        """Whether the joint turns; else it slides along v."""
+        return bool(np.abs(self.direction).max() > EXACT_VALUE)
+
+    @cached_property
+    def pitch(self) -> Numbers:
+        """The advance per radian h = ω · v, ``(SAMPLES,)``."""
+        return np.asarray((self.direction * self.expected[3:]).sum(axis=0))
+
+    @cached_property
+    def moment(self) -> Numbers:
+        """The part −ω × q of v, which the place of the axis gives, ``(3, SAMPLES)``."""
+        return self.expected[3:] - self.pitch * self.direction
+
+    def with_velocity(self, velocity: Numbers) -> Numbers:
+        """The expected ω with another v."""
+        return np.concatenate([self.direction, velocity])
+
+
+EXCHANGED_HALVES = Finding(
+    "exchanged_halves", "ω and v are exchanged: write ω first, then v.", "Exchange ω and v."
+)
+AXIS_REVERSED = Finding(
+    "axis_reversed",
+    "The axis points the opposite way: check which way the joint counts positive.",
+    "Change the sign of all six numbers.",
+)
+MOMENT_SIGN = Finding(
+    "moment_sign",
+    "v has the wrong sign: the turn moves the point at the origin with v = −ω × q, not ω × q.",
+)
+
+
+def seen_from_elsewhere(frame: str) -> Finding:
+    """The finding that an axis is seen from the other frame than "space" or "body", asked for."""
+    seen, asked = ("end-effector", "base") if frame == "space" else ("base", "end-effector")
+    return Finding(
+        "body_for_space" if frame == "space" else "space_for_body",
+        f"ω and v are written as seen from the {seen} frame. A {frame} axis is seen from the "
+        f"{asked} frame.",
+        f"Measure ω and the point q in the {asked} frame, with the arm in its home position.",
+    )
+
+
+def axis_reversed(case: WrongScrew) -> Hypotheses:
+    """The axis was taken to point the opposite way."""
+    yield Written(-case.expected, AXIS_REVERSED)
+
+
+def moment_sign(case: WrongScrew) -> Hypotheses:
+    """V was taken to be ω × q."""
+    if case.turns:
+        velocity = case.pitch * case.direction - case.moment
+        yield Written(case.with_velocity(velocity), MOMENT_SIGN)
+
+
+def other_frame(case: WrongScrew) -> Hypotheses:
+    """The body axis was given for the space axis, or the other way."""
+    if case.elsewhere is not None:
+        yield Written(case.elsewhere, seen_from_elsewhere(case.frame))
+
+
+def sliding_as_turning(case: WrongScrew) -> Hypotheses:
+    """A sliding joint was written as one that turns: infinite pitch is ω = 0."""
+    finding = Finding(
+        "infinite_pitch",
+        "This joint slides and does not turn: check which of ω and v holds its direction.",
+        "ω is 0, and v is the unit vector of the direction.",
+    )
+    if not case.turns and (np.abs(case.actual[:3]).max(axis=0) > EXACT_VALUE).all():
+        # Whatever was written for ω and v.
+        yield Written(case.actual, finding)
+
+
+def turning_as_sliding(case: WrongScrew) -> Hypotheses:
+    """The axis of a turning joint was written in v."""
+    finding = Finding(
+        "infinite_pitch",
+        "This joint turns and does not slide: check which of ω and v holds its direction.",
+        "ω is the unit vector along the axis, and v = −ω × q.",
+    )
+    if case.turns:
+        yield Written(np.concatenate([0 * case.direction, case.direction]), finding)
+
+
+def exchanged_halves(case: WrongScrew) -> Hypotheses:
+    """V was written in front of ω."""
+    yield Written(np.concatenate([case.expected[3:], case.direction]), EXCHANGED_HALVES)
+
+
+def not_normalised(case: WrongScrew) -> Hypotheses:
+    """ω, or v of a sliding joint, is not of unit length."""
+    letter, unit = ("ω", slice(0, 3)) if case.turns else ("v", slice(3, 6))
+    finding = Finding(
+        "not_normalised",
+        f"The direction is right, but {letter} is not of length 1, as it must be.",
+        f"Divide all six numbers by the length of {letter}.",
+    )
+    factor = (case.actual[unit] * case.expected[unit]).sum(axis=0)
+    if (np.abs(factor) >= EXACT_VALUE).all():
+        yield Written(factor * case.expected, finding)
+
+
+def point_for_velocity(case: WrongScrew) -> Hypotheses:
+    """A point on the axis was written in place of v."""
+    finding = Finding(
+        "point_for_velocity",
+        "v holds a point q on the axis. It must be a velocity, v = −ω × q.",
+    )
+    if case.turns and np.abs(case.moment).max() >= EXACT_VALUE:
+        point = case.actual[3:]
+        of_point = -np.cross(case.direction, point, axis=0)
+        if nearly_equal(of_point, case.moment, case.length_scale).all():
+            yield Written(case.with_velocity(point), finding)
+
+
+def pitch(case: WrongScrew) -> Hypotheses:
+    """The advance along the axis was left out, added, or is another."""
+    if not case.turns:
+        return
+    hint = "The part of v along ω is not right: check the pitch of this joint."
+    along = ((case.actual[3:] - case.moment) * case.direction).sum(axis=0)
+    if np.abs(along - case.pitch).max() >= ROUNDED_VALUE * case.length_scale:
+        velocity = case.moment + along * case.direction
+        yield Written(case.with_velocity(velocity), Finding("pitch", hint, "v = −ω × q + h ω."))
+
+
+def point_off_axis(case: WrongScrew) -> Hypotheses:
+    """The point q that v was taken from does not lie on the axis."""
+    finding = Finding(
+        "point_off_axis",
+        "ω is right, v is not: v = −ω × q needs a point q on this axis. Check the coordinates of q "
+        f"in the {'base' if case.frame == 'space' else 'end-effector'} frame, and the cross "
+        "product.",
+    )
+    along = (case.actual[3:] * case.direction).sum(axis=0)
+    if case.turns and nearly_equal(along, case.pitch, case.length_scale):
+        yield Written(case.with_velocity(case.actual[3:]), finding)
+
+
+def other_direction(case: WrongScrew) -> Hypotheses:
+    """The unit vector lies along another line than the joint."""
+    letter, unit = ("ω", slice(0, 3)) if case.turns else ("v", slice(3, 6))
+    finding = Finding(
+        "other_direction",
+        f"{letter} is not along the axis of this joint: check the axis in the home position.",
+    )
+    length = np.sqrt((case.actual[unit] ** 2).sum(axis=0))
+    along = (case.actual[unit] * case.expected[unit]).sum(axis=0)
+    if nearly_equal(length, np.ones_like(length)) and np.abs(np.abs(along) - 1).max() > EXACT_VALUE:
+        yield Written(case.actual, finding)
+
+
+OF_DIRECTION = (axis_reversed, moment_sign, other_frame)
+OF_HALVES = (sliding_as_turning, turning_as_sliding, exchanged_halves)
+OF_VELOCITY = (point_for_velocity, pitch, point_off_axis)
+MISCONCEPTIONS = (*OF_DIRECTION, *OF_HALVES, not_normalised, *OF_VELOCITY, other_direction)
+
+
+def explain_screw(case: WrongScrew) -> Finding | None:
+    """The finding that explains the whole of a wrong axis; None where it is not all read."""
+    return diagnosed(case, MISCONCEPTIONS) if np.isfinite(case.actual).all() else None

@@ -1,0 +1,170 @@
+"""Tables whose columns stand in another order: θ, d, a, α, or α, a, d, θ.
+
+They have no headers, or their cells were typed one by one under the headers a, α, d, θ.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import permutations
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.catalogue import Joint
+from service.expressions import Expression, Symbol
+from service.grading.diagnosis.formulas.quantity import quantity_of
+from service.grading.diagnosis.tables.intended_table import IntendedTable
+from service.grading.diagnosis.wording import SYMBOLS
+from service.grading.feedback import Finding
+from service.grading.numerics.comparison import difference
+from service.grading.numerics.tolerances import INTENDED_CELL
+from service.grading.part import Grading
+from service.grading.reading.tables.table import IS_ANGLE, StudentRow, StudentTable, values_of
+from service.grading.report import Verdict
+from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D
+
+# The column that each written one is, from left to right.
+Order = tuple[int, ...]
+
+# The orders of the Robotics Toolbox and of Craig: where several read a table alike, one of these.
+_USUAL: Final[tuple[Order, ...]] = ((THETA, D, A, ALPHA), (ALPHA, A, D, THETA))
+# Each column read as the other quantity: an angle for a length.
+_OTHER_QUANTITY: Final[Order] = (ALPHA, A, THETA, D)
+# So many orders may be judged; the first is right almost always.
+_MOST: Final = 2
+
+
+def in_other_orders(table: StudentTable, grading: Grading) -> Iterator[IntendedTable]:
+    """The table with its columns in the orders that suit what is in them, most likely first.
+
+    A column of joint variables is that of θ or d, formulas in lengths are no angles, and those in
+    degrees no lengths. Nothing where that does not tell more than that the columns are in order.
+    Each table is built when it is asked for.
+    """
+    if table.reread is None or _suits(table, grading):
+        return
+    other = table.reread([COLUMNS[column] for column in _OTHER_QUANTITY])
+    if len(other.rows) != len(table.rows):
+        return
+    misfits = _misfits(table, other, grading.exercise.joints)
+    orders = [*_USUAL, *(order for order in permutations(range(4)) if order not in _USUAL)]
+    found = [int(misfits[range(4), order].sum()) for order in orders]
+    if min(found) >= np.trace(misfits):
+        return
+    tried = [table]
+    for order in (
+        order for order, misfit in zip(orders, found, strict=True) if misfit == min(found)
+    ):
+        intended = _reordered(order, table, other)
+        if any(_is_same(intended, one) for one in tried):
+            continue
+        if len(tried) > _MOST:
+            return
+        tried.append(intended)
+        finding = _finding(order, named=table.named)
+        yield IntendedTable(intended, finding, _moved(intended, table))
+
+
+def _suits(table: StudentTable, grading: Grading) -> bool:
+    """Whether plainly no cell misfits its own column, as ``_misfits`` counts.
+
+    Of most wrong tables that is seen without reading their cells as anything else.
+    """
+    sliding = _sliding(grading.exercise.joints)
+    known = grading.exercise.vocabulary.by_name
+    return all(
+        entry.verdict is Verdict.MISSING
+        if entry.expression is None
+        else _suits_column(entry.expression, column, sliding, known)
+        for row in table.rows
+        for column, entry in enumerate(row.entries)
+    )
+
+
+def _suits_column(
+    expression: Expression, column: int, sliding: Mapping[str, bool], known: Mapping[str, Symbol]
+) -> bool:
+    # A name in front of a value has a say in its column.
+    if any(note.code == "equation" for note in expression.notes):
+        return False
+    moving = [sliding[name] for name in expression.symbols if name in sliding]
+    if moving:
+        return column == (D if moving[0] else THETA)
+    if not IS_ANGLE[column]:
+        return expression.source.isdecimal() or quantity_of(expression.tree) != "angle"
+    # As a length it is one only where a length stands in it.
+    return all(name in known and known[name].kind != "length" for name in expression.symbols)
+
+
+def _sliding(joints: Sequence[Joint]) -> dict[str, bool]:
+    """Whether the joint of a variable slides."""
+    return {joint.variable: joint.prismatic for joint in joints}
+
+
+def _misfits(table: StudentTable, other: StudentTable, joints: Sequence[Joint]) -> NDArray[np.int_]:
+    """How many cells of a written column do not suit each column: ``(written, columns)``."""
+    sliding = _sliding(joints)
+    count = np.zeros((len(COLUMNS), len(COLUMNS)), np.int_)
+    for one, two in zip(table.rows, other.rows, strict=True):
+        for place in range(len(COLUMNS)):
+            # As an angle a bare number may have a unit that was not written.
+            as_length = two if IS_ANGLE[place] else one
+            expression = as_length.expressions[_OTHER_QUANTITY[place] if IS_ANGLE[place] else place]
+            if expression is None or expression.source == "0":
+                continue
+            moving = [sliding[name] for name in expression.symbols if name in sliding]
+            if moving:
+                count[place] += np.arange(len(COLUMNS)) != (D if moving[0] else THETA)
+            elif (found := quantity_of(expression.tree)) in ("angle", "length"):
+                count[place] += (found == "angle") != IS_ANGLE
+    return count
+
+
+def _reordered(order: Order, table: StudentTable, other: StudentTable) -> StudentTable:
+    """The table whose written columns are those of ``order``.
+
+    ``other`` is the table read with each column as the other quantity.
+    """
+    rows = tuple(
+        _reordered_row(order, one, two) for one, two in zip(table.rows, other.rows, strict=True)
+    )
+    # The note on the order in which the columns were read holds no longer.
+    findings = tuple(each for each in table.findings if each.code != "column_order")
+    return replace(table, rows=rows, values=values_of(rows), findings=findings)
+
+
+def _reordered_row(order: Order, one: StudentRow, two: StudentRow) -> StudentRow:
+    cells = []
+    for column in range(len(COLUMNS)):
+        place = order.index(column)
+        is_other = IS_ANGLE[place] != IS_ANGLE[column]
+        row, place = (two, _OTHER_QUANTITY[place]) if is_other else (one, place)
+        cells.append((row.entries[place], row.values[place]))
+    entries, values = zip(*cells, strict=True)
+    return StudentRow(entries, np.array(values))
+
+
+def _is_same(one: StudentTable, other: StudentTable) -> bool:
+    return bool(np.nan_to_num(np.abs(one.values - other.values)).max() < INTENDED_CELL)
+
+
+def _moved(intended: StudentTable, table: StudentTable) -> frozenset[tuple[int, int]]:
+    """The cells that hold something else than in the order in which the table is read."""
+    error = np.abs(difference(intended.values, table.values, IS_ANGLE[:, None])).max(axis=-1)
+    return frozenset((i, column) for i, column in np.argwhere(error > INTENDED_CELL).tolist())
+
+
+def _finding(order: Order, *, named: bool) -> Finding:
+    written = ", ".join(SYMBOLS[column] for column in order)
+    advice = (
+        "A table without headers has the order a, α, d, θ: put headers above the columns, or "
+        "change their order."
+    )
+    if named:
+        advice = "Write each parameter under its own header: a, α, d, θ."
+    return Finding(
+        "columns_permuted",
+        f"The columns stand in the order {written}. {advice}",
+        "Write the columns in the order a, α, d, θ.",
+    )

@@ -1,0 +1,120 @@
+"""Slips in the DH row of a transform: a condition overlooked, or the row of something else."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from service.grading.diagnosis.wrong_value import Hypotheses, WrongNumbers
+from service.grading.feedback import Finding
+from service.grading.misconception import Written
+from service.grading.numerics.tolerances import EXACT_VALUE
+from service.grading.reading.tables.table import IS_ANGLE
+from service.kinematics.chain import A
+from service.kinematics.dh import Convention
+from service.kinematics.dh_row import dh1_residual, dh2_residual, row
+from service.kinematics.transforms import Matrices, Numbers, inverse
+
+
+@dataclass(frozen=True)
+class WrongRow(WrongNumbers):
+    """A wrong row ``(4, SAMPLES)`` of a ``transform`` ``(SAMPLES, 4, 4)``."""
+
+    transform: Matrices
+    convention: Convention
+    angle: ClassVar[ArrayLike] = IS_ANGLE[:, None]
+
+    def row_of(self, transform: Matrices, convention: Convention) -> Numbers | None:
+        """The row of another transform or convention, ``(4, SAMPLES)``; None where it has none."""
+        length_scale = float(np.asarray(self.scale)[A])
+        if violated(transform, convention, length_scale):
+            return None
+        return row(transform, convention)
+
+
+def exchanged_parameters(case: WrongRow) -> Hypotheses:
+    """A and d, or α and θ, stand in each other's places."""
+    for names, order in (
+        ("a and d", [2, 1, 0, 3]),
+        ("α and θ", [0, 3, 2, 1]),
+        ("a and d, and α and θ", [2, 3, 0, 1]),
+    ):
+        finding = Finding(
+            "exchanged_parameters",
+            f"{names} are exchanged: a and α are measured along and about x, d and θ along and "
+            f"about z.",
+        )
+        yield Written(case.expected[order], finding)
+
+
+def other_convention(case: WrongRow) -> Hypotheses:
+    """The row is that of the other convention."""
+    other = case.convention.other
+    finding = Finding(
+        "other_convention",
+        f"This is the row of the {other.value} convention; the {case.convention.value} one is "
+        f"asked for.",
+    )
+    found = case.row_of(case.transform, other)
+    if found is not None:
+        yield Written(found, finding)
+
+
+def inverse_row(case: WrongRow) -> Hypotheses:
+    """The row is that of the inverse transform."""
+    finding = Finding(
+        "inverse_transform",
+        "This is the row of the inverse: the transform describes the second frame in the first.",
+    )
+    found = case.row_of(inverse(case.transform), case.convention)
+    if found is not None:
+        yield Written(found, finding)
+
+
+MISCONCEPTIONS = (exchanged_parameters, other_convention, inverse_row)
+
+
+# --- the conditions that a transform with a row meets
+
+
+def axes_named(convention: Convention) -> tuple[str, str]:
+    """The two axes that the conditions are about: x and z."""
+    return ("x1", "z0") if convention is Convention.STANDARD else ("x0", "z1")
+
+
+def violated(transform: Matrices, convention: Convention, length_scale: float) -> list[Finding]:
+    """The findings on the conditions that a transform does not meet; none where it has a row."""
+    x, z = axes_named(convention)
+    row_of_entry, column = (3, 1) if convention is Convention.STANDARD else (1, 3)
+    perpendicular = Finding(
+        "dh_not_perpendicular",
+        f"Check the first DH condition: is {x} perpendicular to {z}? Check the entry in row "
+        f"{row_of_entry}, column {column}.",
+        f"It is not 0, so that {x} is not perpendicular to {z} and there is no row.",
+    )
+    intersecting = Finding(
+        "dh_not_intersecting",
+        f"Check the second DH condition: does the line of {x} meet the line of {z}?",
+        f"It passes {z} at a distance, so that there is no row.",
+    )
+    conditions = (
+        (perpendicular, dh1_residual, EXACT_VALUE),
+        (intersecting, dh2_residual, EXACT_VALUE * length_scale),
+    )
+    return [
+        finding
+        for finding, residual, tolerance in conditions
+        if np.abs(residual(transform, convention)).max() >= tolerance
+    ]
+
+
+def has_a_row(convention: Convention) -> Finding:
+    """The finding on the answer "none" where the transform has a row."""
+    x, z = axes_named(convention)
+    return Finding(
+        "dh_row_exists",
+        f"Check both DH conditions: is {x} perpendicular to {z}, and does the line of {x} meet the "
+        f"line of {z}?",
+        "Both hold, so that there is a row.",
+    )

@@ -1,0 +1,126 @@
+"""Tables whose joint variables are numbered otherwise: from 0, or turning joints by themselves."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from service.catalogue import Joint
+from service.expressions import Vocabulary
+from service.expressions.printing.spelling import Spelling
+from service.grading.diagnosis.tables.intended_table import IntendedTable
+from service.grading.feedback import Finding
+from service.grading.part import Grading
+from service.grading.reading.absent_variables import with_absent_variables
+from service.grading.reading.tables.table import StudentRow, StudentTable, table_values
+
+# What a name stands for by a way of counting: the joint variable that is meant.
+Meanings = Mapping[str, str]
+
+
+def by_other_numbering(table: StudentTable, grading: Grading) -> IntendedTable | None:
+    """The table with each joint variable for the joint that the student counts so.
+
+    None where no other way of counting gives each row the variable of its own joint.
+    """
+    joints = grading.exercise.joints
+    vocabulary = with_absent_variables(grading.exercise.vocabulary)
+    used = [_joint_variables(row, vocabulary) for row in table.rows]
+    if all(not names - {joint.variable} for names, joint in zip(used, joints, strict=False)):
+        return None
+    spelling = grading.spelling(entry for row in table.rows for entry in row.entries)
+    for finding, every_name in _numberings(joints, spelling):
+        meanings = {name: every_name[name] for name in set().union(*used) & every_name.keys()}
+        if not _explains(used, meanings, joints):
+            continue
+        values = table_values(table.rows, grading.samples.renamed(meanings))
+        rows = tuple(
+            replace(row, values=cells, as_written=None)
+            for row, cells in zip(table.rows, values, strict=True)
+        )
+        cells = frozenset(
+            (i, column)
+            for i, row in enumerate(table.rows)
+            for column, each in enumerate(row.expressions)
+            if each is not None and any(meanings.get(name, name) != name for name in each.symbols)
+        )
+        return IntendedTable(replace(table, rows=rows, values=values), finding, cells)
+    return None
+
+
+def _joint_variables(row: StudentRow, vocabulary: Vocabulary) -> set[str]:
+    """The joint variables in a row, those included that the robot does not have."""
+    symbols = set[str]().union(*(each.symbols for each in row.expressions if each is not None))
+    return {name for name in symbols if vocabulary.by_name[name].joint is not None}
+
+
+def _explains(used: Sequence[set[str]], meanings: Meanings, joints: Sequence[Joint]) -> bool:
+    """Whether each row contains the variable of its joint, counted so, and none by its own name.
+
+    One row alone shows a way of counting only by a variable that the robot does not have.
+    """
+    if len(used) < len(joints):
+        return False
+    own = [joint.variable for joint in joints]
+    of_rows = [*own, *[""] * (len(used) - len(own))]
+    meant = [{meanings.get(name, name) for name in names} for names in used]
+    if any(not names <= {name} for names, name in zip(meant, of_rows, strict=True)):
+        return False
+    renamed = [names for names, name in zip(used, of_rows, strict=True) if names - {name}]
+    return len(renamed) > 1 or any(names - set(own) for names in renamed)
+
+
+def _numberings(joints: Sequence[Joint], spelling: Spelling) -> Iterator[tuple[Finding, Meanings]]:
+    """The ways to count the joints, and what the names mean by each."""
+    first = joints[0].index
+    by_index = {joint.index: joint for joint in joints}
+    for start in {0, 1} - {first}:
+        yield (
+            _numbered_from(start, joints[0], spelling),
+            {
+                name: joint.variable
+                for joint in joints
+                for name in _names(joint.index - first + start, by_index)
+            },
+        )
+    for slides_too in (False, True):
+        meanings: dict[str, str] = {}
+        count = {True: 0, False: 0}
+        for joint in joints:
+            count[joint.prismatic] += 1
+            if slides_too or not joint.prismatic:
+                meanings[_name(count[joint.prismatic], by_index, joint.prismatic)] = joint.variable
+        renamed = {variable for name, variable in meanings.items() if name != variable}
+        moved = [joint for joint in joints if joint.variable in renamed]
+        if moved:
+            yield _numbered_by_kind(moved[0], spelling), meanings
+
+
+def _names(index: int, joints: Mapping[int, Joint]) -> tuple[str, str]:
+    """The names of the variable with this index, of a turning joint and of a sliding one."""
+    return _name(index, joints, False), _name(index, joints, True)
+
+
+def _name(index: int, joints: Mapping[int, Joint], slides: bool) -> str:
+    joint = joints.get(index)
+    if joint is not None and joint.prismatic == slides:
+        return joint.variable
+    return f"{'d' if slides else 'theta'}{index}"
+
+
+def _numbered_from(start: int, first: Joint, spelling: Spelling) -> Finding:
+    variable = spelling.names.get(first.variable, first.variable)
+    return Finding(
+        "joint_numbering",
+        f"The joint variables are numbered from {start}. This robot's joints are numbered from "
+        f"{first.index}: the variable of its first joint is {variable}.",
+        f"Add {first.index - start} to the index of each joint variable.",
+    )
+
+
+def _numbered_by_kind(joint: Joint, spelling: Spelling) -> Finding:
+    variable = spelling.names.get(joint.variable, joint.variable)
+    return Finding(
+        "joint_numbering_by_kind",
+        f"Turning and sliding joints are numbered separately. Number all joints together, from the "
+        f"base to the end effector: the variable of joint {joint.index} is {variable}.",
+        "Number turning and sliding joints together.",
+    )

@@ -1,0 +1,210 @@
+"""Slips in whole rows and columns of the robot's table, of which a wrong answer follows.
+
+They change the numbers of the table and no symbols, so they are the same in whatever frames a table
+is right.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Final
+
+import numpy as np
+
+from service.catalogue import Joint
+from service.grading.diagnosis.upstream.slip import CellChange, Slip
+from service.grading.diagnosis.wording import MEASURED, POSITIVE, SYMBOLS
+from service.grading.numerics.tolerances import CONSTANT
+from service.grading.reading.tables.table import IS_ANGLE
+from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D
+from service.kinematics.dh import Convention
+from service.kinematics.transforms import Numbers
+
+ROW_ORDER: Final = "row_order"
+MISSING_LINK: Final = "missing_link"
+PLURALS = ("lengths a", "twists α", "offsets d", "angles θ")
+CHECK_ROWS = "check which joint each row of the table belongs to."
+ONE_CONVENTION = "use the same convention for both."
+MOVE_COLUMNS = "In the other convention a and α stand one row higher or lower."
+
+
+@dataclass(frozen=True, slots=True)
+class TableRows:
+    """The rows of a table: ``constants`` ``(rows, 4)`` at home, at one sample.
+
+    ``joints`` are those of the first rows, ``labels`` the names of all. At ``home`` no joint moves.
+    ``multiplied`` says that the answer is the product of the links, and not the links themselves.
+    """
+
+    constants: Numbers
+    joints: Sequence[Joint]
+    labels: Sequence[str]
+    convention: Convention
+    home: bool = False
+    multiplied: bool = True
+
+    def moves(self, row: int, column: int) -> bool:
+        """Whether a cell contains a joint variable."""
+        if self.home or row >= len(self.joints):
+            return False
+        return column == (D if self.joints[row].prismatic else THETA)
+
+
+def slips_of_rows(rows: TableRows) -> Iterator[Slip]:
+    """The slips in the whole table."""
+    yield from exchanged_throughout(rows)
+    yield from negated_columns(rows)
+    yield from other_table(rows)
+    yield from exchanged_rows(rows)
+    yield from missing_links(rows) if rows.multiplied else other_formula(rows)
+
+
+def exchanged_in_row(
+    row: int, label: str, constants: Sequence[float], *, slides: bool
+) -> Iterator[Slip]:
+    """Exchange a and d in one row; the variable of a joint that ``slides`` may go along."""
+    ways = [False] if abs(constants[A] - constants[D]) > CONSTANT else []
+    for moving in [*ways, True] if slides else ways:
+        yield Slip(
+            "columns_swapped",
+            f"the length a and the offset d are exchanged in row {label}",
+            f"a is measured {MEASURED[A]}, d {MEASURED[D]}.",
+            f"Exchange a and d in row {label}.",
+            cells=_exchanged(row, moving=moving),
+        )
+
+
+def exchanged_throughout(rows: TableRows) -> Iterator[Slip]:
+    """Exchange a and d in all rows."""
+    yield Slip(
+        "columns_swapped",
+        "the lengths a and the offsets d are exchanged throughout",
+        f"a is measured {MEASURED[A]}, d {MEASURED[D]}.",
+        "Exchange a and d in every row.",
+        cells=tuple(cell for i in range(len(rows.constants)) for cell in _exchanged(i)),
+    )
+
+
+def _exchanged(row: int, *, moving: bool = False) -> tuple[CellChange, ...]:
+    return (
+        CellChange(row, A, source=(row, D), moving=moving),
+        CellChange(row, D, source=(row, A), moving=moving),
+    )
+
+
+def negated_columns(rows: TableRows) -> Iterator[Slip]:
+    """One parameter has the wrong sign in all rows; joint variables may have changed along."""
+    for column in range(len(COLUMNS)):
+        cells = rows.constants[:, column]
+        sizes = np.sin(cells) if IS_ANGLE[column] else cells
+        wrong = {i for i, size in enumerate(sizes.tolist()) if abs(size) > CONSTANT}
+        moved = {i for i in range(len(cells)) if rows.moves(i, column)}
+        # In one row alone it is the slip of a cell.
+        if len(wrong) > 1:
+            yield _negated(column, wrong, moving=False)
+        if moved and len(wrong | moved) > 1:
+            yield _negated(column, wrong | moved, moving=True)
+
+
+def _negated(column: int, rows: Iterable[int], *, moving: bool) -> Slip:
+    return Slip(
+        "parameter_sign",
+        f"all {PLURALS[column]} have the wrong sign",
+        f"they are measured {MEASURED[column]}, positive {POSITIVE[column]}.",
+        f"Change the sign of every {SYMBOLS[column]}.",
+        cells=tuple(CellChange(i, column, -1.0, moving=moving) for i in rows),
+    )
+
+
+def other_table(rows: TableRows) -> Iterator[Slip]:
+    """The table was set up in the other convention, where a and α stand one row further.
+
+    A standard table begins on the axis of the first joint. The last row of a modified one, which
+    leads from the last joint to the end effector, may be missing.
+    """
+    last = len(rows.constants) - 1
+    cells: list[CellChange] = []
+    if rows.convention is Convention.STANDARD:
+        moved = [(i + 1, i) for i in range(last)]
+        cells = [cell for i, source in moved for cell in _of_link(i, source)]
+        cells += [CellChange(0, column, 0.0) for column in (A, ALPHA)]
+        if rows.multiplied and np.abs(rows.constants[last, : ALPHA + 1]).max() > CONSTANT:
+            yield _other_table(rows.convention, (*cells, *_of_link(last + 1, last)))
+    elif np.abs(rows.constants[0, : ALPHA + 1]).max() < CONSTANT:
+        cells = [cell for i in range(last) for cell in _of_link(i, i + 1)]
+        cells += [CellChange(last, column, 0.0) for column in (A, ALPHA)]
+    if cells:
+        yield _other_table(rows.convention, tuple(cells))
+
+
+def _of_link(row: int, source: int) -> tuple[CellChange, ...]:
+    """The link's own columns of a row, taken from another."""
+    return tuple(CellChange(row, column, source=(source, column)) for column in (A, ALPHA))
+
+
+def _other_table(convention: Convention, cells: tuple[CellChange, ...]) -> Slip:
+    return Slip(
+        "other_convention",
+        f"a table of the {convention.other} convention is multiplied with the link transform of "
+        f"the {convention} one",
+        ONE_CONVENTION,
+        MOVE_COLUMNS,
+        cells=cells,
+    )
+
+
+def other_formula(rows: TableRows) -> Iterator[Slip]:
+    """The numbers of the table were put into the link transform of the other convention.
+
+    Without twists, that of the modified one is a translation that was not turned (``link_slips``).
+    """
+    has_twists = (np.cos(rows.constants[:, ALPHA]) < 1 - CONSTANT).any()
+    if rows.convention is Convention.STANDARD and not has_twists:
+        return
+    yield Slip(
+        "other_convention",
+        f"the link transform of the {rows.convention.other} convention is used with a table of the "
+        f"{rows.convention} one",
+        ONE_CONVENTION,
+        f"Use the link transform of the {rows.convention} convention.",
+        misread=True,
+    )
+
+
+def exchanged_rows(rows: TableRows) -> Iterator[Slip]:
+    """Two rows stand in each other's places, or all but their joint variables."""
+    count = len(rows.constants)
+    kinds = [joint.prismatic for joint in rows.joints]
+    for i, j in combinations(range(count), 2):
+        labels = f"{rows.labels[i]} and {rows.labels[j]}"
+        # All links in reverse order are told as such a product.
+        if not (rows.multiplied and i == 0 and j == count - 1 <= 2):
+            clause = f"rows {labels}, or their link transforms, are exchanged"
+            yield Slip(ROW_ORDER, clause, CHECK_ROWS, cells=_rows_exchanged(i, j, moving=True))
+        if j < len(kinds) and kinds[i] == kinds[j] and not rows.home:
+            clause = f"rows {labels} are exchanged, but for their joint variables"
+            yield Slip(ROW_ORDER, clause, CHECK_ROWS, cells=_rows_exchanged(i, j, moving=False))
+
+
+def _rows_exchanged(one: int, other: int, *, moving: bool) -> tuple[CellChange, ...]:
+    return tuple(
+        CellChange(row, column, source=(source, column), moving=moving)
+        for row, source in ((one, other), (other, one))
+        for column in range(len(COLUMNS))
+    )
+
+
+def missing_links(rows: TableRows) -> Iterator[Slip]:
+    """One row between the first and the last takes no part in the product.
+
+    It is named only beside rows in another order, where no advice is given.
+    """
+    for row in range(1, len(rows.constants) - 1):
+        yield Slip(
+            MISSING_LINK,
+            f"A{rows.labels[row]} is missing in the product",
+            "",
+            cells=tuple(
+                CellChange(row, column, 0.0, moving=True) for column in range(len(COLUMNS))
+            ),
+        )

@@ -1,0 +1,151 @@
+"""Tables whose joints have lost a degree of freedom that the robot has.
+
+Two joints that turn about one line, or slide along one direction, move the arm as one joint does. A
+degree of freedom is lost wherever joint screws depend on each other that are independent in the
+reference.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.catalogue import Exercise, Joint
+from service.grading.diagnosis.wording import listed
+from service.grading.feedback import Finding
+from service.grading.numerics.joint_motion import changes
+from service.grading.numerics.samples import Samples
+from service.kinematics.chain import THETA, D, Table
+from service.kinematics.dh import Convention
+from service.kinematics.jacobian import Screws, coincident, dependent, rank, space_jacobian
+from service.kinematics.tolerances import SAME_SCREW
+
+# How many samples of each half stand for a generic configuration.
+POSTURES = 2
+# Beside lengths so many times the typical one, what the others do counts as nothing.
+TOO_LONG = 300.0
+
+
+@dataclass(frozen=True, slots=True)
+class _Arm:
+    """Joints and their screws ``(samples, 6, joints)``, in units of the typical length."""
+
+    joints: tuple[Joint, ...]
+    screws: Screws
+
+    def directions(self, i: int) -> NDArray[np.float64]:
+        """The axis of a joint, ``(samples, 3)``."""
+        return self.screws[:, 3:, i] if self.joints[i].prismatic else self.screws[:, :3, i]
+
+
+def lost_freedom(
+    values: Table,
+    joint_rows: Sequence[int | None],
+    convention: Convention,
+    exercise: Exercise,
+    samples: Samples,
+) -> tuple[Finding, ...]:
+    """The findings on joints that share an axis or depend on each other.
+
+    ``values`` is the student's table ``(rows, 4, SAMPLES)`` in ``convention``; a table with NaN,
+    where a cell was not read, or with a length beyond all others has no finding. ``joint_rows``
+    names the row of each of the robot's joints; a joint without a row is left out. One without its
+    variable has a finding in its cell.
+    """
+    table = samples.subset_of(values, POSTURES)
+    if not np.isfinite(table).all():
+        return ()
+    present = [(j, row) for j, row in enumerate(joint_rows) if row is not None]
+    own = [D if joint.prismatic else THETA for joint in exercise.robot.joints]
+    if any(np.abs(changes(table[row, own[j]])).max() < SAME_SCREW for j, row in present):
+        # Other joints may have lost their freedom only because this one stands still.
+        return ()
+    written = _arm(table, convention, present, exercise)
+    if rank(written.screws) == len(present) or np.abs(written.screws).max() > TOO_LONG:
+        return ()
+    subset = samples.subset(POSTURES)
+    reference = exercise.robot.tables[exercise.robot.convention]
+    right = reference.values(subset.values, subset.count)
+    intended = _arm(right, reference.convention, [(j, j) for j, _ in present], exercise)
+    return _shared_axes(written, intended, convention) or _lost_rank(written, intended, convention)
+
+
+def _arm(
+    table: Table, convention: Convention, rows: Sequence[tuple[int, int]], exercise: Exercise
+) -> _Arm:
+    joints = tuple(exercise.robot.joints[j] for j, _ in rows)
+    prismatic = [joint.prismatic for joint in joints]
+    screws = space_jacobian(table, convention, tuple(row for _, row in rows), prismatic)
+    screws[:, 3:] /= np.where(prismatic, 1.0, exercise.length_scale)
+    return _Arm(joints, screws)
+
+
+def _shared_axes(written: _Arm, intended: _Arm, convention: Convention) -> tuple[Finding, ...]:
+    """The finding on each axis that joints share, but do not share in the reference."""
+    joined = np.triu(coincident(written.screws) & ~coincident(intended.screws))
+    findings, done = [], set[int]()
+    for i, others in enumerate(joined):
+        together = [i, *np.flatnonzero(others).tolist()]
+        if len(together) > 1 and not done.intersection(together):
+            done.update(together)
+            findings.append(_one_axis(together, written, intended, convention))
+    return tuple(findings)
+
+
+def _lost_rank(written: _Arm, intended: _Arm, convention: Convention) -> tuple[Finding, ...]:
+    """The finding on joints of which one can do nothing that the others cannot do as well."""
+    if rank(written.screws) >= rank(intended.screws):
+        return ()
+    involved = dependent(written.screws)
+    if involved.sum() < 2:
+        # No joint depends on itself alone, so the samples do not agree on which they are.
+        involved = np.ones_like(involved)
+    names = [str(joint.index) for joint, yes in zip(written.joints, involved, strict=True) if yes]
+    first, *_, last = np.flatnonzero(involved).tolist()
+    finding = Finding(
+        "lost_freedom",
+        f"The axes of joints {listed(names)} leave the arm fewer degrees of freedom than the robot "
+        f"has: check a and α of {_rows_between(first, last, written, convention)}.",
+    )
+    return (finding,)
+
+
+def _one_axis(
+    together: list[int], written: _Arm, intended: _Arm, convention: Convention
+) -> Finding:
+    first, last = together[0], together[-1]
+    motion = "turn about one and the same line"
+    if written.joints[first].prismatic:
+        motion = "slide along one and the same direction"
+    named = listed([str(written.joints[k].index) for k in together])
+    lost, columns, correction = "degrees", "a and α", ""
+    if len(together) == 2:
+        parallel, right = _lie(intended.directions(first), intended.directions(last))
+        lost, columns = "a degree", "a" if parallel else "α"
+        correction = f"The axes of these joints are {right}."
+    return Finding(
+        "lost_freedom",
+        f"Joints {named} {motion}, so the arm has lost {lost} of freedom: check {columns} of "
+        f"{_rows_between(first, last, written, convention)}.",
+        correction,
+    )
+
+
+def _lie(one: NDArray[np.float64], other: NDArray[np.float64]) -> tuple[bool, str]:
+    """Whether two axes ``(samples, 3)`` are parallel throughout, and in words how they lie."""
+    if np.abs(np.cross(one, other)).max() < SAME_SCREW:
+        return True, "parallel, but apart"
+    cosines = np.abs(np.sum(one * other, axis=-1))
+    if np.ptp(cosines) > SAME_SCREW:
+        return False, "not parallel"
+    angle = np.degrees(np.arccos(min(cosines[0], 1.0)))
+    return False, "at right angles" if cosines[0] < SAME_SCREW else f"at an angle of {angle:.4g}°"
+
+
+def _rows_between(i: int, j: int, written: _Arm, convention: Convention) -> str:
+    """The rows whose a and α lead from the axis of joint ``i`` to that of joint ``j``."""
+    # A row holds a and α behind its joint in a standard table, before it in a modified one.
+    shift = int(convention is Convention.MODIFIED)
+    labels = [str(joint.index) for joint in written.joints[i + shift : j + shift]]
+    return f"row {labels[0]}" if len(labels) == 1 else f"rows {listed(labels)}"

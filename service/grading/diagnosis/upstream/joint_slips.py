@@ -1,0 +1,188 @@
+"""Slips in the joint variables and the lengths of a robot, however the robot is described."""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import cache
+from itertools import combinations
+from typing import Final
+
+import numpy as np
+
+from service.catalogue import Exercise, Joint
+from service.grading.diagnosis.upstream.slip import CellChange, Slip, SymbolChange
+from service.grading.numerics.samples import Samples
+from service.grading.numerics.tolerances import SAME_MOTION
+from service.kinematics.transforms import Numbers
+
+Axis = Callable[[Joint], str]
+# The longest robots have a handful of lengths; the pairs of more are not tried.
+MAX_LENGTHS = 12
+HOME_POSITION: Final = "home_position"
+
+
+def joint_slips(moved: Sequence[Joint], joints: Sequence[Joint], axis: Axis) -> Iterator[Slip]:
+    """The slips in the variables of the ``moved`` among all ``joints``.
+
+    ``axis`` says how the axis of a joint points.
+    """
+    for joint in moved:
+        yield counts_the_wrong_way(joint, axis)
+        yield stands_still(joint)
+        kin = [each for each in joints if each.prismatic == joint.prismatic and each != joint]
+        # The nearest first: it is the likeliest to be taken.
+        for other in sorted(kin, key=lambda each: abs(each.index - joint.index)):
+            yield _moves_by_another(joint, other)
+        yield _moves_twice(joint)
+        if not joint.prismatic:
+            yield from _starts_elsewhere(joint)
+
+
+def counts_the_wrong_way(joint: Joint, axis: Axis, *cells: CellChange) -> Slip:
+    """The joint was taken to move in the negative sense of its axis."""
+    verb = "slides" if joint.prismatic else "counts"
+    return Slip(
+        "joint_variable_sign",
+        f"joint {joint.index} {verb} the wrong way",
+        f"check the sign of its variable. {axis(joint)}",
+        f"Change the sign of {{{joint.variable}}} throughout.",
+        symbols=(SymbolChange(joint.variable, joint.variable, -1.0),),
+        cells=cells,
+    )
+
+
+def stands_still(joint: Joint, *cells: CellChange) -> Slip:
+    """The joint's variable was left out, as if the joint could not move."""
+    verb = "moves" if joint.prismatic else "turns"
+    return Slip(
+        "joint_variable_missing",
+        f"joint {joint.index} stands still",
+        f"check what must change with {{{joint.variable}:its variable}}.",
+        f"Joint {joint.index} {verb} with {{{joint.variable}}}.",
+        symbols=(SymbolChange(joint.variable, joint.variable, 0.0),),
+        cells=cells,
+    )
+
+
+def _moves_by_another(joint: Joint, other: Joint) -> Slip:
+    """The variable of another joint was taken."""
+    verb = "moves" if joint.prismatic else "turns"
+    return Slip(
+        "joint_variable_index",
+        f"joint {joint.index} {verb} with {{{other.variable}:another variable}}",
+        f"that is the variable of joint {other.index}.",
+        f"Joint {joint.index} {verb} with {{{joint.variable}}}.",
+        symbols=(SymbolChange(joint.variable, other.variable),),
+    )
+
+
+def _moves_twice(joint: Joint) -> Slip:
+    """The joint variable was counted twice."""
+    verb = "moves" if joint.prismatic else "turns"
+    return Slip(
+        "joint_variable_doubled",
+        f"joint {joint.index} {verb} twice as far as {{{joint.variable}:its variable}}",
+        "count each joint variable once.",
+        f"Joint {joint.index} {verb} by {{{joint.variable}}}.",
+        symbols=(SymbolChange(joint.variable, joint.variable, 2.0),),
+    )
+
+
+def _starts_elsewhere(joint: Joint) -> Iterator[Slip]:
+    """The joint's angle was measured from another zero position."""
+    yield _turned_joint(joint, "quarter_turn", np.pi / 2, "a quarter turn (90°)")
+    yield _turned_joint(joint, "quarter_turn", -np.pi / 2, "a quarter turn (90°)")
+    yield _turned_joint(joint, "half_turn", np.pi, "half a turn (180°)")
+
+
+def _turned_joint(joint: Joint, code: str, turn: float, error: str) -> Slip:
+    return Slip(
+        code,
+        f"joint {joint.index} starts from another position",
+        f"check how the link lies when {{{joint.variable}:its variable}} is 0.",
+        f"{{{joint.variable}}} is off by {error}.",
+        symbols=(SymbolChange(joint.variable, joint.variable, 1.0, turn),),
+    )
+
+
+def home_slip(joints: Sequence[Joint]) -> Iterator[Slip]:
+    """The answer was worked out for the home position."""
+    if len(joints) > 1:
+        yield Slip(
+            HOME_POSITION,
+            "all joints stand in their home position",
+            "the answer must change with the joints.",
+            symbols=tuple(SymbolChange(each.variable, each.variable, 0.0) for each in joints),
+        )
+
+
+def length_slips(lengths: Sequence[str], alone: Iterable[str] = ()) -> Iterator[Slip]:
+    """The slips in lengths by their names; those ``alone`` in a cell are tried with the cell."""
+    in_cells = set(alone)
+    for length in lengths:
+        if length not in in_cells:
+            yield _length_sign(length)
+            yield _length_left_out(length)
+    if len(lengths) <= MAX_LENGTHS:
+        for one, other in combinations(lengths, 2):
+            yield _exchanged(one, other)
+            yield _other_length(one, other)
+            yield _other_length(other, one)
+
+
+def _length_sign(length: str) -> Slip:
+    return Slip(
+        "sign",
+        f"the length {{{length}:of one link}} has the wrong sign",
+        "check along which axis it is measured, and which way.",
+        f"Change the sign of {{{length}}} throughout.",
+        symbols=(SymbolChange(length, length, -1.0),),
+    )
+
+
+def _length_left_out(length: str) -> Slip:
+    return Slip(
+        "distance_left_out",
+        f"the length {{{length}:of one link}} is left out",
+        "check which frames it lies between.",
+        symbols=(SymbolChange(length, length, 0.0),),
+    )
+
+
+def _exchanged(one: str, other: str) -> Slip:
+    return Slip(
+        "lengths_exchanged",
+        f"the lengths {{{one}:of one link}} and {{{other}:of another}} are exchanged",
+        "check which link each of them belongs to.",
+        f"Write {{{one}}} for {{{other}}}, and {{{other}}} for {{{one}}}.",
+        symbols=(SymbolChange(one, other), SymbolChange(other, one)),
+    )
+
+
+def _other_length(right: str, written: str) -> Slip:
+    return Slip(
+        "other_length",
+        f"the length {{{written}:of one link}} stands where another length belongs",
+        "check which link it belongs to.",
+        f"It is {{{right}}}.",
+        symbols=(SymbolChange(right, written),),
+    )
+
+
+def axis_direction(exercise: Exercise, samples: Samples) -> Axis:
+    """How the axis of a joint points at home, as advice; worked out when it is first asked for."""
+
+    @cache
+    def screws() -> Numbers:
+        assert exercise.reference is not None
+        return exercise.reference.screws(samples.values, samples.count)[:, 0]
+
+    def direction(joint: Joint) -> str:
+        first = exercise.joints[0].index - 1
+        screw = screws()[exercise.joints.index(joint)]
+        cosine = screw[5] if joint.prismatic else screw[2]
+        if cosine < -1 + SAME_MOTION:
+            return f"Its axis points opposite to z{first}."
+        if cosine > 1 - SAME_MOTION:
+            return f"Its axis points along z{first}."
+        return "Check which way its axis points."
+
+    return direction

@@ -1,0 +1,151 @@
+"""The answers that slips lead to: worked out again from a changed table, or changed symbols."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from service.catalogue import Exercise, PartSpec, ReferenceTable, Robot, ScrewRobot, grid_values
+from service.catalogue.part import PosePartSpec
+from service.catalogue.robots.robot import at_home
+from service.expressions.evaluation.samples import SymbolValues
+from service.grading.diagnosis.upstream.joint_slips import (
+    axis_direction,
+    home_slip,
+    joint_slips,
+    length_slips,
+)
+from service.grading.diagnosis.upstream.slip import Change, Slip, change_cells, changed_values
+from service.grading.diagnosis.upstream.table_slips import table_slips
+from service.grading.judging.expected import as_entries
+from service.grading.numerics.samples import Samples
+from service.grading.part import Grading
+from service.kinematics.chain import Table, frames
+from service.kinematics.transforms import Numbers, inverse
+
+AnswersAt = Callable[[Sequence[Change], Samples], Numbers]
+
+
+@dataclass(frozen=True)
+class SlippedAnswers:
+    """What the right answer becomes by each of the ``slips``.
+
+    ``at`` gives the answers ``(K, ..., samples)`` that K changes lead to.
+    ``by_symbols`` says that they follow each symbol, and not the joint variables alone.
+    """
+
+    slips: tuple[Slip, ...]
+    at: AnswersAt
+    by_symbols: bool = True
+
+    def of(self, entries: Callable[[Numbers], Numbers]) -> "SlippedAnswers":
+        """Those of some of the entries only: of a position, where these are poses."""
+        return SlippedAnswers(
+            self.slips, lambda changes, samples: entries(self.at(changes, samples))
+        )
+
+
+def slipped_answers(part: PartSpec, grading: Grading) -> SlippedAnswers | None:
+    """The answers to a part; None where neither a robot nor formulas give it.
+
+    They are poses ``(K, 4, 4, samples)``, or ``(K, rows, columns, samples)`` where the part has
+    formulas of its own.
+    """
+    exercise = grading.exercise
+    if grading.following:
+        return None
+    if exercise.formulas.get(part.id) is not None:
+        return _of_formulas(part, exercise, grading.samples)
+    if exercise.reference is None or not isinstance(part, PosePartSpec):
+        return None
+    poses = _of_table if isinstance(exercise.reference, Robot) else _of_screws
+    return poses(part, exercise, grading.samples)
+
+
+def _of_table(part: PosePartSpec, exercise: Exercise, samples: Samples) -> SlippedAnswers:
+    """The poses ``(K, 4, 4, samples)`` of a robot with a table."""
+    robot = exercise.robot
+    table = robot.tables[robot.convention]
+    start, to, last = *map(robot.frame_number, (part.start, part.to)), len(table.rows)
+
+    def values_at(samples: Samples) -> SymbolValues:
+        values = samples.values
+        return at_home(robot.joints, values, samples.count) if part.home else values
+
+    def at(changes: Sequence[Change], samples: Samples) -> Numbers:
+        tables = slipped_tables(table, changes, values_at(samples), samples.count)
+        reached = frames(tables, table.convention)
+        # A slip may add a row at the end.
+        return as_entries(inverse(reached[start]) @ reached[to if to < last else -1])
+
+    few = samples.subset(1)
+    constants = table.values(at_home(robot.joints, few.values, few.count), few.count)
+    axis, whole = axis_direction(exercise, few), (start, to) == (0, last)
+    slips = table_slips(table, constants, axis, home=part.home, whole=whole)
+    return SlippedAnswers(tuple(slips), at)
+
+
+def slipped_tables(
+    table: ReferenceTable, changes: Sequence[Change], values: SymbolValues, count: int
+) -> Table:
+    """The tables ``(rows, 4, K, count)`` that K changes lead to, with as many rows as they need."""
+    changed = changed_values(changes, values)
+    tables = table.values(changed, len(changes) * count).reshape(len(table.rows), 4, -1, count)
+    right = table.values(values, count)
+    constants = table.values(at_home(table.joints, values, count), count)
+    added = max((cell.row + 1 for each in changes for cell in each.cells), default=0) - len(tables)
+    if added > 0:
+        tables, right, constants = (
+            np.concatenate([cells, np.zeros((added, *cells.shape[1:]))])
+            for cells in (tables, right, constants)
+        )
+    change_cells(changes, tables, right, constants)
+    return tables
+
+
+def _of_screws(part: PosePartSpec, exercise: Exercise, samples: Samples) -> SlippedAnswers:
+    """The poses ``(K, 4, 4, samples)`` of a robot that is given by its screws."""
+    robot = exercise.reference
+    assert isinstance(robot, ScrewRobot)
+
+    def pose(values: SymbolValues, count: int) -> Numbers:
+        if part.home:
+            values = at_home(robot.joints, values, count)
+        start, to = (robot.frame(name, values, count) for name in (part.start, part.to))
+        return as_entries(inverse(start) @ to)
+
+    return SlippedAnswers(_general_slips(exercise, samples), _stacked(pose))
+
+
+def _of_formulas(part: PartSpec, exercise: Exercise, samples: Samples) -> SlippedAnswers:
+    """The values ``(K, rows, columns, samples)`` of a part that the exercise gives in formulas."""
+    grid = exercise.formulas[part.id]
+    at = _stacked(lambda values, count: grid_values(grid, values, count))
+    return SlippedAnswers(_general_slips(exercise, samples), at)
+
+
+def _stacked(answer: Callable[[SymbolValues, int], Numbers]) -> AnswersAt:
+    """``answer`` at the values that slips leave, all of them worked out at once."""
+
+    def at(changes: Sequence[Change], samples: Samples) -> Numbers:
+        values = changed_values(changes, samples.values)
+        found = answer(values, len(changes) * samples.count)
+        split = found.reshape(*found.shape[:-1], len(changes), samples.count)
+        return np.moveaxis(split, -2, 0)
+
+    return at
+
+
+def _general_slips(exercise: Exercise, samples: Samples) -> tuple[Slip, ...]:
+    """The slips in the joints and lengths of a robot, however it is described; else none."""
+    joints = exercise.joints
+    if not joints:
+        return ()
+    variables = {joint.variable for joint in joints}
+    lengths = [
+        variable.name
+        for variable in exercise.variables
+        if variable.kind == "length" and variable.name not in variables
+    ]
+    axis = axis_direction(exercise, samples.subset(1))
+    return (*joint_slips(joints, joints, axis), *home_slip(joints), *length_slips(lengths))

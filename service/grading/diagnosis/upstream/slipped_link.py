@@ -1,0 +1,121 @@
+"""The link transforms that slips in their own row lead to, in whatever frames the row is right."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from service.catalogue import Joint, ReferenceTable
+from service.catalogue.robots.robot import at_home
+from service.expressions.evaluation.samples import SymbolValues
+from service.grading.diagnosis.upstream.joint_slips import axis_direction, joint_slips, length_slips
+from service.grading.diagnosis.upstream.slip import Change, change_cells, changed_values
+from service.grading.diagnosis.upstream.slipped_answers import (
+    AnswersAt,
+    SlippedAnswers,
+    slipped_tables,
+)
+from service.grading.diagnosis.upstream.table_slips import lengths_of, row_slips
+from service.grading.judging.expected import as_entries
+from service.grading.judging.own_frames.reference import reference_values
+from service.grading.judging.own_frames.row_roles import variable_column
+from service.grading.numerics.comparison import difference
+from service.grading.numerics.joint_motion import changes
+from service.grading.numerics.samples import SAMPLES, Samples
+from service.grading.numerics.tolerances import SAME_MOTION
+from service.grading.part import Grading
+from service.grading.reading.tables.table import IS_ANGLE
+from service.kinematics.chain import COLUMNS, Table, links
+from service.kinematics.dh import Convention
+from service.kinematics.dh_row import row as dh_row
+from service.kinematics.transforms import Matrices, Numbers
+
+
+def slipped_link(
+    row: int, right: Matrices, convention: Convention, grading: Grading
+) -> SlippedAnswers | None:
+    """The transforms ``(K, 4, 4, samples)`` of one row; ``right`` is ``(SAMPLES, 4, 4)``.
+
+    None where the right one follows from the student's own answer.
+    """
+    if grading.following:
+        return None
+    samples = grading.samples
+    table = grading.exercise.robot.tables[convention]
+    cells = dh_row(right, convention)
+    given = reference_values(table, samples)[row]
+    axis = axis_direction(grading.exercise, samples.subset(1))
+    of_joint = joint_slips(table.joints[row : row + 1], table.joints, axis)
+    if np.abs(difference(cells, given, IS_ANGLE[:, None])).max() < SAME_MOTION:
+        few = samples.subset(1)
+        home = table.values(at_home(table.joints, few.values, few.count), few.count)[row]
+        of_row = row_slips(table, row, home[:, 0].tolist(), axis)
+        of_lengths = length_slips(*lengths_of(table))
+        # In one row alone a length stands in the place of another, and is not exchanged.
+        single = (slip for slip in of_lengths if len(slip.symbols) == 1)
+        return SlippedAnswers((*of_joint, *of_row, *single), _of_reference(table, row))
+    joint = table.joints[row] if row < len(table.joints) else None
+    senses = _senses(cells, joint, samples)
+    constants = cells - _motion(senses, joint, samples.values)
+    of_row = row_slips(table, row, constants[:, 0].tolist(), axis, own_frames=True)
+    at = _of_own_row(row, constants, senses, joint, convention)
+    return SlippedAnswers((*of_joint, *of_row), at, by_symbols=False)
+
+
+def _of_reference(table: ReferenceTable, row: int) -> AnswersAt:
+    """The link transforms of a row of the reference."""
+
+    def at(changes: Sequence[Change], samples: Samples) -> Numbers:
+        tables = slipped_tables(table, changes, samples.values, samples.count)
+        return as_entries(links(tables[row : row + 1], table.convention)[0])
+
+    return at
+
+
+def _of_own_row(
+    row: int, constants: Numbers, senses: Numbers, joint: Joint | None, convention: Convention
+) -> AnswersAt:
+    """Those of a row in other frames, of which the ``constants`` ``(4, SAMPLES)`` are known."""
+
+    def at(changes: Sequence[Change], samples: Samples) -> Numbers:
+        count = samples.count
+        fixed = constants if count == SAMPLES else Samples.subset_of(constants, count // 2)
+        moved = _motion(senses, joint, changed_values(changes, samples.values))
+        right = fixed + _motion(senses, joint, samples.values)
+        rows = np.repeat(fixed[:, None], len(changes), axis=1)
+        rows += moved.reshape(4, -1, count) if joint else 0.0
+        change_cells(changes, rows[None], right[None], fixed[None], first_row=row)
+        return as_entries(links(rows[None], convention)[0])
+
+    return at
+
+
+def constants_and_motion(
+    right: Matrices, convention: Convention, joints: Sequence[Joint], samples: Samples
+) -> tuple[Table, Table]:
+    """The table ``(rows, 4, SAMPLES)`` of right link transforms ``(rows, SAMPLES, 4, 4)``.
+
+    Its constants, and by how much the joints move each cell.
+    """
+    constants, motions = np.empty((2, len(right), len(COLUMNS), samples.count))
+    for i, link in enumerate(right):
+        joint, cells = joints[i] if i < len(joints) else None, dh_row(link, convention)
+        motions[i] = _motion(_senses(cells, joint, samples), joint, samples.values)
+        constants[i] = cells - motions[i]
+    return constants, motions
+
+
+def _motion(senses: Numbers, joint: Joint | None, values: SymbolValues) -> Numbers:
+    """By how much the joint moves each cell, ``(4, ...)``."""
+    return np.multiply.outer(senses, values[joint.variable] if joint else np.zeros(1))
+
+
+def _senses(cells: Numbers, joint: Joint | None, samples: Samples) -> Numbers:
+    """How often each cell ``(4, SAMPLES)`` contains the joint's variable: 0, 1 or −1."""
+    senses = np.zeros(len(cells))
+    if joint is not None:
+        column = variable_column(joint)
+        error = difference(
+            changes(cells[column]), changes(samples.values[joint.variable]), not joint.prismatic
+        )
+        senses[column] = 1.0 if np.abs(error).max() < SAME_MOTION else -1.0
+    return senses

@@ -1,0 +1,1 @@
+"""The valid table nearest to a wrong one."""

@@ -1,0 +1,244 @@
+"""The valid table that a handed-in one is, or that it differs from in one cell or two.
+
+Where base, tool and directions are given, a table is valid if and only if its pose is the
+reference's at all joint values, and every cell moves as its own joint does and not otherwise. So no
+search is needed: the right value of a cell follows from all the others.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import chain
+
+import numpy as np
+
+from service.grading.judging.own_frames.nearest.slip_likelihood import slip_penalty
+from service.grading.judging.own_frames.reference import reference_frames
+from service.grading.judging.own_frames.row_roles import Role, handed_in_values, variables_of
+from service.grading.numerics.comparison import difference
+from service.grading.numerics.joint_motion import changes, moves_with
+from service.grading.numerics.samples import HALF
+from service.grading.numerics.tolerances import SAME_MOTION
+from service.grading.part import Grading
+from service.grading.reading.tables.table import IS_ANGLE
+from service.kinematics.chain import Table, frames, joint_frames
+from service.kinematics.dh import Convention
+from service.kinematics.factors import CellIndex, Factors, factors_of
+from service.kinematics.frames.frame_choice import WRONG_CELL, departure
+from service.kinematics.repairs.cell_repairs import (
+    CellRepair,
+    one_factor_repairs,
+    repaired_values,
+    two_factor_repairs,
+)
+from service.kinematics.tolerances import SAME_POSE
+from service.kinematics.transforms import Matrices, Numbers, inverse
+
+# A subset of the samples, enough to find the cells that repair a table; their values are then
+# computed at all samples.
+SUBSET = 3
+SUBSET_SAMPLES = np.r_[:SUBSET, HALF : HALF + SUBSET]
+MAX_CELLS = 2
+
+
+@dataclass(frozen=True, slots=True)
+class NearestTable:
+    """The valid table nearest to a handed-in one: ``expected`` is ``(rows, 4, SAMPLES)``.
+
+    ``frames`` ``(joints, samples, 4, 4)`` are its frames on the joint axes as seen from the
+    reference's. ``cost`` is that of ``frame_choice``: below 1 the handed-in table is valid.
+    """
+
+    roles: tuple[Role, ...]
+    expected: Table
+    frames: Matrices
+    cost: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Case:
+    """A table to be repaired.
+
+    ``table`` is ``(rows, 4, samples)``. Each cell must change with the joints as its joint variable
+    in ``variables`` does (0 for none); ``wrong`` are the cells that do not.
+    """
+
+    roles: tuple[Role, ...]
+    table: Table
+    variables: Table
+    wrong: frozenset[CellIndex]
+    convention: Convention
+    grading: Grading
+
+    @property
+    def unit(self) -> float:
+        """The unit that poses are compared in."""
+        return self.grading.exercise.length_scale
+
+    @property
+    def reference(self) -> Matrices:
+        """The reference's frames on the axes and its tool's, ``(joints + 1, SAMPLES, 4, 4)``."""
+        return reference_frames(self.grading.exercise, self.convention, self.grading.samples)
+
+    def from_reference(self, reached: Matrices) -> Matrices:
+        """The frames on the joint axes as seen from the reference's; see ``_from_reference``."""
+        return _from_reference(reached, self.roles, self.convention, self.grading)
+
+
+def nearest_by_few_cells(
+    roles: tuple[Role, ...], convention: Convention, grading: Grading
+) -> NearestTable | None:
+    """The table as written, or the valid one that differs from it in one cell or else in two.
+
+    Of several the one that takes the likeliest slip; None if there is none. Every role must have a
+    row.
+    """
+    case = _case(roles, convention, grading)
+    if len(case.wrong) > MAX_CELLS:
+        return None
+    if not case.wrong:
+        reached = frames(case.table, convention)
+        if np.abs(_in_unit(reached[-1] - case.reference[-1], case.unit)).max() < SAME_POSE:
+            on_axes = case.from_reference(reached[:, None, SUBSET_SAMPLES])
+            return NearestTable(roles, case.table, on_axes[:, 0], 0.0)
+    repairs = _repairs(case)
+    return _likeliest(repairs, case) if repairs else None
+
+
+def frames_from_reference(
+    table: Table, roles: tuple[Role, ...], convention: Convention, grading: Grading
+) -> Matrices:
+    """A table's frames on the joint axes as seen from the reference's.
+
+    ``(joints, samples, 4, 4)``, at a subset of the samples.
+    """
+    reached = frames(table[..., SUBSET_SAMPLES], convention)[:, None]
+    return _from_reference(reached, roles, convention, grading)[:, 0]
+
+
+def _from_reference(
+    reached: Matrices, roles: tuple[Role, ...], convention: Convention, grading: Grading
+) -> Matrices:
+    """The frames on the joint axes as seen from the reference's, ``(joints, T, subset, 4, 4)``.
+
+    ``reached`` ``(rows + 1, T, subset, 4, 4)`` are all the frames of T tables.
+    """
+    of_joints = [role.joint is not None for role in roles]
+    on_axes = joint_frames(reached, convention)[of_joints]
+    reference = reference_frames(grading.exercise, convention, grading.samples)
+    return np.asarray(inverse(reference[:-1, SUBSET_SAMPLES])[:, None] @ on_axes)
+
+
+def _case(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> _Case:
+    table = handed_in_values(roles)
+    finite = np.isfinite(table).all(axis=-1)
+    table[~finite] = 0.0
+    variables = variables_of(roles, grading.samples)
+    right = finite & moves_with(table, changes(variables), IS_ANGLE[:, None])
+    wrong = frozenset((i, column) for i, column in np.argwhere(~right).tolist())
+    return _Case(roles, table, variables, wrong, convention, grading)
+
+
+def _repairs(case: _Case) -> list[CellRepair]:
+    """The repairs of the table by one cell; if there are none, those by two."""
+    factors = factors_of(case.table[..., SUBSET_SAMPLES], case.convention, case.unit)
+    pose = _in_unit(case.reference[-1, SUBSET_SAMPLES], case.unit)
+    by_factor = one_factor_repairs(factors, pose)
+    by_one_cell = _admissible(by_factor, 1, case)
+    if by_one_cell:
+        return by_one_cell
+    return _admissible(chain(by_factor, two_factor_repairs(factors, pose)), MAX_CELLS, case)
+
+
+def _admissible(repairs: Iterable[CellRepair], count: int, case: _Case) -> list[CellRepair]:
+    """The repairs of so many cells after which all cells move with the joints as they should.
+
+    Their lengths are in the table's unit.
+    """
+    of_count = (_in_table_unit(repair, case) for repair in repairs if len(repair.cells) == count)
+    return [
+        repair
+        for repair in of_count
+        if case.wrong <= set(repair.cells) and _moves_rightly(repair, case, slice(SUBSET))
+    ]
+
+
+def _likeliest(repairs: Sequence[CellRepair], case: _Case) -> NearestTable | None:
+    """The table repaired, by the repair that takes the likeliest slip.
+
+    Frames near the reference's come first, and the search ends where the frames alone cost more
+    than the best repair so far.
+    """
+    tables = np.repeat(case.table[:, :, None, SUBSET_SAMPLES], len(repairs), axis=2)
+    for k, repair in enumerate(repairs):
+        _fill(tables[:, :, k], repair)
+    on_axes = case.from_reference(frames(tables, case.convention))
+    departures = departure(on_axes.reshape(-1, *on_axes.shape[2:]), case.unit)
+    departures = departures.reshape(on_axes.shape[:2]).sum(axis=0)
+    factors = factors_of(case.table, case.convention, case.unit)
+    best = None
+    for k in np.argsort(departures, kind="stable").tolist():
+        cells = repairs[k].cells
+        cost = WRONG_CELL * len(cells) + float(departures[k])
+        if best is not None and cost >= best.cost:
+            break
+        table = _repaired(cells, factors, case)
+        if table is None:
+            continue
+        if len(repairs) > 1:
+            cost += sum(_penalty(cell, table, case) for cell in cells)
+        if best is None or cost < best.cost:
+            best = NearestTable(case.roles, table, on_axes[:, k], cost)
+    return best
+
+
+def _penalty(cell: CellIndex, repaired: Table, case: _Case) -> float:
+    """How unlikely the slip is that made this cell wrong."""
+    right = _constant(repaired[cell], cell, case)
+    written = None if cell in case.wrong else _constant(case.table[cell], cell, case)
+    return slip_penalty(written, right, bool(IS_ANGLE[cell[1]]), case.grading)
+
+
+def _constant(values: Numbers, cell: CellIndex, case: _Case) -> Numbers:
+    """A cell that moves as it should, less its joint's variable, whose sign may be either."""
+    variable: Numbers = case.variables[cell]
+    error = np.abs(difference(changes(values), changes(variable), IS_ANGLE[cell[1]]))
+    return values - variable if error.max() < SAME_MOTION else values + variable
+
+
+def _repaired(cells: Sequence[CellIndex], factors: Factors, case: _Case) -> Table | None:
+    """The table with these cells repaired, ``(rows, 4, SAMPLES)``; None where that fails."""
+    values = repaired_values(factors, _in_unit(case.reference[-1], case.unit), cells)
+    if values is None:
+        return None
+    repair = _in_table_unit(CellRepair(tuple(cells), values), case)
+    if not _moves_rightly(repair, case, slice(None)):
+        return None
+    table = case.table.copy()
+    _fill(table, repair)
+    return table
+
+
+def _moves_rightly(repair: CellRepair, case: _Case, samples: slice) -> bool:
+    """Whether each value changes with the joints as its cell should."""
+    return all(
+        moves_with(value, changes(case.variables[cell])[samples], IS_ANGLE[cell[1]])
+        for cell, value in zip(repair.cells, repair.values, strict=True)
+    )
+
+
+def _fill(table: Table, repair: CellRepair) -> None:
+    """Write the values of a repair into their cells of a table ``(rows, 4, samples)``."""
+    for cell, value in zip(repair.cells, repair.values, strict=True):
+        table[cell] = value
+
+
+def _in_table_unit(repair: CellRepair, case: _Case) -> CellRepair:
+    """A repair in the unit that poses are compared in, in the unit of the table."""
+    units = [[1.0 if IS_ANGLE[column] else case.unit] for _, column in repair.cells]
+    return CellRepair(repair.cells, repair.values * np.array(units))
+
+
+def _in_unit(pose: Matrices, unit: float) -> Matrices:
+    measured = pose.copy()
+    measured[..., :3, 3] /= unit
+    return measured

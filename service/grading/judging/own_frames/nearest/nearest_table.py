@@ -1,0 +1,199 @@
+"""The valid table nearest to a handed-in one, where it is known which row is for which joint."""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.grading.judging.own_frames.base_frame import possible_bases
+from service.grading.judging.own_frames.constants import row_constants
+from service.grading.judging.own_frames.nearest.few_cells import (
+    NearestTable,
+    frames_from_reference,
+    nearest_by_few_cells,
+)
+from service.grading.judging.own_frames.nearest.one_cell import one_cell_match
+from service.grading.judging.own_frames.reference import (
+    Mechanism,
+    as_table,
+    frames_on_axes,
+    mechanism_at,
+    reference_frames,
+    regrouped,
+)
+from service.grading.judging.own_frames.row_roles import (
+    FrameFreedom,
+    Role,
+    handed_in_values,
+    joint_cells,
+)
+from service.grading.judging.own_frames.validity import targets_of, valid_tables
+from service.grading.judging.own_frames.written_table import (
+    MISCONCEPTIONS,
+    WrittenTable,
+    written_table,
+)
+from service.grading.misconception import hypotheses_of
+from service.grading.numerics.tolerances import INTENDED_POSE, UNCHANGED_CELL
+from service.grading.part import Grading
+from service.kinematics.chain import Table
+from service.kinematics.dh import Convention
+from service.kinematics.frames.chain_match import (
+    ChainMatch,
+    RowConstants,
+    Target,
+    match_as_written,
+    match_tables,
+)
+from service.kinematics.frames.frame_choice import WRONG_CELL
+from service.kinematics.frames.frame_choice import nearest_table as search_nearest_table
+from service.kinematics.frames.reversed_chain import (
+    reversed_cells,
+    reversed_rows,
+    reversed_targets,
+)
+from service.kinematics.tolerances import PARALLEL
+
+
+def nearest_for_roles(
+    roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
+) -> NearestTable:
+    """The valid table nearest to the one handed in, its rows taken for ``roles``."""
+    if freedom == FrameFreedom() and all(role.row is not None for role in roles):
+        nearest = nearest_by_few_cells(roles, convention, grading)
+        nearest = nearest or _as_intended(roles, convention, freedom, grading)
+        if nearest is not None:
+            return nearest
+    return _link_by_link(roles, convention, freedom, grading)
+
+
+def _as_intended(
+    roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
+) -> NearestTable | None:
+    """The table without a mistake of convention or of the unit of all angles, if that is valid.
+
+    Such a slip makes most cells wrong at once. The intended table is known all the same, and so is
+    the right value of each cell: nothing has to be guessed from the cells that agree with some
+    valid table.
+    """
+    values = handed_in_values(roles)
+    if not np.isfinite(values).all():
+        return None
+    exercise, samples = grading.exercise, grading.samples
+    handed_in = written_table(values, convention, None, exercise.robot.joints, samples)
+    for repaired in hypotheses_of(handed_in, MISCONCEPTIONS):
+        table = repaired.answer
+        [valid] = valid_tables(
+            table.values[None], roles, table.convention, freedom, exercise, samples, INTENDED_POSE
+        )
+        intended = in_convention(table, convention) if valid else None
+        if intended is not None:
+            frames = frames_from_reference(intended, roles, convention, grading)
+            changed = np.abs(intended - values).max(axis=-1) > UNCHANGED_CELL
+            cost = WRONG_CELL * max(1, int(np.count_nonzero(changed)))
+            return NearestTable(roles, intended, frames, cost)
+    return None
+
+
+def in_convention(table: WrittenTable, convention: Convention) -> Table | None:
+    """The same chain in a convention, ``(rows, 4, samples)``; None where that takes other rows."""
+    links = regrouped(table.values, table.convention)
+    left_out = links[0] if convention is Convention.STANDARD else links[-1, :2]
+    return None if left_out.any() else as_table(links, convention)
+
+
+def _link_by_link(
+    roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
+) -> NearestTable:
+    """The nearest valid table with any freedom, found by comparing the links between the axes.
+
+    It is the table as written; or else it differs in one cell; or else a search finds it.
+    """
+    exercise, samples = grading.exercise, grading.samples
+    mechanism = mechanism_at(exercise, samples)
+    targets = targets_of(roles, convention, mechanism, freedom)
+    rows = row_constants(roles, exercise.robot.joints, convention, samples)
+    match = _as_written(rows, targets, roles, mechanism, freedom, exercise.length_scale)
+    if match is None and freedom != FrameFreedom() and all(role.row for role in roles):
+        match = one_cell_match(rows, targets, roles, convention, freedom, grading)
+    if match is None:
+        match = _searched(rows, targets, roles, mechanism, freedom, exercise.length_scale)
+    # What each cell should be: the constants and the joint variables.
+    expected = np.tile(as_table(match.rows, convention), 2)
+    for (i, column), joint in joint_cells(roles).items():
+        sign = (freedom.directions and rows[i + 1].joint_sign) or match.joint_signs[i]
+        expected[i, column] += sign * samples.values[joint.variable]
+    frames = frames_on_axes(match.relative_poses, match.rows, roles, convention, mechanism)
+    return NearestTable(roles, expected, frames, match.cost)
+
+
+def _as_written(
+    rows: list[RowConstants],
+    targets: list[Target],
+    roles: tuple[Role, ...],
+    mechanism: Mechanism,
+    freedom: FrameFreedom,
+    scale: float,
+) -> ChainMatch | None:
+    """The table as written, if it is valid from any base that is possible."""
+    written = np.array([row.written for row in rows])
+    signs = np.array([row.joint_sign for row in rows])
+    for base in possible_bases(written, signs, roles, mechanism, freedom):
+        match = match_as_written(
+            rows, targets, scale, directions_given=not freedom.directions, start=base
+        )
+        if match is not None:
+            return match
+    return None
+
+
+def _searched(
+    rows: list[RowConstants],
+    targets: list[Target],
+    roles: tuple[Role, ...],
+    mechanism: Mechanism,
+    freedom: FrameFreedom,
+    scale: float,
+) -> ChainMatch:
+    """The nearest valid table by a search: from the base, or from the tool if that alone is given.
+
+    Where both are free, the search takes the base to be wherever each row needs it. So a table in
+    which it finds nothing wrong, but for rounding, is searched again from each possible base.
+    """
+    search = partial(
+        search_nearest_table, length_scale=scale, directions_given=not freedom.directions
+    )
+    if not freedom.base:
+        return search(rows, targets)
+    if freedom.tool:
+        match = search(rows, targets, base_given=False)
+        if match.cost >= WRONG_CELL:
+            return match
+    else:
+        seen_from_tool = reversed_targets(targets, mechanism.offsets)
+        match = search(reversed_rows(rows), seen_from_tool)
+        match = replace(match, rows=-reversed_cells(match.rows))
+    signs = np.array([row.joint_sign for row in rows])
+    bases = possible_bases(match.rows, signs, roles, mechanism, freedom)
+    if freedom.tool:
+        return min((search(rows, targets, start=base) for base in bases), key=lambda m: m.cost)
+    [base] = bases
+    _, poses = match_tables(match.rows[None], 0 * signs[None], targets, scale, start=base)
+    return replace(match, relative_poses=poses[:, 0])
+
+
+def parallel_neighbours(
+    roles: tuple[Role, ...], convention: Convention, grading: Grading
+) -> NDArray[np.bool_]:
+    """Which rows' axes are parallel to the axis before or after, so that offsets along them add up.
+
+    ``(rows,)``.
+    """
+    reference = reference_frames(grading.exercise, convention, grading.samples)
+    axes = reference[:, :2, :3, 2]
+    parallel = np.abs(np.cross(axes[:-1], axes[1:])).max(axis=(1, 2)) < PARALLEL
+    # The tool's axis counts only if there is a row whose d lies along it.
+    parallel[-1] &= roles[-1].joint is None
+    of_joints = iter((parallel | np.append(False, parallel[:-1])).tolist())
+    return np.array([role.joint is not None and next(of_joints) for role in roles])

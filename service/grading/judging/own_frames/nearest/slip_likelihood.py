@@ -1,0 +1,77 @@
+"""Which of several slips is the likeliest, where each of them alone explains a wrong table.
+
+On parallel axes, and around sliding joints, one slip can often be repaired in another cell than the
+one that it was made in. A repair is likely if the right value is a simple one, and if the slip is
+of a kind that students make: a sign, a value forgotten, a quarter turn, something added that does
+not belong there, a joint variable missing or misplaced.
+"""
+
+import numpy as np
+
+from service.grading.formula_text import multiples
+from service.grading.numerics.comparison import difference
+from service.grading.numerics.samples import HALF
+from service.grading.numerics.tolerances import SAME_TERM
+from service.grading.part import Grading
+from service.kinematics.transforms import Numbers
+
+# Costs that are far below that of a wrong cell; an unknown slip costs less than a moved frame.
+TERM = 0.002
+UNKNOWN_SLIP = 0.010
+
+# How many terms a constant counts for that is no sum of letters and a number.
+UNRELATED = 4
+
+
+def slip_penalty(written: Numbers | None, right: Numbers, angle: bool, grading: Grading) -> float:
+    """How unlikely the slip is that wrote one constant ``(SAMPLES,)`` for another; at least 0.
+
+    ``written`` is None where the cell moves otherwise than it should, or could not be read: then
+    the slip is in the joint variable.
+    """
+    right_terms = _terms(right, angle, grading)
+    penalty = TERM * _count(right_terms)
+    if written is None or _is_turn(written, right, angle):
+        return penalty
+    terms = _terms(written, angle, grading)
+    if terms == {} or _count(terms) > _count(right_terms):
+        return penalty
+    if terms is not None and right_terms is not None and _sizes(terms) == _sizes(right_terms):
+        return penalty
+    return penalty + UNKNOWN_SLIP
+
+
+def _is_turn(written: Numbers, right: Numbers, angle: bool) -> bool:
+    """Whether an angle is wrong by a quarter turn, by half a turn, or by its sign."""
+    if not angle:
+        return False
+    turns = [written - right + turn for turn in (np.pi / 2, np.pi, -np.pi / 2)]
+    error = np.abs(difference(np.array([*turns, written + right]), np.zeros(1), angle))
+    return bool(error.max(axis=-1).min() < SAME_TERM)
+
+
+# Letters with their multiples, a number under "".
+_Terms = dict[str, float]
+
+
+def _terms(constant: Numbers, angle: bool, grading: Grading) -> _Terms | None:
+    """The constant as a sum of letters and a number, without quarter turns; None if it is none."""
+    found = multiples(constant[:HALF], angle, grading.exercise, grading.samples)
+    if found is None:
+        return None
+    letters, number = found
+    if angle:
+        number -= np.pi / 2 * round(number / (np.pi / 2))
+    rest = {"": float(number)} if abs(number) > SAME_TERM else {}
+    return {letter: float(share) for share, letter in letters} | rest
+
+
+def _count(terms: _Terms | None) -> float:
+    """How many terms a sum has; 2*l1 counts as two."""
+    if terms is None:
+        return UNRELATED
+    return sum(abs(share) if letter else 1.0 for letter, share in terms.items())
+
+
+def _sizes(terms: _Terms) -> dict[str, float]:
+    return {letter: round(abs(share), 6) for letter, share in terms.items()}

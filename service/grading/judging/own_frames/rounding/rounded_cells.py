@@ -1,0 +1,306 @@
+"""Rounded decimals of a whole table, moved until the table is valid.
+
+A table in frames of one's own has no expected cells, and one that is computed from rounded numbers
+is not valid. But each decimal stands for one number that is at most a unit of its last place away
+(``comparison``). So this looks for shifts of all of them at once, after which the table is valid:
+the errors of the chain at its targets (``kinematics.chain_match``) depend on the shifts all but
+linearly. Each decimal keeps to its own unit. Hence no wrong number hides behind a longer one, and
+in a row of parallel axes it does not matter which offset was rounded.
+
+A free base may then lie a little otherwise, and the right value of a wrong cell is not known: both
+are unknowns as well, and may have another value for each set of links.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from service.grading.judging.own_frames.base_frame import possible_bases
+from service.grading.judging.own_frames.constants import row_constants
+from service.grading.judging.own_frames.nearest.few_cells import NearestTable, frames_from_reference
+from service.grading.judging.own_frames.reference import mechanism_at, regrouped, tool_pose
+from service.grading.judging.own_frames.rounding.rounded_angles import (
+    known_angles,
+    with_exact_angles,
+)
+from service.grading.judging.own_frames.row_roles import FrameFreedom, Role, handed_in_values
+from service.grading.judging.own_frames.validity import targets_of
+from service.grading.numerics.comparison import (
+    SharedDecimals,
+    difference_steps,
+    fitted_unknowns,
+    nearly_equal,
+)
+from service.grading.numerics.samples import HALF, SAMPLES
+from service.grading.numerics.tolerances import EXACT_VALUE
+from service.grading.part import Grading
+from service.grading.reading.tables.table import IS_ANGLE
+from service.kinematics.chain import COLUMNS, Table, pose
+from service.kinematics.dh import Convention
+from service.kinematics.factors import CellIndex
+from service.kinematics.frames.chain_match import Target, match_tables, misfits
+from service.kinematics.frames.frame_choice import WRONG_CELL
+from service.kinematics.tolerances import SAME_POSE
+from service.kinematics.transforms import Matrices, Numbers, rot_x, rot_y, rot_z
+
+# Sets of links that tell the letters of a formula apart, if nothing but decimals is unknown.
+LINKS = 6
+# The unit of the unknowns that are no shifts: an angle, and the same part of the typical length.
+SMALL = 1e-2
+TWIST = 6
+# So many wrong cells may have any value; where there are more, all cells can be made to fit.
+MOST_UNKNOWN = 6
+# A decimal without effect has some size.
+LEAST_SIZE = 1e-16
+
+
+@dataclass(frozen=True, slots=True)
+class _Chain:
+    """A table to be made valid, at L sets of links.
+
+    ``links`` ``(rows + 1, 4, L)`` are its constants, regrouped; ``values`` ``(rows, 4, SAMPLES)``
+    its cells. ``base`` ``(L, 4, 4)`` is near to where its frame 0 lies, None where that is given.
+    The cells ``unknown`` may have any value.
+    """
+
+    links: Table
+    values: Table
+    targets: Sequence[Target]
+    base: Matrices | None
+    unknown: Sequence[CellIndex]
+    decimals: SharedDecimals
+    convention: Convention
+    length_scale: float
+
+    @property
+    def free(self) -> int:
+        """How many unknowns there are for each set of links."""
+        return len(self.unknown) + (TWIST if self.base is not None else 0)
+
+    def misfits(self, shifts: Numbers, free: Numbers) -> Numbers:
+        """The errors at the targets ``(K, n, L)``.
+
+        For shifts ``(K, count)`` of the decimals and the other unknowns ``(K, free, L)``.
+        """
+        count = self.links.shape[-1]
+        cells = self.values.reshape(-1, SAMPLES)
+        moved = (self.decimals.shifted(shifts, cells) - cells)[..., :count]
+        moved = moved.reshape(len(shifts), *self.values.shape[:2], count)
+        for i, (row, column) in enumerate(self.unknown):
+            unit = SMALL if IS_ANGLE[column] else SMALL * self.length_scale
+            moved[:, row, column] += unit * free[:, i]
+        links = self.links + _regrouped(moved, self.convention)
+        start = None if self.base is None else self._twisted(free[:, -TWIST:])
+        no_signs = np.zeros(links.shape[:2], dtype=np.int_)
+        _, poses = match_tables(links, no_signs, self.targets, self.length_scale, start=start)
+        return misfits(poses, self.targets, self.length_scale)
+
+    def _twisted(self, twist: Numbers) -> Matrices:
+        """The base ``(K, L, 4, 4)``, turned and moved a little: ``twist`` is ``(K, 6, L)``."""
+        assert self.base is not None
+        about_x, about_y, about_z = np.moveaxis(SMALL * twist[:, :3], 1, 0)
+        turn = rot_x(about_x) @ rot_y(about_y) @ rot_z(about_z)
+        turn[..., :3, 3] = np.swapaxes(SMALL * self.length_scale * twist[:, 3:], 1, 2)
+        return np.asarray(turn @ self.base)
+
+    def _sizes(self) -> Numbers:
+        """By how much a unit of each decimal changes its own cell, at most: ``(count,)``."""
+        cells = self.values.reshape(-1, SAMPLES)
+        moved = self.decimals.shifted(np.eye(self.decimals.count), cells) - cells
+        lengths = np.tile(np.where(IS_ANGLE, 1.0, self.length_scale), len(self.values))
+        largest: Numbers = np.abs(moved / lengths[:, None]).max(axis=(1, 2))
+        return np.maximum(largest, LEAST_SIZE)
+
+    def fit(self) -> tuple[Numbers, Numbers] | None:
+        """The shifts ``(count,)`` and other unknowns ``(free, L)`` that leave no error."""
+        count, sets = self.decimals.count, self.links.shape[-1]
+        sizes = np.concatenate([self._sizes(), np.full(self.free, SMALL)])
+        steps = difference_steps(sizes)
+        ways = np.concatenate([np.diag(steps), -np.diag(steps), np.zeros((1, len(steps)))])
+
+        def split(unknowns: Numbers) -> tuple[Numbers, Numbers]:
+            return unknowns[:count], unknowns[count:].reshape(self.free, sets)
+
+        def linearised(unknowns: Numbers) -> tuple[Numbers, Numbers]:
+            shifts, free = split(unknowns)
+            found = self.misfits(ways[:, :count] + shifts, ways[:, count:, None] + free)
+            rates = found[: len(steps)] - found[len(steps) : -1]
+            rates /= 2 * steps[:, None, None]
+            # Each of the other unknowns acts at its own set of links alone.
+            own = np.einsum("fnl,lk->flnk", rates[count:], np.eye(sets))
+            size = found[-1].size
+            columns = [rates[:count].reshape(count, size), own.reshape(self.free * sets, size)]
+            return found[-1].ravel(), np.concatenate(columns).T
+
+        sizes = np.concatenate([sizes[:count], np.full(self.free * sets, SMALL)])
+        found = fitted_unknowns(linearised, sizes, count, EXACT_VALUE)
+        return None if found is None else split(found)
+
+
+def _regrouped(tables: Numbers, convention: Convention) -> Numbers:
+    """``regrouped`` for many tables, ``(K, rows, 4, L)``."""
+    return np.moveaxis(regrouped(np.moveaxis(tables, 0, -1), convention), -1, 0)
+
+
+def with_true_numbers(
+    roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
+) -> tuple[Role, ...]:
+    """The same roles with their decimals moved so that the table is valid, if that can be.
+
+    ``as_written`` of the rows has the others. ``roles`` themselves where the table is valid already
+    (or its angles were made exact, ``rounded_angles``), or no shifts make it valid.
+    """
+    written, known = _with_known_angles(roles, grading)
+    decimals = _decimals(written, grading, known)
+    if decimals is None or _has_pose(roles, convention, grading):
+        return roles
+    for chain in _chains(written, roles, convention, freedom, decimals, grading):
+        found = chain.fit()
+        if found is not None:
+            return _moved(written, decimals, found[0])
+    return roles
+
+
+def with_rounded_cells(
+    nearest: NearestTable, convention: Convention, freedom: FrameFreedom, grading: Grading
+) -> NearestTable:
+    """The nearest table of one that has wrong cells, computed from what its decimals stand for.
+
+    It was computed from the numbers as written, so that the right cells, too, seem a little off.
+    """
+    roles = nearest.roles
+    if nearest.cost < WRONG_CELL:
+        return nearest
+    written, known = _with_known_angles(roles, grading)
+    if _decimals(written, grading, known) is None:
+        return nearest
+    handed_in, scale = handed_in_values(written), grading.exercise.length_scale
+    scales = np.where(IS_ANGLE, 1.0, scale)
+    near = nearly_equal(handed_in, nearest.expected, scales, IS_ANGLE[:, None])
+    unknown = [(i, column) for i, column in np.argwhere(~near).tolist()]
+    decimals = _decimals(written, grading, [*known, *unknown])
+    if decimals is None:
+        return nearest
+    if len(unknown) > MOST_UNKNOWN:
+        return nearest
+    start = handed_in.copy()
+    for cell in unknown:
+        start[cell] = nearest.expected[cell]
+    started = tuple(
+        replace(role, row=replace(role.row, values=values)) if role.row else role
+        for role, values in zip(written, start, strict=True)
+    )
+    for chain in _chains(started, started, convention, freedom, decimals, grading, unknown):
+        found = chain.fit()
+        if found is None:
+            continue
+        shifts, others = found
+        expected = _shifted(decimals, shifts, handed_in)
+        for i, cell in enumerate(unknown):
+            unit = SMALL if IS_ANGLE[cell[1]] else SMALL * scale
+            expected[cell] = start[cell] + np.resize(unit * others[i], SAMPLES)
+        frames = nearest.frames
+        if not freedom.base:
+            frames = frames_from_reference(expected, started, convention, grading)
+        return replace(nearest, expected=expected, frames=frames)
+    return nearest
+
+
+def _decimals(
+    roles: tuple[Role, ...], grading: Grading, left_out: Sequence[CellIndex]
+) -> SharedDecimals | None:
+    """The rounded decimals of a whole table; None where it has none, or is not whole."""
+    rows = [role.row for role in roles if role.row is not None]
+    if len(rows) < len(roles) or not any(row.has_decimal for row in rows):
+        return None
+    if not np.isfinite(handed_in_values(roles)).all():
+        return None
+    expressions = [each for row in rows for each in row.expressions]
+    for i, column in left_out:
+        expressions[len(COLUMNS) * i + column] = None
+    decimals = SharedDecimals(expressions, grading.samples)
+    # A number with so many figures that rounding does not show is exact.
+    return decimals if decimals.units.max(initial=0.0) > EXACT_VALUE else None
+
+
+def _has_pose(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> bool:
+    """Whether the table leads to the tool, at one sample: then most likely it is valid."""
+    reached = pose(handed_in_values(roles)[..., 0], convention)
+    error = np.abs(reached - tool_pose(grading.exercise, grading.samples)[0])
+    return bool(error.max() < SAME_POSE * max(1.0, grading.exercise.length_scale))
+
+
+def _with_known_angles(
+    roles: tuple[Role, ...], grading: Grading
+) -> tuple[tuple[Role, ...], list[CellIndex]]:
+    """The roles as they were written, but for the rounded angles that must be exact, and these."""
+    exercise, samples = grading.exercise, grading.samples
+    written = _as_written(roles)
+    known = [(i, column) for i, column in np.argwhere(known_angles(written, exercise, samples))]
+    return (with_exact_angles(written, exercise, samples) if known else written), known
+
+
+def _as_written(roles: tuple[Role, ...]) -> tuple[Role, ...]:
+    return tuple(
+        role
+        if role.row is None or role.row.is_exact
+        else replace(role, row=replace(role.row, values=role.row.handed_in, as_written=None))
+        for role in roles
+    )
+
+
+def _chains(
+    roles: tuple[Role, ...],
+    based_on: tuple[Role, ...],
+    convention: Convention,
+    freedom: FrameFreedom,
+    decimals: SharedDecimals,
+    grading: Grading,
+    unknown: Sequence[CellIndex] = (),
+) -> list[_Chain]:
+    """The table from each possible base; these are found from the roles ``based_on``."""
+    exercise, samples = grading.exercise, grading.samples
+    mechanism = mechanism_at(exercise, samples)
+    rows = row_constants(roles, exercise.robot.joints, convention, samples)
+    if any(row.wrong_regardless.any() for row in rows):
+        return []
+    links = np.array([row.written for row in rows])
+    signs = np.array([row.joint_sign for row in rows])
+    bases: list[Matrices | None] = [None]
+    if freedom.base:
+        near = row_constants(based_on, exercise.robot.joints, convention, samples)
+        of_base = np.array([row.written for row in near])
+        bases = list(possible_bases(of_base, signs, based_on, mechanism, freedom))
+    has_letters = any(variable.joint is None for variable in exercise.variables)
+    count = (HALF if unknown else LINKS) if has_letters else 1
+    return [
+        _Chain(
+            links[..., :count],
+            handed_in_values(roles),
+            targets_of(roles, convention, mechanism, freedom),
+            None if base is None else base[:count],
+            unknown,
+            decimals,
+            convention,
+            exercise.length_scale,
+        )
+        for base in bases
+    ]
+
+
+def _shifted(decimals: SharedDecimals, shifts: Numbers, values: Table) -> Table:
+    """The cells ``(rows, 4, SAMPLES)`` with their decimals shifted."""
+    moved: Table = decimals.shifted(shifts[None], values.reshape(-1, SAMPLES))[0]
+    return moved.reshape(values.shape)
+
+
+def _moved(roles: tuple[Role, ...], decimals: SharedDecimals, shifts: Numbers) -> tuple[Role, ...]:
+    """The roles with their decimals shifted; ``as_written`` of their rows has the others."""
+    values = _shifted(decimals, shifts, handed_in_values(roles))
+    return tuple(
+        replace(role, row=replace(role.row, values=moved, as_written=role.row.handed_in))
+        if role.row and np.abs(moved - role.row.values).max() > 0
+        else role
+        for role, moved in zip(roles, values, strict=True)
+    )

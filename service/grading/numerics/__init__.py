@@ -1,0 +1,1 @@
+"""Numbers at random joint values, and the tolerances for comparing them."""

@@ -1,0 +1,81 @@
+"""How values change with the joints, at the same links."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from service.catalogue import Joint
+from service.grading.numerics.comparison import difference
+from service.grading.numerics.samples import Samples
+from service.grading.numerics.tolerances import SAME_MOTION
+from service.kinematics.transforms import Numbers
+
+
+def halves(values: Numbers) -> tuple[Numbers, Numbers]:
+    """The two halves of values ``(..., samples)``: the same links at other joint values."""
+    half = values.shape[-1] // 2
+    return values[..., :half], values[..., half:]
+
+
+def changes(values: Numbers) -> Numbers:
+    """By how much values ``(..., SAMPLES)`` change when only the joints move: ``(..., HALF)``."""
+    before, after = halves(values)
+    return after - before
+
+
+def moves_with(values: Numbers, motion: Numbers, angle: ArrayLike) -> NDArray[np.bool_]:
+    """Which values ``(..., samples)`` change with the joints as ``motion`` does, or its opposite.
+
+    ``motion`` is ``(..., samples / 2)``. NaN does not.
+    """
+    either_sign = np.array([motion, -motion])
+    shape = (2, *[1] * (values.ndim - motion.ndim), *motion.shape)
+    error = np.abs(difference(changes(values), either_sign.reshape(shape), angle)).max(axis=-1)
+    return np.asarray(error.min(axis=0) < SAME_MOTION)
+
+
+def joint_counts(
+    values: Numbers, joints: tuple[Joint, ...], samples: Samples, angle: NDArray[np.bool_]
+) -> tuple[NDArray[np.int_], NDArray[np.bool_]]:
+    """Whole numbers k with ``values = Σ k_j q_j + constant``, for each cell.
+
+    ``values`` is ``(cells, SAMPLES)``, ``angle`` ``(cells,)``. Returns the counts ``(cells,
+    joints)`` and which cells are of that form ``(cells,)``, an angle up to whole turns.
+
+    It is one least-squares problem for all cells: the two halves of the samples differ in the
+    joints only.
+    """
+    if not joints:
+        return np.zeros((len(values), 0), np.int_), np.asarray(np.isfinite(values).all(axis=-1))
+
+    names = tuple(joint.variable for joint in joints)
+
+    def moves_and_inverse() -> tuple[Numbers, Numbers]:
+        moves = changes(np.array([samples.values[name] for name in names]))
+        return moves, np.asarray(np.linalg.pinv(moves), dtype=np.float64)
+
+    moves, solver = samples.cached(names, moves_and_inverse)
+    change = np.nan_to_num(changes(values), nan=np.inf, posinf=np.inf, neginf=np.inf)
+    finite = np.asarray(np.isfinite(change).all(axis=-1))
+    change = np.where(finite[:, None], change, 0.0)
+    counts = np.round(change @ solver)
+    counts = np.clip(counts, -99, 99)
+    linear = finite & (np.abs(counts @ moves - change).max(axis=-1) < SAME_MOTION)
+    # Whole turns hide the share of a joint from least squares; then one joint alone is tried.
+    turned = np.flatnonzero(finite & ~linear & angle)
+    if len(turned):
+        either_sign = np.array([moves, -moves])
+        error = difference(change[turned, None, None], either_sign, angle=True)
+        found = np.abs(error).max(axis=-1) < SAME_MOTION
+        for k, negative, joint in np.argwhere(found):
+            counts[turned[k]], linear[turned[k]] = 0, True
+            counts[turned[k], joint] = 1 - 2 * negative
+    return counts.astype(np.int_), linear
+
+
+def coefficients(
+    values: Numbers, joints: tuple[Joint, ...], samples: Samples, angle: NDArray[np.bool_]
+) -> list[tuple[int, ...] | None]:
+    """The counts of ``joint_counts`` for each cell; None for a cell of another form."""
+    counts, linear = joint_counts(values, joints, samples, angle)
+    found = zip(counts.tolist(), linear.tolist(), strict=True)
+    return [tuple(cell) if is_linear else None for cell, is_linear in found]

@@ -1,0 +1,1 @@
+"""Lists of values as handed in -> entries."""

@@ -1,0 +1,326 @@
+"""A list of values as handed in, JSON or pasted text -> its entries and their numbers."""
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Final
+
+from service.expressions import LIMITS, Expression, Kind, LeftSide
+from service.expressions.errors import counted
+from service.grading.feedback import Finding, UnreadableAnswerError, reading_error, reading_note
+from service.grading.reading.entry import MISSING, Entry, Reader, entry_values, unreadable
+from service.grading.reading.lists.component_names import ListNames
+from service.grading.reading.pasted import from_grid_error, pasted_grid, placed
+from service.grading.reading.written_names import arranged, name_of, with_order_note
+from service.grids import GridCell, GridError
+from service.kinematics.transforms import Numbers
+
+
+@dataclass(frozen=True, slots=True)
+class StudentValues:
+    """A list of values as read: entries, and numbers ``(n, SAMPLES)``, NaN where there are none."""
+
+    entries: list[Entry]
+    quantities: Sequence[Kind]
+    values: Numbers
+
+    @property
+    def expressions(self) -> list[Expression | None]:
+        """The expressions of the values; None where nothing could be read."""
+        return [entry.expression for entry in self.entries]
+
+
+# What may stand behind the values asked for: the third coordinate of a point in the plane, and the
+# 1 of homogeneous coordinates.
+Tail = tuple[str, ...]
+PLANAR: Final[Tail] = ("0",)
+HOMOGENEOUS: Final[Tail] = ("1",)
+
+
+def read_list(
+    answer: object, names: ListNames, reader: Reader, tails: Sequence[Tail] = ()
+) -> StudentValues:
+    """The values of a list, one for each of the ``names`` asked for.
+
+    A list may also be a column (a list of lists of one), a row in a list of its own, or pasted
+    text. Values that were left off at the end are missing. Values with names in front, as in
+    y = l1 s1, are put into the order of these; one with the name of another place is unreadable.
+    One of the ``tails`` may stand behind them, as in [x, y, 0]: it is left aside, with a note.
+    Raises UnreadableAnswerError where there is no list of the length asked for.
+    """
+    if isinstance(answer, dict):
+        answer = _by_keys(answer, names, reader)
+    if isinstance(answer, str):
+        # Of the same length, so that a place in the text stays where it is.
+        answer = _NAME_WITH_COLON.sub(r"\1=", answer)
+        entries = _pasted(_in_round_brackets(answer), names, reader, tails)
+    else:
+        entries = _listed(answer, names, reader, tails)
+    quantities = names.quantities
+    return StudentValues(entries, quantities, entry_values(entries, quantities, reader.samples))
+
+
+def _by_keys(answer: Mapping[str, object], names: ListNames, reader: Reader) -> list[object]:
+    """The values of an object in the order that is asked for, by their keys: {"x": …, "y": …}.
+
+    Raises UnreadableAnswerError where a key has not exactly one place of its own.
+    """
+    count = len(names.quantities)
+    if not 0 < len(answer) <= count:
+        raise UnreadableAnswerError(_wrong_shape(count, 0))
+    keys = [LeftSide(key[: LIMITS.characters], (0, 0)) for key in answer]
+    values: list[object] = [None] * count
+    taken: set[int] = set()
+    for places, value in zip(
+        names.places_of(keys, reader.vocabulary), answer.values(), strict=True
+    ):
+        if places is None or len(places) != 1 or places[0] in taken:
+            raise UnreadableAnswerError(_wrong_shape(count, 0))
+        values[places[0]] = value
+        taken.add(places[0])
+    return values
+
+
+# A value to be read, and what becomes of its entry: a cell's is moved to its place in the text.
+_Written = tuple[object, Callable[[Entry], Entry]]
+
+
+def _read(written: Sequence[_Written], names: ListNames, reader: Reader) -> list[Entry]:
+    """The entries of values as they were written, in the order of their names if they have any."""
+    quantities = names.quantities
+    written = [*written, *[_LEFT_OFF] * (len(quantities) - len(written))]
+    raws = [raw for raw, _ in written]
+    found = arranged(raws, names.labels, names.places_of, reader.vocabulary)
+    if found is None:
+        return [
+            place(reader.read(raw, quantity))
+            for (raw, place), quantity in zip(written, quantities, strict=True)
+        ]
+    entries = []
+    for i, quantity in zip(found.order, quantities, strict=True):
+        raw, place = written[i]
+        wrong = found.misnamed.get(i)
+        entries.append(place(unreadable(wrong) if wrong else reader.read(raw, quantity)))
+    return entries if found.misnamed else [*with_order_note(entries, "The values")]
+
+
+def _as_it_is(entry: Entry) -> Entry:
+    return entry
+
+
+_LEFT_OFF: _Written = (None, _as_it_is)
+
+
+def _listed(answer: object, names: ListNames, reader: Reader, tails: Sequence[Tail]) -> list[Entry]:
+    values, count = _flat(answer), len(names.quantities)
+    left_aside = _left_aside(values, count, reader, tails)
+    values = values[: len(values) - len(left_aside)]
+    is_nested = all(isinstance(value, list) for value in values)
+    if is_nested or len(values) > count:
+        raise UnreadableAnswerError(_wrong_shape(count, 0 if is_nested else len(values)))
+    entries = _read([(raw, _as_it_is) for raw in values], names, reader)
+    return _with_notes(entries, [(figure, None) for figure in left_aside])
+
+
+def _left_aside(
+    values: Sequence[object], count: int, reader: Reader, tails: Sequence[Tail]
+) -> Tail:
+    """The tail behind ``count`` values; none where no tail is all that stands there."""
+    behind = values[count:]
+    for tail in tails:
+        if len(tail) == len(behind) and all(map(partial(_is, reader), behind, tail)):
+            return tail
+    return ()
+
+
+def _is(reader: Reader, raw: object, figure: str) -> bool:
+    """Whether a value is this figure; a 0 may have a name in front: z = 0."""
+    if isinstance(raw, str):
+        plain = _LATEX_BLANK.sub("", raw)
+        name = name_of(plain, reader.vocabulary) if figure == "0" else None
+        return (plain[name.span[1] :] if name else plain).strip() == figure
+    return isinstance(raw, int | float) and not isinstance(raw, bool) and raw == int(figure)
+
+
+def _with_notes(
+    entries: Sequence[Entry], left_aside: Sequence[tuple[str, tuple[int, int] | None]]
+) -> list[Entry]:
+    """The entries with notes on the last of them: which figures behind it were left aside."""
+    *before, last = entries
+    notes = [replace(_LEFT_ASIDE[figure], span=span) for figure, span in left_aside]
+    return [*before, replace(last, findings=(*last.findings, *notes))]
+
+
+def _flat(answer: object) -> list[object]:
+    """The values of a list, of a column or of a single row; none for anything else."""
+    if not isinstance(answer, list):
+        return []
+    if len(answer) == 1 and isinstance(answer[0], list):
+        return answer[0]
+    if all(isinstance(value, list) and len(value) == 1 for value in answer):
+        return [value[0] for value in answer]
+    return answer
+
+
+def _in_round_brackets(text: str) -> str:
+    """The text with round brackets for <l1 c1, l1 s1>; each character stays at its place."""
+    found = _IN_ANGLE_BRACKETS.fullmatch(text)
+    if not found:
+        return text
+    pieces = ("(".ljust(len(found[2])), found[3], ")".rjust(len(found[4])))
+    return f"{found[1]}{''.join(pieces)}{found[5]}"
+
+
+def _pasted(text: str, names: ListNames, reader: Reader, tails: Sequence[Tail]) -> list[Entry]:
+    count = len(names.quantities)
+    if not text.strip():
+        return [MISSING] * count
+    try:
+        rows = pasted_grid(text, reader).rows
+    except GridError as error:
+        entries = None
+        if error.code in _OF_TABLES:
+            entries = _taken_apart(text, names, reader, tails)
+        if entries is None:
+            raise UnreadableAnswerError(_from_grid_error(error, count)) from error
+        return entries
+    cells: Sequence[GridCell] = rows[0] if len(rows) == 1 else [row[0] for row in rows]
+    is_list = len(rows) == 1 or all(len(row) == 1 for row in rows)
+    left_aside = _left_aside([cell.text for cell in cells], count, reader, tails)
+    if not is_list or len(cells) > count + len(left_aside):
+        entries = None if is_list else _taken_apart(text, names, reader, tails)
+        if entries is None:
+            raise UnreadableAnswerError(_wrong_shape(count, len(cells) if is_list else 0))
+        return entries
+    written = [(cell.text, partial(placed, cell=cell)) for cell in cells[:count]]
+    entries = _read(written, names, reader)
+    places = [cell.whole for cell in cells[count:]]
+    return _with_notes(entries, [*zip(left_aside, places, strict=True)])
+
+
+def _taken_apart(
+    text: str, names: ListNames, reader: Reader, tails: Sequence[Tail]
+) -> list[Entry] | None:
+    """The values of a text with one on each line, or with semicolons or commas between them.
+
+    None where there are not as many as asked for, or nothing can be read of any.
+    """
+    count = len(names.quantities)
+    for pieces in (_lines(text), _split(text, ";"), _split(text, ",")):
+        parts = [_stripped(at, piece) for at, piece in pieces if piece.strip()]
+        left_aside = _left_aside([part for _, part in parts], count, reader, tails)
+        if len(parts) != count + len(left_aside):
+            continue
+        written = [(part, partial(_shifted, by=at)) for at, part in parts[:count]]
+        entries = _read(written, names, reader)
+        if any(entry.readable or entry.findings[0].suggestion for entry in entries):
+            places = [(at, at + len(part)) for at, part in parts[count:]]
+            return _with_notes(entries, [*zip(left_aside, places, strict=True)])
+    return None
+
+
+def _stripped(at: int, piece: str) -> tuple[int, str]:
+    """A piece of text without the blanks around it, and its place without them."""
+    return at + len(piece) - len(piece.lstrip()), piece.strip()
+
+
+def _lines(text: str) -> Iterator[tuple[int, str]]:
+    """The lines of a text, each with the place where it begins."""
+    at = 0
+    for line in text.splitlines(keepends=True):
+        yield at, line.rstrip("\r\n")
+        at += len(line)
+
+
+def _split(text: str, separator: str) -> Iterator[tuple[int, str]]:
+    """The pieces between separators, each with its place; brackets around all are left out.
+
+    No pieces where [c1 -s1, 0] might be three values, as in MATLAB.
+    """
+    start, end = _inside(text)
+    if text[:start].strip() == "[" and _NEW_VALUE.search(text):
+        return
+    depth, begin = 0, start
+    for at in range(start, end):
+        depth += (text[at] in "([{") - (text[at] in ")]}")
+        if text[at] == separator and not depth:
+            yield begin, text[begin:at]
+            begin = at + 1
+    yield begin, text[begin:end]
+
+
+def _inside(text: str) -> tuple[int, int]:
+    """The [start, end) of what stands in the brackets around all of a text; else of the text."""
+    start, end = len(text) - len(text.lstrip()), len(text.rstrip())
+    depth = 0
+    for at in range(start, end):
+        depth += (text[at] in "([{") - (text[at] in ")]}")
+        if not depth:
+            return (start + 1, end - 1) if at == end - 1 and at > start else (start, end)
+    return start, end
+
+
+def _shifted(entry: Entry, by: int) -> Entry:
+    """The entry with its spans counted from the start of the whole text."""
+    findings = tuple(
+        replace(finding, span=(finding.span[0] + by, finding.span[1] + by))
+        if finding.span
+        else finding
+        for finding in entry.findings
+    )
+    return replace(entry, findings=findings)
+
+
+# A name at the begin of a line, with a colon behind it: "x: l1 c1".
+_NAME_WITH_COLON = re.compile(r"(?m)^([ \t]*[^\W\d][\w{}^]{0,20}[ \t]{0,3}):(?![:=])")
+
+# A vector in angle brackets: before it, the opening one, the values, the closing one, behind it.
+_IN_ANGLE_BRACKETS = re.compile(
+    r"(\s*)(<|⟨|\\langle(?![A-Za-z]))([^<>⟨⟩|]+)(>|⟩|\\rangle(?![A-Za-z]))(\s*)"
+)
+
+_LATEX_BLANK = re.compile(r"\\(?:q?quad(?![A-Za-z])|[,;:! ])")
+
+# A blank and a sign with none behind it: in MATLAB's brackets a new value begins there.
+_NEW_VALUE = re.compile(r"[^\s,;(\[{*/^+-]\s+[-+−–][^\s]")
+
+# Refusals that speak of tables, and the sentence that a list gets in their place.
+_OF_TABLES = {
+    "no_grid": "",
+    "named_values": "",
+    "too_many_rows": "",
+    "too_many_columns": "",
+    "ambiguous_separators": "",
+    "ambiguous_columns": "Here a space may separate two values or stand inside one.",
+    "mixed_separators": "Inside a value, write a*b and a - b, not a b and a -b.",
+}
+
+_LEFT_ASIDE = {
+    "0": reading_note(
+        "zero_left_aside", "Only two values are asked for; the third, 0, was ignored."
+    ),
+    "1": reading_note(
+        "homogeneous_one", "The 1 at the end, of homogeneous coordinates, was ignored."
+    ),
+}
+
+
+def _wrong_shape(count: int, found: int) -> Finding:
+    """The finding that an answer is no such list; ``found`` counts the values of one too long."""
+    return reading_error(
+        "wrong_shape",
+        f"Write a list of {counted(count)}{f'; yours has {found}' if found else ''}.",
+    )
+
+
+def _from_grid_error(error: GridError, count: int) -> Finding:
+    """The finding that a pasted text is no list, without a word of rows and columns."""
+    finding = from_grid_error(error)
+    if error.code not in _OF_TABLES:
+        return finding
+    message = (
+        f"Write a list of {counted(count)}, with commas between them or one on each line. "
+        f"{_OF_TABLES[error.code]}"
+    )
+    return replace(finding, hint=message.strip())

@@ -1,0 +1,1 @@
+"""Matrices and screw axes as handed in -> entries."""

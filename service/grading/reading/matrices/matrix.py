@@ -1,0 +1,164 @@
+"""A matrix as handed in, nested lists or pasted text -> its entries and their values."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import chain
+
+from service.expressions import Expression, Kind
+from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
+from service.grading.numerics.samples import Samples
+from service.grading.reading.entry import (
+    MISSING,
+    UNREADABLE,
+    Entry,
+    Reader,
+    entry_values,
+    from_note,
+    unreadable,
+)
+from service.grading.reading.matrices.matrix_entry_names import misnamed_entry
+from service.grading.reading.pasted import from_grid_error, pasted_grid, place_of, placed
+from service.grids import Grid, GridCell, GridError
+from service.kinematics.transforms import Numbers
+
+Quantities = Sequence[Sequence[Kind]]
+
+
+@dataclass(frozen=True, slots=True)
+class StudentMatrix:
+    """A matrix as read: its entries and their values ``(rows, columns, SAMPLES)``.
+
+    A value is NaN where the entry has none.
+    """
+
+    entries: list[list[Entry]]
+    quantities: Quantities
+    values: Numbers
+
+    @property
+    def expressions(self) -> list[Expression | None]:
+        """The expressions of the entries, row by row; None where nothing could be read."""
+        return [entry.expression for row in self.entries for entry in row]
+
+    def values_at(self, samples: Samples) -> Numbers:
+        """The values at other samples."""
+        return matrix_values(self.entries, self.quantities, samples)
+
+
+def read_matrix(answer: object, quantities: Quantities, reader: Reader) -> StudentMatrix:
+    """The matrix in a nested list or a pasted text, with one entry for each quantity.
+
+    Rows that were left off at the end are missing. A row of the wrong length is unreadable: nobody
+    can say which entry is which. Raises UnreadableAnswerError where there are no rows at
+    all, or too many.
+    """
+    return matrix_of_entries(_entries(answer, quantities, reader), quantities, reader)
+
+
+def matrix_of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> StudentMatrix:
+    """The matrix in a pasted grid. Raises UnreadableAnswerError where it has another size."""
+    return matrix_of_entries(_of_grid(grid, quantities, reader), quantities, reader)
+
+
+def unreadable_matrix(finding: Finding, quantities: Quantities, reader: Reader) -> StudentMatrix:
+    """One of several matrices that cannot be read: the first entry says why."""
+    entries = [_unreadable_row(None, kinds) for kinds in quantities]
+    entries[0] = _unreadable_row(finding, quantities[0])
+    return matrix_of_entries(entries, quantities, reader)
+
+
+def matrix_of_entries(
+    entries: list[list[Entry]], quantities: Quantities, reader: Reader
+) -> StudentMatrix:
+    """The matrix of these rows; those that were left off at the end are missing."""
+    entries = [*entries, *([MISSING] * len(row) for row in quantities[len(entries) :])]
+    return StudentMatrix(entries, quantities, matrix_values(entries, quantities, reader.samples))
+
+
+def matrix_values(entries: list[list[Entry]], quantities: Quantities, samples: Samples) -> Numbers:
+    """The values of a matrix's entries, ``(rows, columns, SAMPLES)``; NaN where there are none."""
+    flat = entry_values(list(chain(*entries)), list(chain(*quantities)), samples)
+    return flat.reshape(len(entries), len(quantities[0]), -1)
+
+
+def _entries(answer: object, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
+    if isinstance(answer, str):
+        return _pasted(answer, quantities, reader) if answer.strip() else []
+    if not isinstance(answer, list) or not answer or len(answer) > len(quantities):
+        raise UnreadableAnswerError(_of_wrong_size("", quantities))
+    return [_row(row, i, quantities, reader) for i, row in enumerate(answer)]
+
+
+def _row(row: object, i: int, quantities: Quantities, reader: Reader) -> list[Entry]:
+    kinds = quantities[i]
+    if row is None:
+        return [MISSING] * len(kinds)
+    if not isinstance(row, list) or len(row) != len(kinds):
+        return _of_wrong_length(len(row) if isinstance(row, list) else None, len(kinds))
+    return [_entry(raw, (i, j), quantities, reader) for j, raw in enumerate(row)]
+
+
+def _entry(raw: object, place: tuple[int, int], quantities: Quantities, reader: Reader) -> Entry:
+    """The entry in a place; unreadable where it is named after another."""
+    i, j = place
+    entry = reader.read(raw, quantities[i][j])
+    if entry.findings:
+        size = len(quantities), len(quantities[0])
+        wrong = misnamed_entry(raw, place, size, reader.vocabulary)
+        return unreadable(wrong) if wrong else entry
+    return entry
+
+
+def _of_wrong_size(
+    found: str, quantities: Quantities, span: tuple[int, int] | None = None
+) -> Finding:
+    """The finding on a matrix of the size ``found``, "" where there is none."""
+    size = f"; yours is {found}" if found else ""
+    message = f"Write {len(quantities)} rows with {len(quantities[0])} entries each{size}."
+    return reading_error("wrong_shape", message, span)
+
+
+def _of_wrong_length(
+    found: int | None, wanted: int, span: tuple[int, int] | None = None
+) -> list[Entry]:
+    """The row of ``found`` entries, None where it is no list."""
+    counted = "" if found is None else f"; it has {found}"
+    message = f"Write {wanted} entries in this row{counted}."
+    return _unreadable_row(reading_error("row_length", message, span), [""] * wanted)
+
+
+def _unreadable_row(finding: Finding | None, cells: Sequence[object]) -> list[Entry]:
+    """Unreadable entries; the first says why, so that it is told once."""
+    first = unreadable(finding) if finding else UNREADABLE
+    return [first, *[UNREADABLE] * (len(cells) - 1)]
+
+
+def _pasted(text: str, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
+    try:
+        grid = pasted_grid(text, reader)
+    except GridError as error:
+        raise UnreadableAnswerError(from_grid_error(error)) from error
+    return _of_grid(grid, quantities, reader)
+
+
+def _of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
+    height, width = len(quantities), len(quantities[0])
+    if len(grid.rows) > height or all(len(row) != width for row in grid.rows):
+        span = grid.rows[0][0].whole[0], grid.rows[-1][-1].whole[1]
+        raise UnreadableAnswerError(_of_wrong_size(grid.size, quantities, span))
+    entries = [_pasted_row(row, i, quantities, reader) for i, row in enumerate(grid.rows)]
+    first = entries[0][0]
+    notes = tuple(map(from_note, grid.notes))
+    entries[0][0] = replace(first, findings=(*first.findings, *notes))
+    return entries
+
+
+def _pasted_row(
+    row: Sequence[GridCell], i: int, quantities: Quantities, reader: Reader
+) -> list[Entry]:
+    width = len(quantities[i])
+    if len(row) != width:
+        return _of_wrong_length(len(row), width, place_of(row))
+    return [
+        placed(_entry(cell.text, (i, j), quantities, reader), cell) for j, cell in enumerate(row)
+    ]

@@ -1,0 +1,224 @@
+"""Several matrices in one pasted text -> matrices, in the order of the links in their names."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+from service.expressions.vocabulary.symbols import normal_form
+from service.grading.feedback import Finding, UnreadableAnswerError, reading_error, reading_note
+from service.grading.reading.entry import Reader
+from service.grading.reading.matrices.matrix import (
+    Quantities,
+    StudentMatrix,
+    matrix_of_entries,
+    matrix_of_grid,
+    unreadable_matrix,
+)
+from service.grading.reading.matrices.matrix_names import (
+    indices_of,
+    is_changed,
+    is_product,
+    places_of,
+)
+from service.grading.reading.pasted import from_grid_error, pasted_grids, quoted
+from service.grids import Grid, GridError, NamedGrid, SourceText, read_grids
+
+
+def read_matrices(
+    text: str, labels: Sequence[str], quantities: Quantities, reader: Reader
+) -> list[StudentMatrix]:
+    """The matrices of a pasted text, one for each label; those that are not there are missing.
+
+    Matrices go by their names, where they have any. One that cannot be read costs only itself.
+    Raises UnreadableAnswerError where the text holds no matrices, or it cannot be told which is
+    which.
+    """
+    if not text.strip():
+        return [matrix_of_entries([], quantities, reader) for _ in labels]
+    grids, notes = grids_in_order(text, labels, reader)
+    matrices = [_matrix(grid, quantities, reader) for grid in grids]
+    return [with_notes(matrices[0], notes), *matrices[1:]]
+
+
+def grids_in_order(
+    text: str, labels: Sequence[str], reader: Reader
+) -> tuple[list[Grid | GridError | None], list[Finding]]:
+    """The grid for each label, or why it cannot be read, or None; and notes on the order.
+
+    Raises UnreadableAnswerError as ``read_matrices`` does.
+    """
+    try:
+        grids = pasted_grids(text, reader)
+    except GridError as error:
+        raise UnreadableAnswerError(from_grid_error(error)) from error
+    errors = [each.grid for each in grids if isinstance(each.grid, GridError)]
+    if len(errors) == len(grids):
+        raise UnreadableAnswerError(_no_matrices(errors[0], labels))
+    matrices, values = _without_values(grids, labels, reader)
+    places, notes = _places(matrices, labels)
+    notes += values
+    by_place = {place: each.grid for place, each in zip(places, matrices, strict=True)}
+    return _noted_once([by_place.get(place) for place in range(len(labels))]), notes
+
+
+def places_in_list(
+    answer: Sequence[object], labels: Sequence[str]
+) -> tuple[list[int], list[Finding]]:
+    """The place of each matrix of a list, by the names in front of those that are texts; and notes.
+
+    Raises UnreadableAnswerError where the names contradict each other.
+    """
+    places = [*range(len(answer))]
+    named = [_named(each) for each in answer]
+    written = [i for i, each in enumerate(named) if each is not None]
+    if not any(each.name.text for each in named if each is not None):
+        return places, []
+    try:
+        found, notes = _places([each for each in named if each is not None], labels)
+    except UnreadableAnswerError as error:
+        raise UnreadableAnswerError(replace(error.finding, span=None)) from error
+    taken = dict(zip(written, found, strict=True))
+    left = iter([place for place in range(len(labels)) if place not in found])
+    places = [taken[i] if taken.get(i) is not None else next(left) for i in places]
+    return places, [replace(note, span=None) for note in notes]
+
+
+def _named(answer: object) -> NamedGrid | None:
+    """One matrix of a list with the name in front of it; None where nothing is written."""
+    nameless = NamedGrid(SourceText.of(""), GridError("no_grid", "", (0, 0)))
+    if not isinstance(answer, str):
+        return None if answer is None else nameless
+    try:
+        grids = read_grids(answer)
+    except GridError:
+        return nameless if answer.strip() else None
+    matrices = [each for each in grids if isinstance(each.grid, Grid)]
+    return matrices[0] if len(matrices) == 1 else nameless
+
+
+def _noted_once(grids: list[Grid | GridError | None]) -> list[Grid | GridError | None]:
+    """The grids, of which only the first with a note has it."""
+    told: set[str] = set()
+    found: list[Grid | GridError | None] = []
+    for each in grids:
+        grid = each
+        if isinstance(grid, Grid):
+            grid = replace(grid, notes=tuple(n for n in grid.notes if n.code not in told))
+            told |= {note.code for note in grid.notes}
+        found.append(grid)
+    return found
+
+
+def _matrix(grid: Grid | GridError | None, quantities: Quantities, reader: Reader) -> StudentMatrix:
+    if grid is None:
+        return matrix_of_entries([], quantities, reader)
+    try:
+        if isinstance(grid, GridError):
+            raise UnreadableAnswerError(from_grid_error(grid))
+        return matrix_of_grid(grid, quantities, reader)
+    except UnreadableAnswerError as error:
+        return unreadable_matrix(error.finding, quantities, reader)
+
+
+def with_notes(matrix: StudentMatrix, notes: Sequence[Finding]) -> StudentMatrix:
+    """The matrix with notes on its first entry."""
+    [first, *row], *rows = matrix.entries
+    entry = replace(first, findings=(*first.findings, *notes))
+    return replace(matrix, entries=[[entry, *row], *rows])
+
+
+def _places(
+    grids: Sequence[NamedGrid], labels: Sequence[str]
+) -> tuple[list[int | None], list[Finding]]:
+    """The place of each matrix, from 0, None for one that is left aside; and notes on them."""
+    texts, count = [each.name.text for each in grids], len(labels)
+    changed = [is_changed(text) for text in texts]
+    products = [is_product(text) and not is_changed(text) for text in texts]
+    names = [
+        () if product or other else indices_of(text)
+        for text, product, other in zip(texts, products, changed, strict=True)
+    ]
+    named, unusual = places_of(names, count)
+    found = [None if place is None else place - 1 for place in named]
+    for i, place in enumerate(found):
+        if place is not None and place in found[:i]:
+            raise UnreadableAnswerError(_same_name(grids[i], f"A{labels[place]}"))
+    asked_for = _asked_for(labels)
+    complete = len(set(found) - {None}) == count
+    notes: list[Finding] = []
+    for i, place in enumerate(found):
+        if place is None and (complete or products[i]):
+            notes.append(_left_aside(grids[i], asked_for))
+        elif place is None:
+            if names[i] or changed[i] or i >= count or i in found:
+                raise UnreadableAnswerError(_unknown(grids[i], len(grids), asked_for))
+            found[i] = i
+    placed = [place for place in found if place is not None]
+    if any(a > b for a, b in pairwise(placed)):
+        notes.append(
+            _note("matrix_order", "The matrices were put in the order of their names.", grids[0])
+        )
+    if unusual:
+        message = f"{unusual}; the matrices were read as {asked_for}."
+        notes.append(_note("matrix_names", message, grids[0]))
+    return found, notes
+
+
+def _without_values(
+    grids: Sequence[NamedGrid], labels: Sequence[str], reader: Reader
+) -> tuple[list[NamedGrid], list[Finding]]:
+    """The matrices without what is none: theta1 = pi/2, A1*A2 = T; and notes on that."""
+    matrices = [each for each in grids if not _is_value(each, reader)]
+    notes = [_left_aside(each, _asked_for(labels)) for each in grids if _is_value(each, reader)]
+    return matrices, notes
+
+
+def _is_value(each: NamedGrid, reader: Reader) -> bool:
+    if not isinstance(each.grid, GridError) or each.grid.code != "no_grid":
+        return False
+    name = each.name.text
+    return is_product(name) or normal_form(name) in reader.vocabulary.by_name
+
+
+def _asked_for(labels: Sequence[str]) -> str:
+    """The matrices that are asked for: "A1 and A2", "A1 to A6"."""
+    between = "and" if len(labels) == 2 else "to"
+    return f"A{labels[0]} {between} A{labels[-1]}"
+
+
+def _no_matrices(error: GridError, labels: Sequence[str]) -> Finding:
+    if error.code != "no_grid":
+        return from_grid_error(error)
+    message = (
+        f"Write {_asked_for(labels)}, each with its name before it, such as A{labels[0]} = […], as "
+        "MATLAB, Python, Mathematica, Maxima or LaTeX write them."
+    )
+    return reading_error("wrong_shape", message, error.span)
+
+
+def _note(code: str, message: str, named: NamedGrid) -> Finding:
+    return reading_note(code, message, named.name.whole)
+
+
+def _left_aside(named: NamedGrid, asked_for: str) -> Finding:
+    name = quoted(named.name.text) if named.name.text else "A matrix without a name"
+    return _note("matrix_left_aside", f"{name} was ignored: {asked_for} are asked for.", named)
+
+
+def _same_name(named: NamedGrid, label: str) -> Finding:
+    message = f"Two matrices are called {label}: give each matrix the number of its link."
+    return reading_error("duplicate_matrix", message, named.name.whole)
+
+
+def _unknown(named: NamedGrid, count: int, asked_for: str) -> Finding:
+    if not named.name.text:
+        message = f"{count} matrices stand here. Give {asked_for} their names."
+        return reading_error("wrong_shape", message, _place(named))
+    message = f"Which link is {quoted(named.name.text)}? Call the matrices {asked_for}."
+    return reading_error("unknown_matrix", message, _place(named))
+
+
+def _place(named: NamedGrid) -> tuple[int, int]:
+    if named.name.text or isinstance(named.grid, GridError):
+        return named.name.whole
+    return named.grid.rows[0][0].whole[0], named.grid.rows[-1][-1].whole[1]

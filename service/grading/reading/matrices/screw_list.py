@@ -1,0 +1,234 @@
+r"""Screw axes as handed in, pasted or as JSON -> a row of six numbers (ω; v) for each joint.
+
+They come as the rows of one matrix, as its columns, as vectors with names (``S1 = […]``), in
+halves (``w1 = […], v1 = […]``), or in a table with a column for ω and one for v.
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Final
+
+from service.expressions import Note
+from service.grading.reading.entry import Reader
+from service.grading.reading.matrices.matrix_names import indices_of, places_of
+from service.grading.reading.pasted import pasted_grid, pasted_grids
+from service.grids import Grid, GridCell, GridError, SourceText
+
+WIDTH: Final = 6
+_HALF: Final = 3
+
+# A transposed vector is the same axis. What is hidden becomes blanks: places stay as typed.
+_TRANSPOSED: Final = re.compile(
+    r"(?<=[\])}])[ \t]*(?:\^[ \t]*(?:\{[ \t]*)?(?:\\(?:top|intercal)(?![A-Za-z])"
+    r"|(?:\\(?:mathrm|mathsf|text)[ \t]*\{?[ \t]*)?T(?![A-Za-z]))[ \t]*\}{0,2}"
+    r"|\.T(?!\w)|\.?'|\.transpose\(\))"
+)
+# Numbers in round or curly brackets behind a name: S1 = (0, 0, 1, 0, 0, 0).
+_BRACKETED: Final = re.compile(
+    r"(?<=[=:])([ \t]*)[({]((?:[^(){}\[\]]|\([^(){}\[\]]{0,60}\)){1,400})[)}]"
+)
+_COMMA: Final = re.compile(r",")
+_STYLE: Final = re.compile(r"\\(?:hat|vec|bar|tilde|bm|boldsymbol|mathbf|mathrm|mathit|text)")
+_OMEGA: Final = re.compile(r"\\?omega|[ωw]")
+_VELOCITY: Final = re.compile(r"v")
+# The names of both in a header that begins otherwise: "axis ω", "angular velocity".
+_IN_HEADER: Final = (
+    re.compile(r"omega|ω|angular|(?<![a-z])w(?![a-z])"),
+    re.compile(r"linear|(?<![a-z])v(?![a-z])"),
+)
+
+
+def screw_grid(text: str, count: int, reader: Reader) -> Grid:
+    """The ``count`` axes in a pasted text, each a row of six cells.
+
+    Vectors go by the numbers in their names, where they have any. A matrix that is none of these is
+    returned as it is. Raises GridError where there is none.
+    """
+    plain = _plain(text)
+    try:
+        grid = pasted_grid(plain, reader)
+    except GridError:
+        vectors = _of_vectors(plain, count, reader)
+        if vectors is None:
+            raise
+        return vectors
+    widths = {len(row) for row in grid.rows}
+    if widths == {WIDTH}:
+        return grid
+    if len(grid.rows) == WIDTH and widths == {count}:
+        return _of_columns(grid)
+    return _of_halves_in_cells(grid, count) or _of_vectors(plain, count, reader) or grid
+
+
+def screw_rows(answer: object, count: int) -> object:
+    """The rows of an answer in JSON; what is none of the ways to write axes stays as it is.
+
+    Halves stand in an axis as [ω, v] or {"omega": ω, "v": v}. A single axis may come without a list
+    around it.
+    """
+    if isinstance(answer, dict):
+        places = _places(list(answer), count)
+        if places is None:
+            return answer
+        rows: list[object] = [None] * count
+        for place, axis in zip(places, answer.values(), strict=True):
+            rows[place] = axis
+        answer = rows
+    if not isinstance(answer, list):
+        return answer
+    if count == 1 and len(answer) > 1:
+        answer = [answer]
+    if count != WIDTH and len(answer) == WIDTH and _is_table(answer, count):
+        return [list(axis) for axis in zip(*answer, strict=True)]
+    return [_one_axis(axis) for axis in answer]
+
+
+def _is_table(rows: Sequence[object], width: int) -> bool:
+    return all(isinstance(row, list) and len(row) == width for row in rows)
+
+
+def _one_axis(axis: object) -> object:
+    """An axis whose halves may stand in lists of their own."""
+    if isinstance(axis, Mapping):
+        halves = {_half(str(name)): half for name, half in axis.items()}
+        axis = [halves[0], halves[1]] if len(axis) == 2 and halves.keys() == {0, 1} else axis
+    if isinstance(axis, list) and len(axis) == 2 and _is_table(axis, _HALF):
+        return [*axis[0], *axis[1]]
+    if isinstance(axis, list) and len(axis) == WIDTH and _is_table(axis, 1):
+        return [number for [number] in axis]
+    return axis
+
+
+def _plain(text: str) -> str:
+    text = _TRANSPOSED.sub(lambda found: " " * len(found[0]), text)
+    return _BRACKETED.sub(_in_square_brackets, text)
+
+
+def _in_square_brackets(found: re.Match[str]) -> str:
+    return f"{found[1]}[{found[2]}]" if "," in found[2] else found[0]
+
+
+def _of_columns(grid: Grid) -> Grid:
+    notes = (*grid.notes, columns_as_axes(grid))
+    return replace(grid, rows=tuple(zip(*grid.rows, strict=True)), notes=notes)
+
+
+def columns_as_axes(grid: Grid) -> Note:
+    """The note that the columns of a matrix are the axes."""
+    place = grid.rows[0][0].whole[0], grid.rows[-1][-1].whole[1]
+    return Note("columns_as_axes", "The columns were read as the axes.", place)
+
+
+def _of_halves_in_cells(grid: Grid, count: int) -> Grid | None:
+    """The axes of a table with the vector ω in one column and v in another.
+
+    Rows with numbers in front go by them. None where a header names another vector, such as q.
+    """
+    rows = [[(cell, _vector_in(cell)) for cell in row] for row in grid.rows]
+    header = None if any(vector for _, vector in rows[0]) else rows.pop(0)
+    if not rows or any(sum(bool(vector) for _, vector in row) != 2 for row in rows):
+        return None
+    halves: tuple[int | None, ...] = (0, 1)
+    if header is not None:
+        columns = zip(header, rows[0], strict=False)
+        names = [name.text for (name, _), (_, vector) in columns if vector]
+        halves = tuple(map(_half_of_column, names)) if any(names) else halves
+    if set(halves) != {0, 1}:
+        return None
+    axes = []
+    for row in rows:
+        vectors = [vector for _, vector in row if vector]
+        axes.append([*vectors[halves.index(0)], *vectors[halves.index(1)]])
+    labels = ["" if row[0][1] else row[0][0].text for row in rows]
+    if any(map(indices_of, labels)):
+        placed = _placed(labels, axes, count)
+        return None if placed is None else replace(grid, rows=tuple(map(tuple, placed)))
+    return replace(grid, rows=tuple(map(tuple, axes)))
+
+
+def _half_of_column(name: str) -> int | None:
+    """The half that a header names: 0 for ω, 1 for v, None for anything else."""
+    half = _half(name)
+    if half is None:
+        plain = name.lower()
+        named = [i for i, half_name in enumerate(_IN_HEADER) if half_name.search(plain)]
+        half = named[0] if len(named) == 1 else None
+    return half
+
+
+def _vector_in(cell: GridCell) -> list[GridCell]:
+    """The three cells of a vector in one cell, (0, 0, 1); none in any other."""
+    if cell.text[:1] not in ("(", "[") or cell.text[-1:] not in (")", "]"):
+        return []
+    numbers = cell.cut(1, len(cell.text) - 1).split(_COMMA)
+    return [number.strip() for number in numbers] if len(numbers) == _HALF else []
+
+
+def _of_vectors(text: str, count: int, reader: Reader) -> Grid | None:
+    """The axes in a text of several vectors: one for each axis, or its halves ω and v."""
+    try:
+        found = pasted_grids(text, reader)
+    except GridError:
+        return None
+    names = [each.name.text for each in found]
+    vectors = [_cells(each.grid) for each in found if isinstance(each.grid, Grid)]
+    if len(vectors) != len(found):
+        return None
+    if all(len(vector) == WIDTH for vector in vectors):
+        rows = _placed(names, vectors, count)
+    elif all(len(vector) == _HALF for vector in vectors):
+        halves = [_half(name) for name in names]
+        first, second = (
+            _placed(
+                [name for name, half in zip(names, halves, strict=True) if half == wanted],
+                [vector for vector, half in zip(vectors, halves, strict=True) if half == wanted],
+                count,
+            )
+            for wanted in (0, 1)
+        )
+        if None in halves or first is None or second is None:
+            return None
+        rows = [[*omega, *velocity] for omega, velocity in zip(first, second, strict=True)]
+    else:
+        return None
+    return None if rows is None else Grid("vectors", tuple(map(tuple, rows)))
+
+
+def _cells(grid: Grid) -> list[GridCell]:
+    """The cells of a vector, or of a matrix with the rows ω and v; none of any other matrix."""
+    heights, widths = len(grid.rows), {len(row) for row in grid.rows}
+    if heights == 1 or widths == {1} or (heights == 2 and widths == {_HALF}):
+        return [cell for row in grid.rows for cell in row]
+    return []
+
+
+def _placed(
+    names: Sequence[str], vectors: Sequence[Sequence[GridCell]], count: int
+) -> list[Sequence[GridCell]] | None:
+    """The vector of each axis, empty cells where there is none; None where names contradict."""
+    places = _places(names, count)
+    if places is None:
+        return None
+    by_place = dict(zip(places, vectors, strict=True))
+    width = len(vectors[0])
+    return [by_place.get(i, [SourceText.of("")] * width) for i in range(count)]
+
+
+def _places(names: Sequence[str], count: int) -> list[int] | None:
+    """The place of each name from 0, by its number; as they stand where none has a name."""
+    if not names or len(names) > count:
+        return None
+    if not any(names):
+        return [*range(len(names))]
+    found, _ = places_of([indices_of(name) for name in names], count)
+    places = [place - 1 for place in found if place is not None]
+    return places if len(set(places)) == len(names) else None
+
+
+def _half(name: str) -> int | None:
+    r"""0 for a name of ω, 1 for one of v, such as \hat{\omega}_1, w2, v_3; None for any other."""
+    plain = _STYLE.sub("", name).lstrip("{ $").lower()
+    if _OMEGA.match(plain):
+        return 0
+    return 1 if _VELOCITY.match(plain) else None

@@ -1,0 +1,1 @@
+"""DH tables as handed in -> rows of entries."""

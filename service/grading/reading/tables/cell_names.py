@@ -1,0 +1,90 @@
+"""Names in front of the cells of DH rows (d = 0, theta_1 = q1): the columns and rows they name."""
+
+from collections.abc import Callable, Sequence
+from typing import Final
+
+from service.expressions import LeftSide, Vocabulary
+from service.expressions.vocabulary.symbols import normal_form
+from service.grading.feedback import Finding
+from service.grading.reading.entry import Entry, unreadable
+from service.grading.reading.tables.column_headers import SHOWN, named_parameter
+from service.grading.reading.written_names import (
+    Arrangement,
+    Places,
+    arranged,
+    misnamed_value,
+    name_of,
+    with_order_note,
+)
+from service.kinematics.chain import COLUMNS
+
+_LABELS: Final = tuple(SHOWN[column] for column in COLUMNS)
+# In the modified convention these have the index of the row before.
+_SHIFTED: Final = frozenset({"a", "alpha"})
+
+
+def arranged_row(cells: Sequence[object], vocabulary: Vocabulary) -> Arrangement | None:
+    """What the names in the four cells of a row say of their columns; None for nothing amiss."""
+    return arranged(cells, _LABELS, _columns_of, vocabulary)
+
+
+def _columns_of(names: Sequence[LeftSide | None], _: Vocabulary) -> list[Places]:
+    found = [named_parameter(name.name) if name else None for name in names]
+    return [(COLUMNS.index(each.column),) if each else None for each in found]
+
+
+def first_number(rows: Sequence[Sequence[object]], vocabulary: Vocabulary) -> int | None:
+    """The number of the first of these rows: 1, or 0 where its θ or d is named so.
+
+    None for a row alone, which may be that of any joint.
+    """
+    if len(rows) < 2:
+        return None
+    names = [name_of(cell, vocabulary) for cell in rows[0]]
+    named = [named_parameter(name.name) for name in names if name]
+    counts_from_zero = any(each and each.row == 0 and each.column not in _SHIFTED for each in named)
+    return 0 if counts_from_zero else 1
+
+
+def row_entries(
+    cells: Sequence[object],
+    found: Arrangement | None,
+    number: int | None,
+    read: Callable[[int], Entry],
+    placed: Callable[[int, Entry], Entry],
+    vocabulary: Vocabulary,
+) -> tuple[Entry, ...]:
+    """The entries of a row with this number, whose cells were put in order as ``found`` says.
+
+    ``read`` gives the entry of the cell in a column, ``placed`` an entry with spans in that cell
+    as one with spans in the whole text.
+    """
+    entries: list[Entry] = []
+    for column, cell in enumerate(cells):
+        wrong = found.misnamed.get(column) if found else None
+        entry = unreadable(wrong) if wrong else read(column)
+        if wrong is None and number is not None and entry.findings:
+            wrong = _of_another_row(cell, COLUMNS[column], entry, number, vocabulary)
+        entries.append(placed(column, unreadable(wrong)) if wrong else entry)
+    if found is None or not found.by_name:
+        return tuple(entries)
+    return with_order_note(entries, "The cells of a row")
+
+
+def _of_another_row(
+    cell: object, column: str, entry: Entry, number: int, vocabulary: Vocabulary
+) -> Finding | None:
+    """The finding that a cell is named after another row: θ2 = … in row 1.
+
+    A cell that holds the variable it is named after says the same on both sides.
+    """
+    name = name_of(cell, vocabulary)
+    named = named_parameter(name.name) if name else None
+    if name is None or named is None or named.row is None or entry.expression is None:
+        return None
+    if named.row == number or (named.row == number - 1 and column in _SHIFTED):
+        return None
+    symbol = vocabulary.by_name.get(normal_form(name.name))
+    if symbol is not None and symbol.name in entry.expression.symbols:
+        return None
+    return misnamed_value(name, f"{SHOWN[column]} (row {number})")

@@ -1,0 +1,309 @@
+"""A pasted DH table -> its rows and their entries. Spans are places in the text as pasted."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from service.grading.feedback import Finding, reading_error, reading_note
+from service.grading.reading.entry import Entry, Reader, from_note, unreadable
+from service.grading.reading.pasted import pasted_grid, pasted_robot, place_of, placed, quoted
+from service.grading.reading.tables import column_headers
+from service.grading.reading.tables.cell_names import arranged_row, first_number, row_entries
+from service.grading.reading.tables.column_headers import (
+    METRES,
+    QUANTITIES,
+    SHOWN,
+    Header,
+    is_wordy,
+    read_header,
+)
+from service.grading.reading.tables.length_units import in_unit
+from service.grading.reading.tables.row_labels import in_order, is_label
+from service.grading.reading.written_names import Arrangement
+from service.grids import Grid, GridCell, GridError, RobotTable
+from service.kinematics.chain import COLUMNS
+
+ColumnOrder = tuple[int | None, Header]
+
+
+@dataclass(frozen=True, slots=True)
+class PastedRow:
+    """The cells of one row in the order a, α, d, θ.
+
+    A row of the wrong length has a ``problem``, and each of its cells is the whole row. ``named``
+    tells how the names in the cells gave them another order, or contradict it.
+    """
+
+    cells: tuple[GridCell, ...]
+    problem: Finding | None = None
+    named: Arrangement | None = None
+
+    @property
+    def texts(self) -> list[str]:
+        """What is written in the cells."""
+        return [cell.text for cell in self.cells]
+
+
+@dataclass(frozen=True, slots=True)
+class PastedTable:
+    """A table's rows in the order of its joints, and the header of each of a, α, d, θ.
+
+    ``is_named`` says that the columns have headers, or names in a script. ``convention`` is the one
+    that a script names.
+    """
+
+    rows: tuple[PastedRow, ...]
+    headers: tuple[Header, ...]
+    findings: tuple[Finding, ...] = ()
+    is_named: bool = True
+    convention: str | None = None
+
+
+def read_pasted_table(text: str, reader: Reader) -> PastedTable:
+    """The rows of a pasted DH table; see ``table_of``. Raises GridError where it is none."""
+    robot = pasted_robot(text, reader)
+    return table_of_robot(robot, reader) if robot else table_of(pasted_grid(text, reader), reader)
+
+
+def table_of(grid: Grid, reader: Reader, order: Sequence[str] = COLUMNS) -> PastedTable:
+    """The rows of a pasted DH table.
+
+    Columns go by their headers, in any order; without headers there must be four, or five with
+    the rows' numbers in front, in ``order``. Rows go by their labels, where they have
+    any. Raises GridError where it cannot be told which column is which.
+    """
+    findings: tuple[Finding, ...] = ()
+    if _has_parameters_in_rows(grid):
+        grid, findings = _turned(grid)
+    found = _found_headers(grid.rows[0], reader)
+    if found is None:
+        columns, labels, more = _columns_in_order(grid, order)
+        body = grid.rows
+    else:
+        columns, labels, more = _columns_by_headers(grid.rows[0], found)
+        body = grid.rows[1:]
+    findings = (*findings, *more)
+    if not body:
+        raise GridError(
+            "no_rows", "There are headers here, but no rows below them.", place_of(grid.rows[0])
+        )
+    width = len(grid.rows[0]) if found is not None else max(map(len, body))
+    rows = tuple(_row(row, columns, width, reader) for row in body)
+    if labels is not None:
+        labelled, more = in_order([row[labels] if labels < len(row) else row[0] for row in body])
+        rows = tuple(rows[i] for i in labelled)
+        findings = (*findings, *more)
+    notes = tuple(map(from_note, grid.notes))
+    heads = tuple(header for _, header in columns)
+    return PastedTable(rows, heads, (*notes, *findings), found is not None)
+
+
+def table_of_robot(robot: RobotTable, reader: Reader) -> PastedTable:
+    """The rows of the robot that a script describes; the angles of its links are in radians.
+
+    Raises GridError as ``table_of``, where the table has headers.
+    """
+    if robot.has_headers:
+        return table_of(robot.grid, reader)
+    unit = "" if reader.angle_unit == "radians" else "rad"
+    headers = tuple(
+        Header(column, unit if QUANTITIES[column] == "angle" else "") for column in COLUMNS
+    )
+    rows = tuple(
+        _row(row, tuple(enumerate(headers)), len(COLUMNS), reader) for row in robot.grid.rows
+    )
+    notes = tuple(map(from_note, robot.grid.notes))
+    return PastedTable(rows, headers, notes, convention=robot.convention)
+
+
+def _has_parameters_in_rows(grid: Grid) -> bool:
+    """Whether a, α, d and θ are the names of rows; a row of the joints' numbers may stand above."""
+    rows = grid.rows[len(grid.rows) - len(COLUMNS) :]
+    if len(grid.rows) > len(COLUMNS) + 1 or len({len(row) for row in grid.rows}) > 1:
+        return False
+    headers = [read_header(row[0].text) for row in rows]
+    return sorted(header.column for header in headers if header) == sorted(COLUMNS)
+
+
+def _turned(grid: Grid) -> tuple[Grid, tuple[Finding, ...]]:
+    """The table with its rows as columns, and the note on it."""
+    message = "The parameters stand in rows, so each column was read as the row of a joint."
+    note = _note("parameters_in_rows", message, grid.rows[-len(COLUMNS)][0])
+    return replace(grid, rows=tuple(zip(*grid.rows, strict=True))), (note,)
+
+
+def entries_of(table: PastedTable, reader: Reader) -> list[tuple[Entry, ...]]:
+    """The entries of each row."""
+    first = first_number([row.texts for row in table.rows], reader.vocabulary)
+    return [
+        _row_entries(row, None if first is None else first + i, table.headers, reader)
+        for i, row in enumerate(table.rows)
+    ]
+
+
+def _row_entries(
+    row: PastedRow, number: int | None, headers: Sequence[Header], reader: Reader
+) -> tuple[Entry, ...]:
+    if row.problem:
+        return (unreadable(row.problem),) * len(COLUMNS)
+    cells = row.cells
+    return row_entries(
+        row.texts,
+        row.named,
+        number,
+        lambda i: _entry(cells[i], COLUMNS[i], headers[i], reader),
+        lambda i, entry: placed(entry, cells[i]),
+        reader.vocabulary,
+    )
+
+
+def _entry(cell: GridCell, column: str, header: Header, reader: Reader) -> Entry:
+    """One cell of a table, in the unit that its header names."""
+    if header.angle_unit:
+        reader = replace(reader, angle_unit=header.angle_unit)
+    entry = reader.read(cell.text, QUANTITIES[column], in_table=True)
+    if header.metres and header.metres != METRES.get(reader.length_unit or ""):
+        entry = in_unit(entry, header, reader)
+    return placed(entry, cell)
+
+
+def _found_headers(row: Sequence[GridCell], reader: Reader) -> list[Header | None] | None:
+    """The header in each cell of the first row; None where the row holds values.
+
+    A name such as ``a`` may be a header or a declared length: the row's other cells decide.
+    """
+    found = [read_header(cell.text) for cell in row]
+    cells = [cell for cell in row if cell.text]
+    known = sum(header is not None and header.column in QUANTITIES for header in found)
+    if all(header for cell, header in zip(row, found, strict=True) if cell.text):
+        return found if known > 1 else None
+    readable = [reader.read(cell.text, "number").readable for cell in cells]
+    wordy = all(is_wordy(cell.text) for cell in cells)
+    if wordy and known > 1 and not all(readable):
+        return found
+    if (wordy or known > 2) and len(cells) > 1 and not any(readable):
+        return found
+    return None
+
+
+def _columns_by_headers(
+    row: Sequence[GridCell], found: Sequence[Header | None]
+) -> tuple[tuple[ColumnOrder, ...], int | None, tuple[Finding, ...]]:
+    unknown = [cell for cell, header in zip(row, found, strict=True) if not header and cell.text]
+    if unknown:
+        names = ", ".join(quoted(cell.text) for cell in unknown)
+        raise GridError(
+            "unknown_header",
+            f"Which parameter stands below {names}? Use the headers a, alpha, d and theta, and i "
+            "for the number of the row.",
+            place_of(unknown),
+        )
+    places: dict[str, int] = {}
+    for i, header in enumerate(found):
+        if header is None or header.column in (column_headers.LABEL, column_headers.ASIDE):
+            continue
+        if header.column in places:
+            raise GridError(
+                "two_headers",
+                f"Two columns are {SHOWN[header.column]}: "
+                f"{quoted(row[places[header.column]].text)} and {quoted(row[i].text)}. "
+                "Each parameter has one column.",
+                row[i].whole,
+            )
+        places[header.column] = i
+    missing = [SHOWN[column] for column in COLUMNS if column not in places]
+    if missing:
+        raise GridError(
+            "missing_header",
+            f"No header is {' or '.join(missing)}. A DH table has the columns a, α, d and θ.",
+            place_of(row),
+        )
+    columns = tuple((places[column], _header(found, places[column])) for column in COLUMNS)
+    for (place, header), column in zip(columns, COLUMNS, strict=True):
+        _check_unit(header, column, row[place or 0])
+    labels = next((i for i, h in enumerate(found) if h and h.column == column_headers.LABEL), None)
+    if labels is None and found[0] is None:
+        labels = 0
+    return columns, labels, (*_left_aside(row, found), *_convention_hint(row, columns))
+
+
+def _header(found: Sequence[Header | None], place: int) -> Header:
+    header = found[place]
+    assert header is not None
+    return header
+
+
+def _check_unit(header: Header, column: str, cell: GridCell) -> None:
+    if not header.unit:
+        return
+    is_angle = QUANTITIES[column] == "angle"
+    if is_angle != (header.angle_unit is not None):
+        raise GridError(
+            "header_unit",
+            f"{SHOWN[column]} is {'an angle' if is_angle else 'a length'}, but its header says "
+            f"{header.unit}. Correct the header.",
+            cell.whole,
+        )
+
+
+def _left_aside(row: Sequence[GridCell], found: Sequence[Header | None]) -> tuple[Finding, ...]:
+    return tuple(
+        _note("column_left_aside", f"The column {quoted(cell.text)} was ignored.", cell)
+        for cell, header in zip(row, found, strict=True)
+        if header and header.column == column_headers.ASIDE
+    )
+
+
+def _convention_hint(
+    row: Sequence[GridCell], columns: Sequence[ColumnOrder]
+) -> tuple[Finding, ...]:
+    shifted = [row[place or 0] for place, header in columns if header.shifted]
+    if not shifted:
+        return ()
+    names = " and ".join(quoted(cell.text) for cell in shifted)
+    message = (
+        f"Headers such as {names} belong to the modified convention, but they do not decide how "
+        "the table is read. Check which convention the exercise asks for."
+    )
+    return (_note("convention_hint", message, shifted[0]),)
+
+
+def _columns_in_order(
+    grid: Grid, order: Sequence[str]
+) -> tuple[tuple[ColumnOrder, ...], int | None, tuple[Finding, ...]]:
+    """The columns of a table without headers."""
+    width = max(map(len, grid.rows))
+    has_labels = width == len(COLUMNS) + 1 and all(is_label(row[0].text) for row in grid.rows)
+    if width != len(COLUMNS) and not has_labels:
+        raise GridError(
+            "wrong_shape",
+            "Without headers, a DH table has the columns a, α, d, θ in this order, with or "
+            f"without row numbers before them; yours is {grid.size}.",
+            place_of(grid.rows[0]),
+        )
+    first = 1 if has_labels else 0
+    columns = tuple((first + order.index(column), Header(column)) for column in COLUMNS)
+    message = (
+        "The columns have no headers and were read in the order a, α, d, θ. If yours is different, "
+        "such as θ, d, a, α in the Robotics Toolbox, put headers above them."
+    )
+    finding = _note("column_order", message, grid.rows[0][0])
+    return columns, 0 if has_labels else None, (finding,)
+
+
+def _row(
+    row: Sequence[GridCell], columns: Sequence[ColumnOrder], width: int, reader: Reader
+) -> PastedRow:
+    if len(row) != width:
+        message = (
+            f"This row has {len(row)} values, but the table has {width} columns. Write one value "
+            "in each column; where a parameter is 0, write 0."
+        )
+        finding = reading_error("row_length", message, place_of(row))
+        return PastedRow((row[0],) * len(COLUMNS), finding)
+    cells = tuple(row[place or 0] for place, _ in columns)
+    named = arranged_row([cell.text for cell in cells], reader.vocabulary)
+    return PastedRow(tuple(cells[i] for i in named.order) if named else cells, named=named)
+
+
+def _note(code: str, message: str, cell: GridCell) -> Finding:
+    return reading_note(code, message, cell.whole)

@@ -1,0 +1,1 @@
+"""Cutting a text into cells without losing the place of a character."""

@@ -1,0 +1,73 @@
+"""Elements between blanks, by MATLAB's rule for square brackets.
+
+A blank separates two operands. A sign with a blank before it and none behind it begins a new
+element: ``[c1 -s1]`` has two, ``[c1 - s1]`` and ``[c1 -  s1]`` one.
+"""
+
+import re
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final
+
+from service.expressions.vocabulary.functions import SPELLINGS
+from service.grids.cutting.limits import GRID_LIMITS
+from service.grids.cutting.pairs import outside, pairs
+from service.grids.cutting.source_text import SourceText
+
+_SIGNS: Final = "+-−–"
+_BINARY: Final = "*/^×·⋅∙∗•÷="
+_UNIT: Final = re.compile(r"(?:deg|degrees?|rad|radians?)(?![A-Za-z0-9])|[°º˚]", re.IGNORECASE)
+# A function's name alone is no element, so the blank behind it separates nothing.
+_FUNCTION: Final = re.compile(rf"(?<![A-Za-z])(?:{'|'.join(SPELLINGS)})(?:(?:\^|\*\*)\d+)?$")
+# The longest end of an element that a rule needs to see.
+_END: Final = 16
+# No row may have more; the rest of a longer row is left in one piece.
+_MAX_ELEMENTS: Final = 2 * GRID_LIMITS.columns
+
+
+@dataclass(frozen=True, slots=True)
+class BlankSeparated:
+    """The elements of one row; ``signs`` are the signs that began one, having no blank behind."""
+
+    elements: tuple[SourceText, ...]
+    signs: tuple[SourceText, ...]
+
+
+def split_blanks(row: SourceText) -> BlankSeparated:
+    """The elements of a row, by MATLAB's rule for blanks; brackets stay in one piece."""
+    words = _words(row.text)
+    elements: list[SourceText] = []
+    signs: list[SourceText] = []
+    if not words:
+        return BlankSeparated((), ())
+    start, end = words[0]
+    for next_start, next_end in words[1:]:
+        left, right = row.text[max(start, end - _END) : end], row.text[next_start:next_end]
+        if len(elements) < _MAX_ELEMENTS and not continues(left, right):
+            elements.append(row.cut(start, end))
+            if right[0] in _SIGNS:
+                signs.append(row.cut(next_start, next_end))
+            start = next_start
+        end = next_end
+    elements.append(row.cut(start, end))
+    return BlankSeparated(tuple(elements), tuple(signs))
+
+
+def continues(left: str, right: str) -> bool:
+    """Whether ``right``, behind a blank, belongs to the same element as ``left``."""
+    if left[-1] == "*" and left[-2:-1].strip(" \t\r\n.*"):
+        # d3* 0 is a marked joint variable and a zero, not a product.
+        return False
+    if left[-1] in _SIGNS or left[-1] in _BINARY:
+        return True
+    if right[0] in _SIGNS:
+        return len(right) == 1
+    if right[0] in _BINARY or right[:2] in {".*", "./", ".^"} or _UNIT.match(right):
+        return True
+    return _FUNCTION.search(left) is not None
+
+
+def _words(text: str) -> list[tuple[int, int]]:
+    """The [start, end) of each word between blanks; blanks in brackets separate nothing."""
+    blanks = [i for i in outside(text, pairs(text)) if text[i].isspace()]
+    return [(a + 1, b) for a, b in pairwise([-1, *blanks, len(text)]) if a + 1 < b]

@@ -1,0 +1,100 @@
+"""The protocol of all formats: a text in, a grid or one GridError out."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+from service.expressions.errors import Note, Span, TextError
+from service.grids.cutting.limits import GRID_LIMITS
+from service.grids.cutting.source_text import SourceText
+
+GridCell = SourceText
+Rows = Sequence[Sequence[GridCell]]
+
+
+class GridError(TextError):
+    """A text that is no table or matrix, or more than one. ``span`` is in the text as pasted."""
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """Rows of cells, not always equally long; ``format`` names the format of the text."""
+
+    format: str
+    rows: tuple[tuple[GridCell, ...], ...]
+    notes: tuple[Note, ...] = ()
+
+    @property
+    def size(self) -> str:
+        """The size in words: ``4 × 4``, or ``3 × 2 to 4`` where the rows differ."""
+        shortest, longest = min(map(len, self.rows)), max(map(len, self.rows))
+        columns = str(longest) if shortest == longest else f"{shortest} to {longest}"
+        return f"{len(self.rows)} × {columns}"
+
+
+@dataclass(frozen=True, slots=True)
+class GridFormat:
+    """One way to write a grid.
+
+    ``matches`` tells whether a text seems to be in this format, and raises nothing; ``parse`` reads
+    it and may raise GridError. Both take time linear in the text.
+    """
+
+    matches: Callable[[str], bool]
+    parse: Callable[[SourceText], Grid]
+
+
+def too_many_matrices(whole: Span) -> GridError:
+    """The error for more matrices than an arm has links."""
+    message = f"A pasted text has at most {GRID_LIMITS.rows} matrices; yours has more."
+    return GridError("too_many_matrices", message, whole)
+
+
+def too_many_rows(found: str, whole: Span) -> GridError:
+    """The error for a table with ``found`` rows, "14 in all" or "more"."""
+    most = f"A table has at most {GRID_LIMITS.rows - 1} rows below a header"
+    return GridError("too_many_rows", f"{most}; yours has {found}.", whole)
+
+
+def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid:
+    """A grid of tidied cells, without empty rows and empty outer columns.
+
+    Raises GridError where nothing is left, or more than the limits allow.
+    """
+    tidied = [[tidy(cell) for cell in row] for row in rows]
+    filled = [row for row in tidied if any(cell.text for cell in row)]
+    if not filled:
+        raise GridError("empty", "All cells of this table or matrix are empty.", whole)
+    filled = _without_empty_columns(filled)
+    if len(filled) > GRID_LIMITS.rows:
+        raise too_many_rows(f"{len(filled)} in all", whole)
+    widest = max(map(len, filled))
+    if widest > GRID_LIMITS.columns:
+        message = f"A table has at most {GRID_LIMITS.columns} columns; yours has {widest}."
+        raise GridError("too_many_columns", message, whole)
+    return Grid(name, tuple(map(tuple, filled)), tuple(notes))
+
+
+def tidy(cell: GridCell) -> GridCell:
+    """The cell without blanks around it and without marks that only style it: $…$, `…`."""
+    cell = cell.strip()
+    for mark in ("`", "**"):
+        if len(cell.text) > 2 * len(mark) and cell.text.startswith(mark):
+            inner = cell.cut(len(mark), len(cell.text) - len(mark))
+            if cell.text.endswith(mark) and mark not in inner.text:
+                cell = inner.strip()
+    if "$" in cell.text and cell.text.count("$") % 2 == 0 and "\\$" not in cell.text:
+        # A blank in its place keeps $a$$b$ from becoming one name.
+        cell = SourceText(cell.text.replace("$", " "), cell.starts, cell.ends, cell.at).strip()
+    if cell.text.startswith("\\(") and cell.text.endswith("\\)"):
+        cell = cell.cut(2, len(cell.text) - 2).strip()
+    return cell
+
+
+def _without_empty_columns(rows: list[list[GridCell]]) -> list[list[GridCell]]:
+    """The rows without cells at the right, and a column at the left, that are empty throughout."""
+    while all(row and not row[-1].text for row in rows if len(row) == max(map(len, rows))):
+        widest = max(map(len, rows))
+        rows = [row[:-1] if len(row) == widest else row for row in rows]
+    while len({len(row) for row in rows}) == 1 and not any(row[0].text for row in rows):
+        rows = [row[1:] for row in rows]
+    return rows

@@ -1,0 +1,1 @@
+"""The formats of pasted tables, one file each."""

@@ -1,0 +1,68 @@
+"""Columns between blanks, where each line has the same number of values."""
+
+import itertools
+import re
+from typing import Final
+
+from service.expressions.errors import Note, counted
+from service.grids.cutting.blanks import continues, split_blanks
+from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
+from service.grids.cutting.source_text import SourceText
+
+_GAP: Final = re.compile(r"[^\S\r\n]{2,}")
+_DASHES: Final = frozenset("-=_─━═")
+
+
+def _matches(text: str) -> bool:
+    lines = [line.strip() for line in text.strip().splitlines()]
+    lines = [line for line in lines if line and not _is_rule(line)]
+    return len(lines) > 1 and all(any(c.isspace() for c in line) for line in lines)
+
+
+def _parse(source: SourceText) -> Grid:
+    lines = [line.strip() for line in source.lines()]
+    lines = [line for line in lines if line.text and not _is_rule(line.text)]
+    wide = [_at_gaps(line) for line in lines]
+    narrow = [list(split_blanks(line).elements) for line in lines]
+    readings = [rows for rows in (wide, narrow) if _is_table(rows)]
+    if not readings:
+        raise _uneven(lines, narrow)
+    if len(readings) == 2 and list(map(len, wide)) != list(map(len, narrow)):
+        raise GridError(
+            "ambiguous_columns",
+            f"Each line may have {len(wide[0])} or {len(narrow[0])} values: a space may separate "
+            "two values or stand inside one. Write commas between the values.",
+            lines[0].whole,
+        )
+    first = readings[0][0]
+    message = f"Spaces were read as separators: each line has {len(first)} values."
+    note = Note("blank_columns", message, first[0].whole)
+    return grid("columns", readings[0], source.whole, [note])
+
+
+def _is_rule(line: str) -> bool:
+    return len(line) > 2 and set(line) - {" "} <= _DASHES
+
+
+def _at_gaps(line: SourceText) -> list[SourceText]:
+    """The pieces between two or more blanks; none where one of them is half a value."""
+    pieces = line.split(_GAP)
+    halves = any(continues(left.text, right.text) for left, right in itertools.pairwise(pieces))
+    return [] if halves else pieces
+
+
+def _is_table(rows: list[list[SourceText]]) -> bool:
+    return len({len(row) for row in rows}) == 1 and len(rows[0]) > 1
+
+
+def _uneven(lines: list[SourceText], rows: list[list[SourceText]]) -> GridError:
+    at = next((i for i, row in enumerate(rows) if len(row) != len(rows[0])), 0)
+    return GridError(
+        "ambiguous_columns",
+        f"Line 1 seems to have {counted(len(rows[0]))}, line {at + 1} seems to have "
+        f"{counted(len(rows[at]))}. Write commas between the values.",
+        lines[at].whole,
+    )
+
+
+FORMAT: Final = GridFormat(_matches, _parse)

@@ -1,0 +1,238 @@
+r"""LaTeX: tabular, array, bmatrix and the like, or their rows alone (``a & b \\ c & d``)."""
+
+import re
+from typing import Final
+
+from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
+from service.grids.cutting.source_text import SourceText, joined
+from service.grids.scripts.program_text import text_around
+
+# The number of arguments in braces behind \begin{…}.
+ARGUMENTS: Final = {
+    "tabular": 1, "longtable": 1, "array": 1, "tabular*": 2, "tabularx": 2,
+    "matrix": 0, "bmatrix": 0, "pmatrix": 0, "Bmatrix": 0, "smallmatrix": 0, "bsmallmatrix": 0,
+    "psmallmatrix": 0, "matrix*": 0, "bmatrix*": 0, "pmatrix*": 0,
+}  # fmt: skip
+# Plain TeX, as Maxima prints it: \pmatrix{a & b \cr c & d \cr}.
+PLAIN: Final = re.compile(r"\\[pbB]?matrix\s{0,4}(?=\{)")
+BEGIN: Final = re.compile(r"\\(begin|end)[ \t]*\{([A-Za-z]{1,20}\*?)\}")
+_TOKEN: Final = re.compile(r"\\(?:[A-Za-z]+|.)|[{}&]", re.DOTALL)
+_ROW_ENDS: Final = frozenset({"\\\\", "\\tabularnewline", "\\cr"})
+# Only what can be nothing else is an option: a cell may begin with a bracket, as [q_1] + l_1 does.
+_LENGTH: Final = (
+    r"(?:\s{0,8}\[\s*[-+]?[0-9.]{1,8}\s*(?:pt|em|ex|mm|cm|in|\\(?:baselineskip|jot|tabcolsep"
+    r"|(?:small|med|big)skipamount|(?:heavy|light|cmid)rulewidth))\s*\])?"
+)
+_DASHES: Final = r"(?:\s{0,8}\[[0-9.]{1,8}[a-z]{2}/[0-9.]{1,8}[a-z]{2}\])?"
+_TRIM: Final = r"(?:\s{0,8}\([a-z]{0,4}\))?"
+_COLOURS: Final = r"(?:\s{0,8}\[[a-zA-Z]{1,10}\])?"
+_BRACED: Final = r"(?:\s{0,8}\{[^{}]{0,40}\})"
+_GAP: Final = re.compile(rf"\*?{_LENGTH}")
+# Commands that are no part of a cell, and what may stand behind each.
+_OPTIONS: Final = {
+    "hline|endhead|endfirsthead|endfoot|endlastfoot|displaystyle": "",
+    "toprule|midrule|bottomrule|addlinespace": _LENGTH,
+    "hdashline": _DASHES,
+    "cmidrule": f"{_LENGTH}{_TRIM}{_BRACED}?",
+    "cline|noalign": f"{_BRACED}?",
+    "specialrule": f"{_BRACED}{{0,3}}",
+    "rowcolor": f"{_COLOURS}{_BRACED}?",
+}
+_RULES: Final = re.compile(
+    rf"\\(?:{'|'.join(f'(?:{name})(?![A-Za-z]){options}' for name, options in _OPTIONS.items())})"
+)
+# A sign behind a backslash begins no comment.
+_COMMENT: Final = re.compile(r"\\.|%[^\n]*", re.DOTALL)
+_POSITION: Final = re.compile(r"(?:\s{0,40}\[\s*[lcrtbhpsm!]{0,4}\s*\])?\s{0,40}")
+# Sizes of brackets mean nothing, and are half of what SymPy's LaTeX consists of.
+_SIZES: Final = re.compile(r"\\(?:left|right|[bB]igg?[lr]?)\s{0,4}(?=[()\[\]])")
+_SPANNING: Final = frozenset({"\\multicolumn", "\\multirow"})
+_WRAPPERS: Final = (
+    re.compile(r"\s|[$,.;]|&|\\[\\\[\](),;:!> ]|\\q?quad(?![A-Za-z])"),
+    re.compile(
+        r"\\(?:begin|end)\s?\{(?:equation|displaymath|math|align|aligned|gather|gathered|table|center"
+        r"|figure|document|split|multline|eqnarray|flalign|cases|itemize|enumerate)\*?\}"
+        r"(?:\[[a-zA-Z!]{0,6}\])?|\\begin\{array\}\{[clr|]{0,12}\}|\\end\{array\}"
+    ),
+    re.compile(r"\\(?:left|right|[bB]igg?[lr]?)?\s?\\?[\[\](){}.]|[\[\](){}]"),
+    re.compile(
+        r"\\(?:centering|displaystyle|small|footnotesize|scriptsize|normalsize|large|noindent"
+        r"|boxed|nonumber|notag|item)(?![A-Za-z])"
+    ),
+    re.compile(
+        r"\\(?:caption|label|tag|vspace|hspace|setlength|l?eqno|text|mbox)\*?"
+        r"(?:\{(?:[^{}=]|\{[^{}]{0,80}\}){0,200}\}){1,2}"
+    ),
+)
+
+
+def _matches(text: str) -> bool:
+    if any(found[2] in ARGUMENTS or "matrix" in found[2] for found in BEGIN.finditer(text)):
+        return True
+    return ("\\\\" in text and "&" in text) or PLAIN.search(text) is not None
+
+
+def _parse(source: SourceText) -> Grid:
+    rows = _rows(_body(without_comments(source)))
+    if not any(cell.text.strip() for cell in rows[-1]):
+        rows.pop()
+    return grid("LaTeX", rows, source.whole)
+
+
+def without_comments(source: SourceText) -> SourceText:
+    r"""The text without its comments; \% is a sign."""
+    text = source.text
+    pieces: list[SourceText] = []
+    start = 0
+    for found in _COMMENT.finditer(text):
+        if found[0].startswith("%"):
+            pieces.append(source.cut(start, found.start()))
+            start = found.end()
+    return joined([*pieces, source.cut(start, len(text))], source.whole[0])
+
+
+def _body(source: SourceText) -> SourceText:
+    """The content of the environment; the whole text where only its rows were pasted."""
+    text = source.text
+    marks = [mark for mark in BEGIN.finditer(text) if mark[2] in ARGUMENTS]
+    if not marks and (plain := PLAIN.search(text)):
+        end = behind_brace(source, plain.end())
+        _check_in_front(source.cut(0, plain.start()))
+        check_wrapper(source.cut(end, len(text)))
+        return source.cut(plain.end() + 1, end - 1)
+    if not marks:
+        if other := next((mark for mark in BEGIN.finditer(text) if "matrix" in mark[2]), None):
+            message = "This is a determinant or another form that is no plain matrix; use bmatrix."
+            raise GridError("not_a_matrix", message, source.span(*other.span()))
+        return source
+    first = marks[0]
+    if first[1] == "end":
+        raise never_begun(source, first)
+    if len(marks) == 1:
+        raise never_ended(source, first)
+    last = marks[1]
+    if last[1] == "begin":
+        message = "One matrix or table inside another cannot be read. Write all entries in one."
+        raise GridError("nested_table", message, source.span(*last.span()))
+    if last[2] != first[2]:
+        raise other_end(source, first, last)
+    _check_in_front(source.cut(0, first.start()))
+    check_wrapper(source.cut(last.end(), len(text)))
+    return source.cut(_behind_arguments(source, first), last.start())
+
+
+def never_begun(source: SourceText, mark: re.Match[str]) -> GridError:
+    """The error for an end of an environment without its beginning."""
+    message = f"This ends a {mark[2]} that has no beginning. Put \\begin{{{mark[2]}}} in front."
+    return GridError("unbalanced_environment", message, source.span(*mark.span()))
+
+
+def never_ended(source: SourceText, mark: re.Match[str]) -> GridError:
+    """The error for a beginning of an environment without its end."""
+    message = f"This {mark[2]} is never ended; \\end{{{mark[2]}}} is missing."
+    return GridError("unbalanced_environment", message, source.span(*mark.span()))
+
+
+def other_end(source: SourceText, begin: re.Match[str], end: re.Match[str]) -> GridError:
+    """The error for an end that has another name than the beginning."""
+    message = f"This does not fit \\begin{{{begin[2]}}}."
+    return GridError("unbalanced_environment", message, source.span(*end.span()))
+
+
+def _check_in_front(front: SourceText) -> None:
+    """Raise GridError for a factor before the matrix; the left side of an equation is its name."""
+    if behind_wrappers(front.text) == len(front.text):
+        return
+    check_wrapper(front.cut(front.text.rfind("=") + 1, len(front.text)))
+
+
+def check_wrapper(around: SourceText) -> None:
+    """Raise GridError where more than layout stands around the matrix."""
+    end = behind_wrappers(around.text)
+    if end < len(around.text):
+        raise text_around(around.cut(end, len(around.text)))
+
+
+def behind_wrappers(text: str) -> int:
+    """The place behind the layout that a text begins with."""
+    at = 0
+    while at < len(text):
+        found = next((match for token in _WRAPPERS if (match := token.match(text, at))), None)
+        if found is None:
+            break
+        at = found.end()
+    return at
+
+
+def _behind_arguments(source: SourceText, begin: re.Match[str]) -> int:
+    """The place behind the arguments of an environment, in front of which a position may stand."""
+    at = begin.end()
+    arguments = ARGUMENTS[begin[2]]
+    if not arguments and begin[2].endswith("*"):
+        return _behind_position(source, at)
+    for _ in range(arguments):
+        following = _behind_position(source, at)
+        if source.text[following : following + 1] != "{":
+            break
+        at = behind_brace(source, following)
+    return at
+
+
+def _behind_position(source: SourceText, at: int) -> int:
+    position = _POSITION.match(source.text, at)
+    return position.end() if position else at
+
+
+def behind_brace(source: SourceText, start: int) -> int:
+    """The place behind the brace that closes the one at ``start``. Raises GridError without it."""
+    depth = 0
+    for i in range(start, len(source.text)):
+        depth += {"{": 1, "}": -1}.get(source.text[i], 0)
+        if depth == 0:
+            return i + 1
+    raise GridError("unbalanced_bracket", "This { is never closed.", source.span(start, start + 1))
+
+
+def _rows(body: SourceText) -> list[list[SourceText]]:
+    r"""The cells between & of the rows between \\; those in braces separate nothing."""
+    text = body.text
+    rows: list[list[SourceText]] = [[]]
+    pieces: list[SourceText] = []
+    start = i = depth = 0
+
+    def end_cell(end: int) -> None:
+        cell = joined([*pieces, body.cut(start, end)], body.span(start)[0])
+        rows[-1].append(_without_sizes(cell))
+        pieces.clear()
+
+    while token := _TOKEN.search(text, i):
+        word, at, i = token[0], token.start(), token.end()
+        if word in "{}":
+            depth = max(0, depth + (1 if word == "{" else -1))
+        elif len(word) > 2 and (rule := _RULES.match(text, at)):
+            pieces.append(body.cut(start, at))
+            start = i = rule.end()
+        elif word in _SPANNING:
+            raise GridError(
+                "spanning_cell",
+                f"A cell over several columns or rows ({word}) cannot be read; "
+                "write each value in a cell of its own.",
+                body.span(at, i),
+            )
+        elif depth == 0 and word == "&":
+            end_cell(at)
+            start = i
+        elif depth == 0 and word in _ROW_ENDS:
+            end_cell(at)
+            rows.append([])
+            gap = _GAP.match(text, i)
+            start = i = gap.end() if gap else i
+    end_cell(len(text))
+    return rows
+
+
+def _without_sizes(cell: SourceText) -> SourceText:
+    return joined(cell.split(_SIZES), cell.at) if _SIZES.search(cell.text) else cell
+
+
+FORMAT: Final = GridFormat(_matches, _parse)

@@ -1,0 +1,36 @@
+"""Cells between semicolons: CSV of a spreadsheet whose decimal sign is the comma.
+
+A decimal comma stays in its cell, for the reader of expressions to name.
+"""
+
+from typing import Final
+
+from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
+from service.grids.cutting.pairs import outside, pairs
+from service.grids.cutting.source_text import SourceText
+from service.grids.formats.delimited import split_cells
+
+
+def _matches(text: str) -> bool:
+    return ";" in text
+
+
+def _parse(source: SourceText) -> Grid:
+    rows = split_cells(source, ";", brackets=False)
+    filled = [row for row in rows if any(cell.text.strip() for cell in row)]
+    if len(filled) == 1 and any(_holds_several(cell.text.strip()) for cell in filled[0]):
+        raise GridError(
+            "ambiguous_separators",
+            "The semicolons here may separate rows or values. Put [ ] around a MATLAB matrix, or "
+            "each row on a line of its own.",
+            source.whole,
+        )
+    return grid("CSV with semicolons", rows, source.whole)
+
+
+def _holds_several(cell: str) -> bool:
+    """Whether commas or blanks separate values inside the cell."""
+    return any(cell[i] == "," or cell[i].isspace() for i in outside(cell, pairs(cell)))
+
+
+FORMAT: Final = GridFormat(_matches, _parse)

@@ -1,0 +1,1 @@
+"""The formats of pasted matrices, one file each."""

@@ -1,0 +1,51 @@
+"""Matrices in brackets: MATLAB's, and lists of lists from Python, NumPy, SymPy and JSON."""
+
+from typing import Final
+
+from service.expressions.errors import Note
+from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
+from service.grids.cutting.source_text import SourceText
+from service.grids.matrices import lists, matlab
+from service.grids.scripts.program_text import begins_as_matrix, text_around, unwrap
+
+# No function, or one of MATLAB (or of MATLAB and Python).
+_OF_MATLAB: Final = frozenset({"", "sym", "simplify"})
+
+
+def _parse(source: SourceText) -> Grid:
+    matrix = unwrap(source)
+    notes: tuple[Note, ...] = ()
+    if len(matrix.groups) == 1:
+        [content] = matrix.groups
+        lines = lists.lines_of(content)
+        if lines is not None:
+            rows = lists.rows(lines)
+        elif matrix.maker not in _OF_MATLAB and ";" not in content.text:
+            rows = lists.flat(content, matrix)
+        else:
+            rows, notes = matlab.rows(content)
+    else:
+        # MATLAB prints each row of a symbolic matrix in brackets.
+        for group in matrix.groups:
+            if any(letter in ";\n" for letter in group.text):
+                raise text_around(matrix.groups[1])
+        rows = lists.rows(list(matrix.groups))
+    _refuse_objects(rows)
+    unquoted = [[lists.unquoted(cell.strip()) for cell in row] for row in rows]
+    return grid("brackets", unquoted, source.whole, notes)
+
+
+def _refuse_objects(rows: list[list[SourceText]]) -> None:
+    for row in rows:
+        for cell in row:
+            inner = cell.strip()
+            if inner.text.startswith(("{", '"', "'")) and ":" in inner.text:
+                raise GridError(
+                    "named_values",
+                    "Values with names (JSON objects, dictionaries) are not read from pasted "
+                    "text; paste a list of rows, or a table with a header line.",
+                    inner.whole,
+                )
+
+
+FORMAT: Final = GridFormat(begins_as_matrix, _parse)

@@ -1,0 +1,68 @@
+r"""Matrices drawn over several lines: SymPy's and Octave's ⎡…⎤, Maxima's [ … ], MATLAB's / … \.
+
+A row is one line, with an empty line of the drawing below it. Where a cell takes several lines, its
+powers and fractions stand on lines of their own, and the matrix is refused.
+"""
+
+import re
+from itertools import pairwise
+from typing import Final
+
+from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
+from service.grids.cutting.pairs import outside, pairs
+from service.grids.cutting.source_text import SourceText
+from service.grids.scripts.program_text import TAIL, behind_names
+
+_PIECES: Final = frozenset("⎡⎢⎣⎤⎥⎦⎛⎜⎝⎞⎟⎠⎧⎨⎩⎫⎬⎭")
+_LEFT: Final = "⎡⎢⎣⎛⎜⎝[/|\\"
+_RIGHT: Final = "⎤⎥⎦⎞⎟⎠]\\|/"
+# An empty line of the drawing: [    ].
+_SPACER: Final = re.compile(r"^[ \t]*\[[ \t]+\][ \t]*\r?$", re.MULTILINE)
+_SLASHES: Final = re.compile(r"^[ \t]*/[^\n]*\\[ \t]*\r?\n[ \t]*\|", re.MULTILINE)
+_GAP: Final = re.compile(r"[ \t]{2,}")
+
+
+def _matches(text: str) -> bool:
+    if not _PIECES.isdisjoint(text):
+        return True
+    return _SPACER.search(text) is not None or _SLASHES.search(text) is not None
+
+
+def _parse(source: SourceText) -> Grid:
+    drawing = source.cut(behind_names(source.text), len(source.text)).strip(TAIL)
+    lines = [line for line in map(SourceText.strip, drawing.lines()) if line.text]
+    rows: list[SourceText | None] = []
+    for line in lines:
+        inner = line.cut(1, len(line.text) - 1).strip()
+        if line.text[0] not in _LEFT or line.text[-1] not in _RIGHT or len(line.text) < 2:
+            raise _refusal(line)
+        if not _PIECES.isdisjoint(inner.text):
+            raise _refusal(line)
+        rows.append(inner if inner.text else None)
+    for above, row in pairwise(rows):
+        if above and row:
+            raise _refusal(row)
+    cells = [_cells(row) for row in rows if row]
+    if len(set(map(len, cells))) > 1:
+        raise _refusal(lines[0])
+    return grid("drawn matrix", cells, source.whole)
+
+
+def _cells(row: SourceText) -> list[SourceText]:
+    """The cells between commas, as MATLAB draws them, or else between two or more blanks."""
+    commas = [i for i in outside(row.text, pairs(row.text)) if row.text[i] == ","]
+    if not commas:
+        return row.split(_GAP)
+    return [row.cut(a + 1, b) for a, b in pairwise([-1, *commas, len(row.text)])]
+
+
+def _refusal(line: SourceText) -> GridError:
+    return GridError(
+        "drawn_matrix",
+        "This drawn matrix cannot be read safely. Paste it as one line of text or as LaTeX, as "
+        "print(T) or latex(T) in SymPy give it.",
+        line.whole,
+    )
+
+
+FORMAT: Final = GridFormat(_matches, _parse)

@@ -1,0 +1,129 @@
+r"""Several matrices in one LaTeX text, each with its name: ``A_1 = \begin{bmatrix} … A_2 = …``."""
+
+import re
+from collections.abc import Iterator
+from typing import Final
+
+from service.grids.cutting.grid import too_many_matrices
+from service.grids.cutting.limits import GRID_LIMITS
+from service.grids.cutting.source_text import SourceText
+from service.grids.formats.latex import (
+    ARGUMENTS,
+    BEGIN,
+    PLAIN,
+    behind_brace,
+    behind_wrappers,
+    check_wrapper,
+    never_begun,
+    never_ended,
+    other_end,
+    without_comments,
+)
+from service.grids.scripts.program_text import text_around
+
+_CLOSERS: Final = re.compile(r"(?:[ \t]|\\(?:right|[bB]igg?r?)\s?\\?[\])}.]|[\])}])*")
+# What stands at a matrix and changes it; behind the end of a line ^0 may begin a name.
+_CHANGES: Final = re.compile(
+    r"[\^_'*/+\d-]|\\(?:cdot|times|circ|ast|div)(?![A-Za-z])|\s+(?:[_'*/+-]|\^\{?\\?[^\d{\\])"
+)
+_STATEMENTS: Final = re.compile(
+    r"\\\\|\$\$?|\\[\[(]|\n[ \t]*\n|\\(?:begin|end)\{[a-z]{4,10}\*?\}(?:\{[^{}]{0,20}\})?"
+    r"|\\item(?![A-Za-z])|\\q?quad(?![A-Za-z])|;"
+)
+_HEADING: Final = re.compile(
+    r"(?:[A-Za-z]{1,14}\s{1,3}){0,3}(?:[A-Za-z_^]{0,4}[\d_^{} ]{1,12}|[A-Z]_?\{?[en]\}?)"
+    r"\)?[:.]?(?=[\s$\\]|\Z)"
+)
+# Behind the matrices: T = A_1 A_2, which is left to whoever reads it.
+_PRODUCTS: Final = re.compile(r"[\s$,.;&\\(){}\[\]A-Za-z0-9_^]*=[\s$,.;&\\(){}\[\]A-Za-z0-9_^=]*")
+_BLANKS: Final = " \t\r\n&,.:"
+
+
+def several(source: SourceText) -> list[tuple[SourceText, SourceText]]:
+    """The matrices of a text, each with the name in front of it, which may be empty.
+
+    Raises GridError where an environment does not end, and where something stands beside a matrix
+    that may change it.
+    """
+    source = without_comments(source)
+    found: list[tuple[SourceText, SourceText]] = []
+    behind = 0
+    innermost = _innermost(source)
+    if len(innermost) > GRID_LIMITS.rows:
+        raise too_many_matrices(source.whole)
+    for start, end in innermost:
+        front = source.cut(behind, start)
+        if found:
+            _check_behind(front)
+        found.append((_name(front), source.cut(start, end)))
+        behind = end
+    if not found:
+        return [(source.cut(0, 0), source)]
+    rest = source.cut(behind, len(source.text))
+    _check_behind(rest)
+    if not _PRODUCTS.fullmatch(rest.text):
+        check_wrapper(rest)
+    return found
+
+
+def _innermost(source: SourceText) -> list[tuple[int, int]]:
+    """The [start, end) of each environment of a matrix that holds no other."""
+    return sorted([*_environments(source), *_plain(source)])
+
+
+def _environments(source: SourceText) -> Iterator[tuple[int, int]]:
+    begun: list[re.Match[str]] = []
+    innermost = False
+    for mark in BEGIN.finditer(source.text):
+        if mark[2] not in ARGUMENTS:
+            continue
+        if mark[1] == "begin":
+            begun.append(mark)
+        elif not begun:
+            raise never_begun(source, mark)
+        elif begun[-1][2] != mark[2]:
+            raise other_end(source, begun[-1], mark)
+        else:
+            begin = begun.pop()
+            if innermost:
+                yield begin.start(), mark.end()
+        innermost = mark[1] == "begin"
+    if begun:
+        raise never_ended(source, begun[-1])
+
+
+def _plain(source: SourceText) -> Iterator[tuple[int, int]]:
+    end = 0
+    for mark in PLAIN.finditer(source.text):
+        if mark.start() >= end:
+            end = behind_brace(source, mark.end())
+            yield mark.start(), end
+
+
+def _check_behind(rest: SourceText) -> None:
+    """Raise GridError where ``rest``, behind a matrix, begins with what changes the matrix."""
+    closers = _CLOSERS.match(rest.text)
+    at = closers.end() if closers else 0
+    if _CHANGES.match(rest.text, at):
+        raise text_around(rest.cut(at, len(rest.text)))
+
+
+def _name(front: SourceText) -> SourceText:
+    """The name in front of a matrix: the left side of the last equation, or a heading.
+
+    Raises GridError for a factor, and for a word that may change the matrix.
+    """
+    right = front.text.rfind("=") + 1
+    if not right:
+        rest = front.cut(behind_wrappers(front.text), len(front.text)).strip(_BLANKS)
+        heading = _HEADING.match(rest.text)
+        end = heading.end() if heading else 0
+        check_wrapper(rest.cut(end, len(rest.text)))
+        return rest.cut(0, end)
+    check_wrapper(front.cut(right, len(front.text)))
+    statements = front.cut(0, right).split(_STATEMENTS)
+    for statement in reversed(statements):
+        left = statement.cut(0, statement.text.find("=")).strip(_BLANKS)
+        if "=" in statement.text and left.text:
+            return left
+    return front.cut(0, 0)

@@ -1,0 +1,1 @@
+"""Scripts and sessions in MATLAB or Python."""

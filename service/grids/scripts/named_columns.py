@@ -1,0 +1,148 @@
+"""A DH table as a dictionary in Python: of its columns, or of its parameters by their indices.
+
+``{'a': [a1, a2], 'alpha': […], 'd': […], 'theta': […]}``, also in ``pd.DataFrame(…)``; and what is
+put in for the symbols of SymPy, ``{alpha0: 0, a0: 0, d1: 0.75, alpha1: -pi/2, …}``.
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from service.expressions.errors import Note, counted
+from service.grids.cutting.grid import grid, too_many_rows
+from service.grids.cutting.limits import GRID_LIMITS
+from service.grids.cutting.pairs import strict_pairs
+from service.grids.cutting.source_text import SourceText
+from service.grids.matrices.lists import unquoted
+from service.grids.scripts.program_text import MAKERS
+from service.grids.scripts.robot_table import RobotTable
+from service.grids.scripts.script import arguments, called, shown, statements, unread_script
+
+_DICTIONARY: Final = re.compile(
+    r"\{\s{0,40}(?:'[^'\n]{1,40}'|\"[^\"\n]{1,40}\"|[A-Za-z]\w{0,20})\s?:"
+)
+_NAME: Final = re.compile(r"[A-Za-z]\w{0,60}[ \t]*=(?!=)[ \t]*")
+_KEY: Final = re.compile(r"(alpha|al|a|d|theta|th|q|α|θ)_?(\d{1,2})")
+_COLUMNS: Final = {
+    "alpha": "alpha", "al": "alpha", "α": "alpha", "a": "a", "d": "d", "theta": "theta",
+    "th": "theta", "θ": "theta", "q": "theta",
+}  # fmt: skip
+_PARAMETERS: Final = frozenset(_COLUMNS.values())
+_FRAME: Final = "DataFrame"
+
+
+@dataclass(frozen=True, slots=True)
+class _Item:
+    key: SourceText
+    value: SourceText
+
+
+def describes_columns(text: str) -> bool:
+    """Whether a text seems to hold a dictionary."""
+    # LaTeX has braces and colons, too.
+    return ":" in text and "\\" not in text and _DICTIONARY.search(text) is not None
+
+
+def read_columns(source: SourceText) -> RobotTable | None:
+    """The table in a dictionary; None where the text holds none of a table.
+
+    Raises GridError where the text cannot be read.
+    """
+    for statement in statements(source):
+        found = _items(statement)
+        if not found:
+            continue
+        keys = [_KEY.fullmatch(item.key.text) for item in found]
+        if all(keys):
+            return _by_index(found, [(_COLUMNS[k[1]], int(k[2])) for k in keys if k], source)
+        lists = [_list(item.value) for item in found]
+        if all(lists) and len(lists) >= len(_PARAMETERS):
+            return _by_column(found, [each for each in lists if each], source)
+    return None
+
+
+def _items(statement: SourceText) -> list[_Item]:
+    """The keys and values of a statement that is a dictionary, perhaps with a name."""
+    name = _NAME.match(statement.text)
+    value = statement.cut(name.end() if name else 0, len(statement.text)).strip()
+    call = called(value)
+    if call and call[0] == _FRAME:
+        value = (arguments(call[1]) or [call[1]])[0]
+    if not value.text.startswith("{") or strict_pairs(value)[0] != len(value.text):
+        return []
+    items = []
+    for piece in arguments(value.cut(1, len(value.text) - 1)):
+        key, colon, _ = piece.text.partition(":")
+        if not colon:
+            return []
+        behind = piece.cut(len(key) + 1, len(piece.text)).strip()
+        items.append(_Item(unquoted(piece.cut(0, len(key)).strip()), behind))
+    return items
+
+
+def _list(value: SourceText) -> list[SourceText] | None:
+    """The values in a list, which a function may make an array of."""
+    call = called(value)
+    if call and call[0] in MAKERS:
+        value = call[1].strip()
+    if value.text[:1] not in {"[", "("} or strict_pairs(value)[0] != len(value.text):
+        return None
+    return [unquoted(each) for each in arguments(value.cut(1, len(value.text) - 1))]
+
+
+def _by_column(
+    items: list[_Item], columns: list[list[SourceText]], source: SourceText
+) -> RobotTable:
+    longest = max(columns, key=len)
+    for item, column in zip(items, columns, strict=True):
+        if len(column) != len(longest):
+            raise unread_script(
+                f"The column {shown(item.key)} has {counted(len(column))}, another has "
+                f"{len(longest)}. Write one for each joint.",
+                item.value,
+            )
+    rows = [[item.key for item in items], *map(list, zip(*columns, strict=True))]
+    return RobotTable(grid("dictionary", rows, source.whole), has_headers=True)
+
+
+def _by_index(
+    items: list[_Item], keys: list[tuple[str, int]], source: SourceText
+) -> RobotTable | None:
+    """The rows of parameters with indices; a joint variable that is left out stands for itself.
+
+    None where they are no whole table.
+    """
+    cells = dict(zip(keys, (item.value for item in items), strict=True))
+    numbers = {index for column, index in keys if column in ("d", "theta")}
+    count = max(numbers, default=0)
+    if count >= GRID_LIMITS.rows:
+        raise too_many_rows("more", source.whole)
+    before = {index for column, index in keys if column in ("a", "alpha")}
+    shift = 1 if 0 in before else 0
+    is_whole = numbers == set(range(1, count + 1)) and len(cells) == len(keys)
+    needed = {(column, i - shift) for column in ("a", "alpha") for i in numbers}
+    if not is_whole or not needed or needed != {key for key in keys if key[0] in ("a", "alpha")}:
+        return None
+    rows = [_indexed_row(cells, i, shift) for i in range(1, count + 1)]
+    first, last = items[0].key.whole, items[-1].value.whole
+    message = "The indices say which row a parameter belongs to"
+    if shift:
+        message += "; those of alpha and a are one less, as in the modified convention"
+    notes = [Note("indexed_parameters", f"{message}.", (first[0], last[1]))]
+    table = grid("dictionary", rows, source.whole, notes)
+    return RobotTable(table, "modified" if shift else None)
+
+
+def _indexed_row(
+    cells: Mapping[tuple[str, int], SourceText], number: int, shift: int
+) -> list[SourceText]:
+    d, theta = cells.get(("d", number)), cells.get(("theta", number))
+    beside = d or theta
+    assert beside is not None
+    return [
+        cells["a", number - shift],
+        cells["alpha", number - shift],
+        d or beside.spelled(f"d{number}"),
+        theta or beside.spelled(f"q{number}"),
+    ]

@@ -1,0 +1,326 @@
+"""A script for a robotics toolbox -> the DH table of its robot, a row for each link.
+
+``SerialLink`` and its links in MATLAB, ``DHRobot`` and its links in Python, and the joints that
+``setFixedTransform`` places. Nothing is run: lines that only show the robot or move it are left
+aside, and where the table is not certain the script is refused.
+
+Sources: P. Corke, Robotics Toolbox for MATLAB, ``Link`` and ``SerialLink``; Robotics Toolbox for
+Python, ``DHRobot``; MathWorks, Robotics System Toolbox, ``rigidBodyJoint/setFixedTransform``.
+"""
+
+import re
+from dataclasses import dataclass, field
+from typing import Final
+
+from service.expressions.errors import Note
+from service.grids.cutting.grid import GridError, grid
+from service.grids.cutting.source_text import SourceText
+from service.grids.matrices.lists import unquoted
+from service.grids.scripts.given_values import GivenValue, told_numbers
+from service.grids.scripts.robot_links import (
+    LINK_CLASSES,
+    JointType,
+    RobotLink,
+    row_of,
+    transform_link,
+)
+from service.grids.scripts.robot_table import RobotTable
+from service.grids.scripts.script import arguments, called, shown, statements, unread_script
+from service.grids.scripts.script_names import (
+    NUMBERED,
+    ScriptNames,
+    by_numbers,
+    check_count,
+    in_order,
+    too_many_robots,
+)
+
+_ROBOTS: Final = frozenset({"SerialLink", "DHRobot"})
+_TRANSFORM: Final = "setFixedTransform"
+_JOINT: Final = "rigidBodyJoint"
+_TELLING: Final = "|".join(sorted({*LINK_CLASSES, *_ROBOTS, _TRANSFORM}, key=len, reverse=True))
+# What makes a text a script for a robot. ``Link (i)`` is a header of many a table.
+_SCRIPT: Final = re.compile(
+    r"(?<!\w)(?:(?:DHLink|(?:Revolute|Prismatic)M?DH|SerialLink|DHRobot|setFixedTransform)\("
+    r"|(?:Link|Revolute|Prismatic)\s?\((?=[\['\")]|\w{1,20}\s?=|\w{1,20}\(|\w{1,20}\s?,\s?['\"]))"
+)
+_WORD: Final = re.compile(rf"(?<!\w)(?:{_TELLING})\s?\(")
+_SIGNS_OF_A_SCRIPT: Final = ("Link", "Revolute", "Prismatic", "DHRobot", _TRANSFORM)
+
+_CONTROL: Final = re.compile(
+    r"(?:for|parfor|while|if|elif|elseif|else|switch|case|function|def|class|try|with)(?!\w)"
+)
+_ASSIGNMENT: Final = re.compile(
+    r"(?P<name>[A-Za-z_]\w{0,60})(?:\s?(?P<bracket>[({\[])\s?(?P<index>\d{1,2}|end\s?\+\s?1)\s?[)}\]])?"
+    r"(?:\.(?P<property>\w{1,30}))?\s*=(?!=)\s*"
+)
+_APPENDED: Final = re.compile(r"(?P<name>[A-Za-z_]\w{0,60})\.append\s?\(")
+_SHOWS: Final = frozenset({"print", "disp", "display"})
+_DECLARES: Final = re.compile(r"(?:\w{1,20}\.)?(?:symbols|Symbol|sym|syms|var)\s?\(")
+_NAME: Final = re.compile(r"[A-Za-z]\w*")
+# Properties that change a link or the robot; the others are limits, masses, plots.
+_CELLS: Final = frozenset({"a", "alpha", "d", "theta", "offset"})
+_FRAMES: Final = frozenset({"base", "tool"})
+_CHANGE: Final = re.compile(
+    r"[^=]{0,80}\.\s?(?:a|alpha|d|theta|offset|base|tool|sigma|mdh|flip|jointtype|JointAxis|links)"
+    r"\s?(?:[(\[{][^=]{0,20})?=(?!=)"
+)
+# A link as MATLAB shows it, once it is made.
+_PRINTED: Final = re.compile(r"(?:Revolute|Prismatic)\((?:std|mod)\)")
+_TOLD: Final = 12
+
+
+def describes_robot(text: str) -> bool:
+    """Whether a text seems to be a script that makes a robot of its links."""
+    return any(map(text.__contains__, _SIGNS_OF_A_SCRIPT)) and _SCRIPT.search(text) is not None
+
+
+def read_script(source: SourceText) -> RobotTable | None:
+    """The table of the robot that a script describes; None where only its comments name a link.
+
+    Raises GridError where it describes more than one, or leaves open what its table is.
+    """
+    script = _Script()
+    found = statements(source)
+    if not any(_WORD.search(statement.text) for statement in found):
+        return None
+    for statement in found:
+        script.take(statement)
+    links = script.robot_links(source)
+    rows, added, number = [], [], 0
+    for link in links:
+        link.cells = {column: script.names.element(cell) for column, cell in link.cells.items()}
+        number += link.joint is not JointType.FIXED
+        row = row_of(link, number)
+        rows.append(row.cells)
+        added += [row.added] * bool(row.added)
+    if len({link.modified for link in links}) > 1:
+        raise unread_script(
+            "Some links are standard and some modified. Write all of them in one convention.",
+            source,
+        )
+    read = {name for row in rows for cell in row for name in _NAME.findall(cell.text)}
+    notes = [
+        _note(links, added),
+        *script.names.notes[:1],
+        *told_numbers([each for each in script.given if each.name in read], read),
+    ]
+    convention = "modified" if links[0].modified else "standard"
+    return RobotTable(grid("script", rows, source.whole, notes), convention)
+
+
+def _note(links: list[RobotLink], added: list[str]) -> Note:
+    message = "Each link of the script was read as a row."
+    if added:
+        names = ", ".join(added[:_TOLD])
+        variables = "joint variables" if len(added) > 1 else "joint variable"
+        message = f"Each link of the script was read as a row, with the {variables} {names}."
+    first, last = links[0].source.whole, links[-1].source.whole
+    return Note("script_rows", message, (min(first[0], last[0]), max(first[1], last[1])))
+
+
+@dataclass(slots=True)
+class _Script:
+    """What the statements so far have given names to."""
+
+    names: ScriptNames = field(default_factory=ScriptNames)
+    unnamed: list[RobotLink] = field(default_factory=list)
+    placed: list[RobotLink] = field(default_factory=list)
+    robot: list[RobotLink] | None = None
+    joints: dict[str, JointType | None] = field(default_factory=dict)
+    given: list[GivenValue] = field(default_factory=list)
+    controlled: bool = False
+    last_number: int = 0
+
+    def take(self, statement: SourceText) -> None:
+        """Take one statement. Raises GridError where it may change the table."""
+        text = statement.text
+        tells = _WORD.search(text) is not None
+        if _CONTROL.match(text):
+            self.controlled = True
+        if _PRINTED.match(text):
+            return
+        changes = _CHANGE.match(text)
+        if self.controlled and (tells or changes):
+            raise unread_script(
+                "Loops, conditions and functions are not run. Write one `Link(…)` for each link.",
+                statement,
+            )
+        found = _ASSIGNMENT.match(text)
+        if changes:
+            self._change(statement, found)
+        elif found:
+            self._assign(statement, found, statement.cut(found.end(), len(text)), tells=tells)
+        elif tells:
+            self._call(statement)
+
+    def _assign(
+        self, statement: SourceText, found: re.Match[str], value: SourceText, *, tells: bool
+    ) -> None:
+        name = found["name"]
+        call = called(value) if "(" in value.text else None
+        if call and call[0] == _JOINT:
+            self.joints[_squeezed(found[0].rstrip("= \t"))] = _joint_type(call[1])
+            return
+        links = self.names.links_of(value) if tells or self.names.links else None
+        if links is not None and not found["property"]:
+            self.names.name_links(statement, name, _number(found), links)
+        elif tells and not self._makes_robot(value):
+            raise _unclear(statement)
+        elif tells or found["property"]:
+            return
+        elif number := _number(found):
+            self.names.name_element(name, number, value)
+        elif number is None:
+            self.names.name_value(name, value)
+            if not _is_declared(name, value.text):
+                self.given.append(GivenValue(name, value.text, statement))
+
+    def _change(self, statement: SourceText, found: re.Match[str] | None) -> None:
+        """Set a parameter of a link: ``L(2).offset = pi/2``."""
+        changed = found["property"] if found else None
+        if changed in _FRAMES:
+            raise _has_frames(statement)
+        known = self.names.links.get(found["name"], {}) if found else {}
+        number = _number(found) if found else None
+        link = known.get(number or 1)
+        if found is None or link is None or changed not in _CELLS or number == 0:
+            raise _unclear(statement)
+        if number is None and len(known) > 1:
+            raise _unclear(statement)
+        link.cells[changed] = statement.cut(found.end(), len(statement.text))
+
+    def _call(self, statement: SourceText) -> None:
+        """Take a call whose value has no name."""
+        if appended := _APPENDED.match(statement.text):
+            links = self.names.links_of(statement.cut(appended.end(), len(statement.text) - 1))
+            if links is None or not statement.text.endswith(")"):
+                raise _unclear(statement)
+            self.names.name_links(statement, appended["name"], 0, links)
+            return
+        call = called(statement)
+        if call and call[0] in _SHOWS:
+            statement = call[1].strip()
+            call = called(statement)
+        if call and call[0] == _TRANSFORM:
+            self._place(statement, arguments(call[1]))
+            return
+        if self._makes_robot(statement):
+            return
+        links = self.names.links_of(statement)
+        if links is None:
+            raise _unclear(statement)
+        self.unnamed += links
+        check_count(self.unnamed, statement)
+
+    def _makes_robot(self, source: SourceText) -> bool:
+        """Whether ``source`` makes the robot of links; then they are kept."""
+        call = called(source)
+        if call is None or call[0] not in _ROBOTS:
+            return False
+        first, *rest = arguments(call[1]) or [call[1]]
+        words = {unquoted(each).text for each in rest}
+        names = {each.text.partition("=")[0].strip() for each in rest if "=" in each.text}
+        if frames := [each for each in rest if _names_frame(each)]:
+            raise _has_frames(frames[0])
+        if "offset" in words | names:
+            raise _unclear(source)
+        links = self.names.links_of(first)
+        if links is None:
+            links = self.names.links_of_matrix(first, modified="modified" in words)
+        if links is None:
+            raise unread_script(
+                f"The links `{shown(first)}` are not in this text. Paste the lines that make them, "
+                "too.",
+                first,
+            )
+        if self.robot is not None and list(map(id, self.robot)) != list(map(id, links)):
+            raise too_many_robots(source)
+        self.robot = links
+        return True
+
+    def _place(self, statement: SourceText, given: list[SourceText]) -> None:
+        """Take ``setFixedTransform(jnt1, [a alpha d theta], 'dh')``."""
+        kind = unquoted(given[2]).text if len(given) == 3 else ""
+        values = self.names.vector(given[1]) if kind in {"dh", "mdh"} else None
+        if values is None:
+            raise unread_script(
+                "setFixedTransform is read with [a alpha d theta] and 'dh' or 'mdh'.", statement
+            )
+        joint = _squeezed(given[0].text)
+        if numbered := NUMBERED.fullmatch(joint):
+            number = int(numbered[2])
+            if number <= self.last_number:
+                raise unread_script(
+                    "The joints are not in the order of their numbers. Put their lines in order.",
+                    statement,
+                )
+            self.last_number = number
+        self.placed.append(
+            transform_link(values, self.joints.get(joint), statement, modified=kind == "mdh")
+        )
+        check_count(self.placed, statement)
+
+    def robot_links(self, source: SourceText) -> list[RobotLink]:
+        """The links of the robot in their order. Raises GridError where it is not certain."""
+        if self.placed:
+            if self.robot or self.names.links or self.unnamed:
+                raise too_many_robots(source)
+            return self.placed
+        if self.robot is not None:
+            return self.robot
+        named = [in_order(links, source) for links in self.names.links.values()]
+        if self.unnamed or not named:
+            if named or not self.unnamed:
+                raise _unclear(source)
+            return self.unnamed
+        longest = max(named, key=len)
+        others = {id(link) for links in named for link in links}
+        if others == set(map(id, longest)):
+            return longest
+        return by_numbers(self.names.links, source)
+
+
+def _number(found: re.Match[str]) -> int | None:
+    """The number of the link in the left side ``L(2) = ``, from 1; 0 for the next one."""
+    index = found["index"]
+    if index is None:
+        return None
+    return int(index) + (found["bracket"] == "[") if index.isdigit() else 0
+
+
+def _joint_type(inside: SourceText) -> JointType | None:
+    """The type in ``rigidBodyJoint('jnt1', 'revolute')``; fixed without one."""
+    given = arguments(inside)
+    if len(given) < 2:
+        return JointType.FIXED
+    named = unquoted(given[1]).text
+    return JointType(named) if named in set(JointType) else None
+
+
+def _names_frame(argument: SourceText) -> bool:
+    return unquoted(argument).text.partition("=")[0].strip() in _FRAMES
+
+
+def _squeezed(name: str) -> str:
+    return "".join(name.split())
+
+
+def _is_declared(name: str, value: str) -> bool:
+    """Whether the value of a letter is the symbol of its name: ``a1 = symbols('a1 a2')``."""
+    return _DECLARES.match(value) is not None and name in _NAME.findall(value)
+
+
+def _has_frames(source: SourceText) -> GridError:
+    return unread_script(
+        f"`{shown(source)}` is no link. Delete it, or paste the DH table with a row for it.",
+        source,
+    )
+
+
+def _unclear(source: SourceText) -> GridError:
+    return unread_script(
+        f"`{shown(source)}` is not understood here. Write each link as `L(1) = Link(…)`, and the "
+        "robot as `SerialLink(L)`.",
+        source,
+    )

@@ -1,0 +1,17 @@
+"""The DH table of a robot that a script describes."""
+
+from dataclasses import dataclass
+
+from service.grids.cutting.grid import Grid
+
+
+@dataclass(frozen=True, slots=True)
+class RobotTable:
+    """The table of a robot, and the convention that the script names: standard or modified.
+
+    With ``has_headers`` the first row says which column is which; else they are a, α, d, θ.
+    """
+
+    grid: Grid
+    convention: str | None = None
+    has_headers: bool = False

@@ -1,0 +1,191 @@
+"""The names of a script for a robot: the links and the matrices that they stand for."""
+
+import re
+from collections.abc import Sized
+from dataclasses import dataclass, field
+from typing import Final
+
+from service.expressions.errors import Note
+from service.grids.cutting.grid import GridError, too_many_rows
+from service.grids.cutting.limits import GRID_LIMITS
+from service.grids.cutting.pairs import split
+from service.grids.cutting.source_text import SourceText
+from service.grids.matrices import matlab
+from service.grids.scripts.robot_links import RobotLink, read_link, vector_link
+from service.grids.scripts.script import shown, unread_script
+
+# A name, one of its elements, or all of them: L, L(2), L{2}, L[1], L(:), DH(2,:).
+NAMED: Final = re.compile(
+    r"(?P<name>[A-Za-z_]\w{0,60})(?:\s?(?P<bracket>[({\[])\s?(?P<index>:|\d{1,2})"
+    r"\s?(?P<columns>,\s?:)?\s?[)}\]])?"
+)
+NUMBERED: Final = re.compile(r"(.*?)(\d{1,2})[)}\]]?")
+_MOST_ROWS: Final = GRID_LIMITS.rows - 1
+# A link may have a name of its own, and stand in lists.
+_MOST_LINKS: Final = 4 * _MOST_ROWS
+
+Links = dict[int, RobotLink]
+
+
+@dataclass(slots=True)
+class ScriptNames:
+    """The links by the names of their lists and their numbers in these, and other values."""
+
+    links: dict[str, Links] = field(default_factory=dict)
+    notes: list[Note] = field(default_factory=list)
+    _count: int = 0
+    _elements: dict[tuple[str, int], SourceText | None] = field(default_factory=dict)
+    _values: dict[str, SourceText] = field(default_factory=dict)
+    _matrices: dict[str, list[list[SourceText]]] = field(default_factory=dict)
+
+    def name_value(self, name: str, value: SourceText) -> None:
+        """Keep a value that is no link."""
+        self._values[name] = value
+        self._matrices.pop(name, None)
+
+    def name_element(self, name: str, number: int, value: SourceText) -> None:
+        """Keep a value that an element of a list is given: ``d(2) = 0.4``."""
+        known = self._elements.setdefault((name, number), value)
+        if known is None or known.text != value.text:
+            self._elements[name, number] = None
+
+    def element(self, cell: SourceText) -> SourceText:
+        """The value of a cell that is an element of a list in the script; any other cell itself.
+
+        Raises GridError where the script gives the element two values.
+        """
+        named = NAMED.fullmatch(cell.text)
+        if not named or not (named["index"] or "").isdigit() or named["columns"]:
+            return cell
+        name, number = named["name"], int(named["index"]) + (named["bracket"] == "[")
+        if (name, number) in self._elements:
+            value = self._elements[name, number]
+            if value is None:
+                raise unread_script(
+                    f"The script gives `{shown(cell)}` two values. Write its value here.", cell
+                )
+            return value
+        rows = self._matrix(cell.cut(0, len(name))) if name in self._values else None
+        if rows and len(rows) == 1 and 1 <= number <= len(rows[0]):
+            return rows[0][number - 1]
+        return cell
+
+    def name_links(
+        self, statement: SourceText, name: str, number: int | None, links: list[RobotLink]
+    ) -> None:
+        """Keep links under a name: all of it without a number, the next one with the number 0."""
+        known = self.links.setdefault(name, {})
+        first = len(known) + 1 if number == 0 else number or 1
+        if known if number is None else first in known or len(links) > 1:
+            raise unread_script(
+                f"`{shown(statement)}` gives a link a second value. Keep the one that counts.",
+                statement,
+            )
+        known.update(enumerate(links, first))
+        check_count(known, statement)
+        self._count += len(links)
+        if self._count > _MOST_LINKS:
+            raise too_many_rows("more", statement.whole)
+
+    def links_of(self, source: SourceText) -> list[RobotLink] | None:
+        """The links that an expression stands for; None where it is none of links."""
+        link = read_link(source, self.vector)
+        if link is not None:
+            return [link]
+        if named := NAMED.fullmatch(source.text):
+            known = self.links.get(named["name"])
+            if known is None or named["columns"]:
+                return None
+            if named["index"] in (None, ":"):
+                return in_order(known, source)
+            one = known.get(int(named["index"]) + (named["bracket"] == "["))
+            return [one] if one else None
+        if source.text[:1] not in {"[", "{"} or source.text[-1:] not in {"]", "}"}:
+            return None
+        inside = source.cut(1, len(source.text) - 1)
+        pieces = [piece for piece in split(inside, ",; \t\n\r") if piece.text]
+        links: list[RobotLink] = []
+        for piece in pieces[: _MOST_ROWS + 1]:
+            found = self.links_of(piece) if piece.text[0] not in "[{" else None
+            if found is None:
+                return None
+            links += found
+        check_count(links, source)
+        return links or None
+
+    def vector(self, source: SourceText) -> list[SourceText] | None:
+        """The values of a row in brackets, or of a row of a matrix that was given a name."""
+        named = NAMED.fullmatch(source.text)
+        if named and named["columns"] and named["index"] != ":":
+            rows = self._matrix(source.cut(*named.span("name")))
+            number = int(named["index"])
+            return rows[number - 1] if rows and 1 <= number <= len(rows) else None
+        rows = self._matrix(source)
+        return rows[0] if rows and len(rows) == 1 else None
+
+    def _matrix(self, source: SourceText) -> list[list[SourceText]] | None:
+        """The rows of a matrix in brackets, or of one that was given a name."""
+        name = source.text
+        if name in self._matrices:
+            return self._matrices[name]
+        source = self._values.get(name, source)
+        if not (source.text.startswith("[") and source.text.endswith("]")):
+            return None
+        rows, notes = matlab.rows(source.cut(1, len(source.text) - 1))
+        self.notes += notes
+        stripped = [[cell.strip() for cell in row] for row in rows]
+        if name in self._values:
+            self._matrices[name] = stripped
+        return stripped
+
+    def links_of_matrix(self, source: SourceText, *, modified: bool) -> list[RobotLink] | None:
+        """The links of ``SerialLink([theta d a alpha; …])``."""
+        rows = self._matrix(source)
+        if not rows:
+            return None
+        check_count(rows, source)
+        return [vector_link(row, _line_of(row), modified=modified) for row in rows]
+
+
+def by_numbers(named: dict[str, Links], source: SourceText) -> list[RobotLink]:
+    """The links L1, L2, … in the order of their numbers."""
+    found: Links = {}
+    stems = set()
+    for name, links in named.items():
+        numbered = NUMBERED.fullmatch(name)
+        if numbered is None or len(links) > 1:
+            raise too_many_robots(source)
+        stems.add(numbered[1])
+        found[int(numbered[2])] = links[1]
+    first = min(found)
+    if len(stems) > 1 or len(found) < len(named) or first > 1:
+        raise too_many_robots(source)
+    return in_order({number - first + 1: link for number, link in found.items()}, source)
+
+
+def in_order(links: Links, source: SourceText) -> list[RobotLink]:
+    """The links by their numbers. Raises GridError where one is missing."""
+    for number in range(1, len(links) + 1):
+        if number not in links:
+            raise unread_script(f"Link {number} is not in this text. Add it.", source)
+    return [links[number] for number in range(1, len(links) + 1)]
+
+
+def _line_of(row: list[SourceText]) -> SourceText:
+    """The place of a row of a matrix, as a piece of the text."""
+    text = " ".join(cell.text for cell in row)
+    start, end = row[0].whole[0], max(row[0].whole[1], row[-1].whole[1])
+    return SourceText(text, (start,) * len(text), (end,) * len(text), start)
+
+
+def check_count(links: Sized, source: SourceText) -> None:
+    """Raise GridError for more links than a table has rows."""
+    if len(links) > _MOST_ROWS:
+        raise too_many_rows("more", source.whole)
+
+
+def too_many_robots(source: SourceText) -> GridError:
+    """The error for a script that may describe several robots."""
+    return unread_script(
+        "This may be more than one robot. Paste one, and write its links in one list.", source
+    )

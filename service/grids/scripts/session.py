@@ -1,0 +1,77 @@
+r"""A session with an interpreter: prompts, and inputs whose outputs stand below them.
+
+``>> A1`` above ``A1 = …``, ``Out[3]//MatrixForm=``, ``(%o4)``: the outputs are kept, and of the
+inputs those without an output.
+"""
+
+import re
+from typing import Final
+
+from service.grids.cutting.pairs import CLOSES
+from service.grids.cutting.source_text import SourceText, joined
+
+_MARK: Final = re.compile(
+    r"^[ \t]*(?:(?P<input>>>>?|In ?\[\d{0,5}\] ?:=?|\(%i\d{1,5}\)|octave:\d{1,5}>|sage:)"
+    r"|Out ?\[\d{0,5}\] ?(?://\w{1,20})?[=:]|\(%o\d{1,5}\))[ \t]*",
+    re.MULTILINE,
+)
+# Python's prompt before the second line of an input and those that follow.
+_CONTINUED: Final = re.compile(r"^[ \t]*\.\.\.(?:[ \t]|$)", re.MULTILINE)
+
+
+# An input that asks for one thing by its name: A1, print(A1), A1 // MatrixForm.
+_ASKED: Final = re.compile(r"\s*(?:\w{1,20}[(\[]\s*)?([A-Za-z_]{1,10}\d{1,4})(?![\w.*@+-])")
+
+
+def printed(source: SourceText, *, named: bool = False) -> SourceText:
+    """What the interpreter printed, and the matrices of inputs that it printed nothing for.
+
+    With ``named``, the name that an input asks for stands as a line above its output.
+    """
+    marks = list(_MARK.finditer(source.text))
+    if not marks:
+        return source
+    pieces = [source.cut(0, marks[0].start())]
+    for i, mark in enumerate(marks):
+        following = marks[i + 1] if i + 1 < len(marks) else None
+        region = source.cut(mark.end(), following.start() if following else len(source.text))
+        line_end = source.cut(mark.start(), mark.start() + 1).spelled("\n")
+        if mark["input"]:
+            end = _statement_end(region.text)
+            output = region.cut(end, len(region.text))
+            has_output = output.text.strip() or (following and not following["input"])
+            if has_output and named and (asked := _ASKED.match(region.cut(0, end).text)):
+                pieces += [line_end, region.cut(*asked.span(1)), line_end]
+            if has_output:
+                region = output
+            elif "[" not in region.text and "{" not in region.text:
+                continue
+            elif mark["input"] == ">>>":
+                region = _without_continuation(region)
+        pieces += [line_end, region]
+    return joined(pieces, source.whole[0])
+
+
+def without_prompts(source: SourceText) -> SourceText:
+    """The inputs and the outputs, without the prompts in front of them."""
+    if not _MARK.search(source.text):
+        return source
+    plain = joined(source.split(_MARK), source.at)
+    return _without_continuation(plain) if ">>>" in source.text else plain
+
+
+def _statement_end(text: str) -> int:
+    """The end of the first line, or of the line on which the brackets opened in it are closed."""
+    depth = 0
+    for i, letter in enumerate(text):
+        if letter in CLOSES:
+            depth += 1
+        elif letter in ")]}":
+            depth -= 1
+        elif letter == "\n" and depth <= 0:
+            return i
+    return len(text)
+
+
+def _without_continuation(statement: SourceText) -> SourceText:
+    return joined(statement.split(_CONTINUED), statement.at)

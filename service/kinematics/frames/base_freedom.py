@@ -1,0 +1,99 @@
+"""The freedom that is left of a base frame of the student's choice, from row to row.
+
+Where the base is free, frame 0 may be turned about the axis of joint 1 and slid along it (and moved
+anywhere, if that joint slides). The choice shows only where the chain first leaves that axis. So
+the search takes the freedom along from row to row, and uses it up at the first row that depends on
+it.
+
+Shapes: N rows that are tried, L samples; rows are ``(N, 4, L)`` in the column order a, α, d, θ.
+"""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from service.kinematics.chain import THETA, A, D
+from service.kinematics.frames.candidate_rows import (
+    AxisRelation,
+    TargetKind,
+    axis_relations,
+    written_or,
+)
+from service.kinematics.tolerances import PARALLEL
+from service.kinematics.transforms import Matrices, Numbers
+
+
+@dataclass(frozen=True, slots=True)
+class BaseFreedom:
+    """How the student's frame may still be moved, in the reference's frame on the same axis.
+
+    ``turn`` says that it may be turned about z, ``anywhere`` that it may be moved in all
+    directions; ``slide`` ``(L, 3)`` is the one direction that it may be moved along, None for none.
+    """
+
+    turn: bool = False
+    slide: Numbers | None = None
+    anywhere: bool = False
+
+    @classmethod
+    def on_first_axis(cls, prismatic: bool, samples: int) -> Self:
+        """The freedom that a free base leaves on the axis of joint 1."""
+        return cls(turn=True, slide=None if prismatic else _along_z(samples), anywhere=prismatic)
+
+    @property
+    def is_used_up(self) -> bool:
+        """Whether nothing is left of it."""
+        return not (self.turn or self.anywhere) and self.slide is None
+
+    def at_next(self, reference: Matrices, kind: TargetKind, length_scale: float) -> Self:
+        """The freedom left at the next target, where ``reference`` ``(L, 4, 4)`` leads."""
+        relation = axis_relations(reference[None], length_scale)[0]
+        parallel = relation != AxisRelation.SKEW
+        sliding = kind is TargetKind.PRISMATIC
+        turn = self.turn and (
+            relation == AxisRelation.COINCIDENT or (parallel and (sliding or self.anywhere))
+        )
+        if self.anywhere:
+            return type(self)(turn, None if sliding else _along_z(len(reference)), anywhere=sliding)
+        if self.slide is None:
+            return type(self)(turn)
+        slide = (np.swapaxes(reference[:, :3, :3], -1, -2) @ self.slide[..., None])[..., 0]
+        still_along_z = np.abs(slide[:, :2]).max() < PARALLEL
+        return type(self)(turn, slide if sliding or still_along_z else None)
+
+    def use_up(
+        self, rows: Numbers, rows_beyond: Numbers, written: Numbers
+    ) -> list[tuple[Numbers, Numbers]]:
+        """Rows that use the freedom up, each with the distance ``(N, L)`` moved along ``slide``.
+
+        ``rows_beyond`` is ``rows`` for a frame one unit further along ``slide``: lengths depend on
+        the distance linearly. It is chosen so that one length of the row is the ``written`` one.
+        """
+        unmoved = np.zeros(rows.shape[::2])
+        if self.anywhere:
+            moved = rows.copy()
+            moved[:, [A, D]] = written_or(written[[A, D]], rows[:, [A, D]])
+            return [(moved, unmoved)]
+        if self.slide is None:
+            return [(rows, unmoved)]
+        options = []
+        for column in (A, D):
+            rate = rows_beyond[:, column] - rows[:, column]
+            if np.abs(rate).min() < PARALLEL or np.isnan(written[column]).any():
+                continue
+            distance = (written[column] - rows[:, column]) / rate
+            options.append((rows + distance[:, None] * (rows_beyond - rows), distance))
+        return options or [(rows, unmoved)]
+
+    def with_written_angle(self, rows: Numbers, written: Numbers) -> Numbers:
+        """The rows with the θ that was written, where any angle would do."""
+        if not self.turn:
+            return rows
+        turned = rows.copy()
+        turned[:, THETA] = written_or(written[THETA], rows[:, THETA])
+        return turned
+
+
+def _along_z(samples: int) -> Numbers:
+    return np.broadcast_to(np.array([0.0, 0.0, 1.0]), (samples, 3))

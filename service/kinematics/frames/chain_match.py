@@ -1,0 +1,173 @@
+"""Matching a written chain with a reference chain, link by link.
+
+A chain is T(q) = C_0 M_1(q_1) C_1 … M_n(q_n) C_n with constant links C_i. Two tables describe one
+mechanism if and only if constant transforms g_i exist with C_i(written) = g_i⁻¹ C_i(reference)
+g_{i+1}, where g_i keeps joint axis i (docs/frame-choice.md). So g_{i+1} follows from g_i and the
+written link, and must keep its axis. In the code g_i is the *relative pose*: the pose of the
+writer's frame on an axis as seen from the reference's frame there.
+
+Shapes: L samples; a row is ``(4, L)`` in the column order a, α, d, θ and stands for the product
+Z X that leads from one target to the next; angles in radians.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.kinematics.dh import standard_link
+from service.kinematics.frames.candidate_rows import TargetKind
+from service.kinematics.tolerances import SAME_POSE
+from service.kinematics.transforms import Matrices, Numbers, identity, inverse
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """What a row leads to.
+
+    ``reference`` is the transform ``(L, 4, 4)`` to this target's frame from that of the last joint,
+    both the reference's; None for a fixed frame that the reference does not have.
+    """
+
+    kind: TargetKind
+    reference: Matrices | None
+
+    @property
+    def rebases(self) -> bool:
+        """Whether the reference's frame here is the one that the next target is seen from."""
+        return self.reference is not None and self.kind is not TargetKind.FIXED
+
+
+@dataclass(frozen=True, slots=True)
+class RowConstants:
+    """The constants of a row as written.
+
+    ``written`` is ``(4, L)``, NaN where there is no usable number. Of the cells ``(4,)``,
+    ``is_gradable`` says which can be right or wrong, ``wrong_regardless`` which are wrong whatever
+    the frames, ``absent`` for which the table has no room (they are 0), and ``slack`` how far each
+    may be off because it was rounded. ``variable`` is the column of the variable of the joint that
+    the row starts from, None where it starts from none; ``joint_sign`` the sign of that variable:
+    +1, −1, or 0 where it is not known.
+    """
+
+    written: Numbers
+    is_gradable: NDArray[np.bool_]
+    wrong_regardless: NDArray[np.bool_]
+    absent: NDArray[np.bool_]
+    slack: Numbers
+    variable: int | None
+    joint_sign: int
+
+
+@dataclass(frozen=True, slots=True)
+class ChainMatch:
+    """A valid table, and how its frames lie to the reference's.
+
+    ``rows`` ``(rows, 4, L)`` is what each row should be; ``relative_poses`` ``(rows, L, 4, 4)`` are
+    those at each target; ``cost`` is how far the written table is from this one.
+    """
+
+    rows: Numbers
+    relative_poses: Matrices
+    cost: float
+
+    @property
+    def joint_signs(self) -> list[int]:
+        """The sign that the joint variable of each target should have."""
+        signs: list[int] = joint_signs_of(self.relative_poses).tolist()
+        return signs
+
+
+def match_as_written(
+    rows: Sequence[RowConstants],
+    targets: Sequence[Target],
+    length_scale: float,
+    *,
+    directions_given: bool = True,
+    start: Matrices | None = None,
+) -> ChainMatch | None:
+    """The written table itself where nothing in it is wrong; else None. ``match_tables`` says how.
+
+    ``directions_given`` says that each joint's positive sense is.
+    """
+    if any(row.wrong_regardless.any() for row in rows):
+        return None
+    written = np.array([row.written for row in rows])
+    signs = np.array([row.joint_sign if directions_given else 0 for row in rows])
+    valid, poses = match_tables(written[None], signs[None], targets, length_scale, start=start)
+    return ChainMatch(written, poses[:, 0], 0.0) if valid[0] else None
+
+
+def match_tables(
+    written: Numbers,
+    joint_signs: NDArray[np.int_],
+    targets: Sequence[Target],
+    length_scale: float,
+    tolerance: float = SAME_POSE,
+    start: Matrices | None = None,
+) -> tuple[NDArray[np.bool_], Matrices]:
+    """Which of many tables are valid as they stand, without any search.
+
+    ``written`` is ``(tables, rows, 4, L)``, ``joint_signs`` ``(tables, rows)`` as in RowConstants,
+    0 where the direction is free. ``start`` ``(L, 4, 4)``, or one for each table, is the relative
+    pose of frame 0, None for the identity. Returns ``(tables,)`` and the relative poses at the
+    targets, ``(rows, tables, L, 4, 4)``. NaN makes a table invalid.
+    """
+    count = written.shape[-1]
+    links = standard_link(*np.moveaxis(written, 2, 0))
+    pose = identity((len(written), count))
+    if start is not None:
+        pose[:] = start
+    poses = np.empty((len(targets), *pose.shape))
+    for i, target in enumerate(targets):
+        pose = pose @ links[:, i]
+        if target.reference is not None and target.rebases:
+            pose = inverse(target.reference[:count]) @ pose
+        poses[i] = pose
+    valid = np.ones(len(written), dtype=np.bool_)
+    for i, target in enumerate(targets):
+        valid &= _error_at(poses[i], target.kind, length_scale) <= tolerance
+        if i > 0:
+            valid &= joint_signs[:, i] * joint_signs_of(poses[i - 1]) >= 0
+    return valid, poses
+
+
+def misfits(poses: Matrices, targets: Sequence[Target], length_scale: float) -> Numbers:
+    """How relative poses miss what the targets demand, ``(tables, n, L)``: 0 where they do not.
+
+    ``poses`` ``(rows, tables, L, 4, 4)`` are those of ``match_tables``. The direction of the axes
+    is left out.
+    """
+    unit = np.array([1.0, 1.0, 1.0, length_scale])
+    missed: list[Numbers] = []
+    for pose, target in zip(poses, targets, strict=True):
+        if target.kind is TargetKind.TOOL:
+            difference = (pose - np.eye(4))[..., :3, :] / unit
+            missed.append(difference.reshape(*pose.shape[:2], -1))
+        elif target.kind is TargetKind.REVOLUTE:
+            off_axis = pose[..., :2, 2:] / unit[2:]
+            missed.append(off_axis.reshape(*pose.shape[:2], -1))
+        elif target.kind is TargetKind.PRISMATIC:
+            missed.append(pose[..., :2, 2])
+    return np.asarray(np.swapaxes(np.concatenate(missed, axis=-1), 1, 2))
+
+
+def _error_at(pose: Matrices, kind: TargetKind, length_scale: float) -> Numbers:
+    """By how much relative poses ``(T, L, 4, 4)`` miss what a target demands: ``(T,)``."""
+    error: Numbers = np.abs(pose[:, :, :2, 2]).max(axis=(1, 2))
+    if kind in (TargetKind.FIXED, TargetKind.OPEN):
+        return np.where(np.isnan(error), np.nan, 0.0)
+    if kind is not TargetKind.PRISMATIC:
+        error = np.maximum(error, np.abs(pose[:, :, :2, 3]).max(axis=(1, 2)) / length_scale)
+    if kind is TargetKind.TOOL:
+        error = np.maximum(error, np.abs(pose - np.eye(4)).max(axis=(1, 2, 3)))
+    return error
+
+
+def joint_signs_of(pose: Matrices) -> NDArray[np.int_]:
+    """+1 where the writer's z points the way of the reference's, −1 where it is turned over.
+
+    ``(N,)`` from relative poses ``(N, L, 4, 4)``.
+    """
+    return np.where(pose[:, 0, 2, 2] > 0, 1, -1)

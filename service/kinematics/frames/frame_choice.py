@@ -1,0 +1,218 @@
+"""The valid table nearest to the one that was written.
+
+Denavit-Hartenberg tables are not unique (``chain_match`` says when two describe one mechanism). So
+the search goes from the base to the tool row by row, and at each row compares what was written with
+every value that it could have had under the choices of frames made so far. A wrong cell costs 1. A
+frame other than the reference's costs a little, so that an uncompensated shift is blamed where it
+was made and not where it surfaces. Only the cheapest hypotheses are kept (a beam search).
+
+Shapes: H hypotheses, N ways to continue them, L samples; a row is ``(4, L)`` in the column order
+a, α, d, θ; angles in radians. A relative pose is the pose of the writer's frame as seen from the
+reference's.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.kinematics.chain import ALPHA, THETA
+from service.kinematics.dh import standard_link
+from service.kinematics.dh_row import is_unreachable
+from service.kinematics.frames.base_freedom import BaseFreedom
+from service.kinematics.frames.candidate_rows import TargetKind, axis_relations, candidate_rows
+from service.kinematics.frames.chain_match import ChainMatch, RowConstants, Target, joint_signs_of
+from service.kinematics.tolerances import (
+    EXACT_CELL,
+    ROUNDED_CELL,
+    SAME_HYPOTHESIS,
+    SAME_POSE,
+)
+from service.kinematics.transforms import Matrices, Numbers, identity, inverse, rot_x
+
+BEAM_WIDTH = 8
+MAX_CONTINUATIONS = 20
+# A hypothesis this far behind the best is dropped: it would take a table with as many more slips.
+MAX_COST_BEHIND = 2.5
+
+# What a hypothesis costs. A cell that the table has no room for cannot be blamed on a slip, so that
+# a hypothesis which needs it is a last resort.
+WRONG_CELL = 1.0
+NO_SUCH_CELL = 3.0
+UNREACHABLE = 3.0
+TURNED_OVER = 0.010
+TURNED_ABOUT = 0.004
+MOVED = 0.020
+
+# Each row so far: what it should be, and the relative pose that it leads to.
+_Path = tuple[tuple[Numbers, Matrices], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Beam:
+    """H hypotheses: relative poses ``(H, L, 4, 4)``, costs ``(H,)`` and the paths to them."""
+
+    pose: Matrices
+    cost: Numbers
+    paths: list[_Path]
+
+
+def nearest_table(
+    rows: Sequence[RowConstants],
+    targets: Sequence[Target],
+    length_scale: float,
+    *,
+    base_given: bool = True,
+    directions_given: bool = True,
+    start: Matrices | None = None,
+) -> ChainMatch:
+    """The valid table nearest to the written ``rows``, the i-th of which leads to the i-th target.
+
+    ``base_given`` says that it is known where frame 0 lies: at ``start`` ``(L, 4, 4)`` in the
+    reference's, or there. ``directions_given`` says that each joint's positive sense is known, so
+    that a z axis turned over asks for a variable with the opposite sign.
+    """
+    samples = rows[0].written.shape[-1]
+    if base_given:
+        pose = identity((samples,)) if start is None else start
+        beam, freedom = _Beam(pose[None], np.zeros(1), [()]), BaseFreedom()
+        remaining = list(zip(rows, targets, strict=True))
+    else:
+        beam, freedom = _from_free_base(rows[0], targets[0])
+        remaining = list(zip(rows[1:], targets[1:], strict=True))
+    for row, target in remaining:
+        beam = _next_beam(beam, row, target, length_scale, directions_given, freedom)
+        if target.reference is not None and target.rebases and not freedom.is_used_up:
+            freedom = freedom.at_next(target.reference, target.kind, length_scale)
+    best = int(np.argmin(beam.cost))
+    valid_rows, poses = map(np.array, zip(*beam.paths[best], strict=True))
+    return ChainMatch(valid_rows, poses, float(beam.cost[best]))
+
+
+def _from_free_base(first: RowConstants, target: Target) -> tuple[_Beam, BaseFreedom]:
+    """On the first axis, z either way: from a free base, the row that leads there is right."""
+    samples = first.written.shape[-1]
+    poses = np.stack([identity((samples,)), rot_x(np.full(samples, np.pi))])
+    row = np.nan_to_num(first.written)
+    beam = _Beam(poses, np.array([0.0, TURNED_OVER]), [((row, pose),) for pose in poses])
+    return beam, BaseFreedom.on_first_axis(target.kind is TargetKind.PRISMATIC, samples)
+
+
+def _next_beam(
+    beam: _Beam,
+    row: RowConstants,
+    target: Target,
+    length_scale: float,
+    directions_given: bool,
+    freedom: BaseFreedom,
+) -> _Beam:
+    """The cheapest hypotheses one row further on."""
+    parents, rows, distance, unreachable = _continuations(beam, row, target, length_scale, freedom)
+    expected = freedom.with_written_angle(rows, row.written)
+    wrong = _wrong_cells(row, expected, length_scale)
+    if row.variable is not None and directions_given:
+        wrong[:, row.variable] |= row.joint_sign * joint_signs_of(beam.pose)[parents] < 0
+    wrong |= row.wrong_regardless
+    cost = beam.cost[parents] + WRONG_CELL * (wrong & row.is_gradable).sum(axis=1)
+    cost += NO_SUCH_CELL * (wrong & row.absent).sum(axis=1) + UNREACHABLE * unreachable
+    kept = np.argsort(cost, kind="stable")[:MAX_CONTINUATIONS]
+    kept = kept[cost[kept] <= cost[kept[0]] + MAX_COST_BEHIND]
+    parents, expected, cost = parents[kept], expected[kept], cost[kept]
+    start = _slid(beam.pose[parents], freedom, distance[kept])
+    pose = start @ standard_link(*rows[kept].swapaxes(0, 1))
+    if target.reference is not None:
+        relative = inverse(target.reference) @ pose
+        if target.rebases:
+            pose = relative
+            if freedom.anywhere:
+                pose[..., :3, 3] = 0.0
+        cost = cost + departure(relative, length_scale)
+    kept = _distinct(pose, cost, length_scale)
+    paths = [(*beam.paths[parents[i]], (expected[i], pose[i])) for i in kept]
+    return _Beam(pose[kept], cost[kept], paths)
+
+
+def _continuations(
+    beam: _Beam, row: RowConstants, target: Target, length_scale: float, freedom: BaseFreedom
+) -> tuple[NDArray[np.int_], Numbers, Numbers, NDArray[np.bool_]]:
+    """Every row that the hypotheses allow, in N ways.
+
+    Of each way the hypothesis ``(N,)`` that it continues, its row ``(N, 4, L)``, the distance
+    ``(N, L)`` that the frame must be slid along what is left of the base's freedom, and whether no
+    row leads to the target ``(N,)``.
+    """
+    reference = target.reference
+    if reference is None:
+        rows = np.broadcast_to(np.nan_to_num(row.written), (len(beam.pose), *row.written.shape))
+        nowhere = np.zeros((len(rows), rows.shape[-1]))
+        return np.arange(len(rows)), rows, nowhere, np.zeros(len(rows), np.bool_)
+    seen = inverse(beam.pose) @ reference
+    relations = axis_relations(seen, length_scale)
+    found = []
+    for relation in sorted(set(relations.tolist())):
+        members = np.flatnonzero(relations == relation)
+        here = seen[members]
+        candidates = candidate_rows(here, row.written, target.kind, length_scale)
+        parents = np.repeat(members, candidates.shape[1])
+        rows = candidates.reshape(-1, *candidates.shape[2:])
+        beyond = candidates
+        if freedom.slide is not None:
+            step = np.ones(here.shape[:2])
+            there = inverse(_slid(beam.pose[members], freedom, step)) @ reference
+            beyond = candidate_rows(there, row.written, target.kind, length_scale)
+            # One step aside the axes may lie differently; then there is nothing to compare with.
+            beyond = beyond if beyond.shape == candidates.shape else candidates
+        for chosen, distance in freedom.use_up(rows, beyond.reshape(rows.shape), row.written):
+            if target.kind is TargetKind.TOOL:
+                reached = inverse(_slid(beam.pose[parents], freedom, distance)) @ reference
+                unreachable = is_unreachable(reached, length_scale) & (not freedom.anywhere)
+            else:
+                unreachable = np.zeros(len(parents), np.bool_)
+            found.append((parents, chosen, distance, unreachable))
+    parents, rows, distances, unreachable = map(np.concatenate, zip(*found, strict=True))
+    return parents, rows, distances, unreachable
+
+
+def _slid(pose: Matrices, freedom: BaseFreedom, distance: Numbers) -> Matrices:
+    """Poses ``(N, L, 4, 4)`` slid by ``distance`` ``(N, L)`` along the base's freedom."""
+    if freedom.slide is None:
+        return pose
+    moved = pose.copy()
+    moved[..., :3, 3] += distance[..., None] * freedom.slide
+    return moved
+
+
+def _wrong_cells(row: RowConstants, rows: Numbers, length_scale: float) -> NDArray[np.bool_]:
+    """Which cells of the written row differ from each of ``rows``: ``(N, 4)``."""
+    error = np.abs(row.written - rows)
+    turns = error[:, [ALPHA, THETA]] / (2 * np.pi)
+    error[:, [ALPHA, THETA]] = 2 * np.pi * np.abs(turns - np.round(turns))
+    scale = np.array([length_scale, 1.0, length_scale, 1.0])
+    # The cells that this one is computed from may be rounded, too.
+    slack = np.where(row.slack > 0, np.maximum(row.slack, ROUNDED_CELL * scale), EXACT_CELL * scale)
+    with np.errstate(invalid="ignore"):
+        right = error.max(axis=-1) <= slack
+    return np.asarray(~right)
+
+
+def departure(pose: Matrices, length_scale: float) -> Numbers:
+    """The cost ``(N,)`` of frames that are not the reference's: small, but not 0.
+
+    ``pose`` are their relative poses ``(N, L, 4, 4)``.
+    """
+    cost = np.where(pose[:, 0, 2, 2] < 0, TURNED_OVER, 0.0)
+    cost += np.where(pose[:, 0, 0, 0] < 0, TURNED_ABOUT, 0.0)
+    turned = np.abs(pose[:, :, 1, 0]).max(axis=-1) > SAME_POSE
+    moved = np.abs(pose[:, :, :3, 3]).max(axis=(-1, -2)) > SAME_POSE * length_scale
+    return np.asarray(cost + MOVED * (turned.astype(np.float64) + moved))
+
+
+def _distinct(pose: Matrices, cost: Numbers, length_scale: float) -> NDArray[np.int_]:
+    """The cheapest BEAM_WIDTH hypotheses with different frames; of equal frames the cheapest."""
+    order = np.argsort(cost, kind="stable")
+    frames = pose[order, 0, :3].reshape(len(order), -1)
+    difference = np.abs(frames[:, None] - frames[None]).max(axis=-1)
+    equal = ~(difference > SAME_HYPOTHESIS * max(1.0, length_scale))
+    earlier = np.tri(len(order), k=-1, dtype=np.bool_)
+    return np.asarray(order[~(equal & earlier).any(axis=1)][:BEAM_WIDTH])

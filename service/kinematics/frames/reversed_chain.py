@@ -1,0 +1,69 @@
+"""A chain seen from its tool: the inverse product, so that a given tool serves as a given base.
+
+The inverse of X_0 Z_1 X_1 … Z_m X_m is X_m⁻¹ Z_m⁻¹ … X_1⁻¹ Z_1⁻¹ X_0⁻¹, again a product of screws
+about x and z in turn. Row j of it is the product Z X of Z_{m+1−j}⁻¹ and X_{m−j}⁻¹; the first row
+has no Z. It leads to the frame that lies behind Z_{m−j}, on the same axis as the one before it.
+
+Shapes: L samples; cells are ``(rows, 4, ...)`` in the column order a, α, d, θ, as in
+``chain_match``.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.kinematics.chain import D
+from service.kinematics.frames.candidate_rows import TargetKind
+from service.kinematics.frames.chain_match import RowConstants, Target
+from service.kinematics.transforms import Matrices, identity, inverse
+
+_Cell = TypeVar("_Cell", bound=np.generic)
+
+
+def reversed_cells(cells: NDArray[_Cell]) -> NDArray[_Cell]:
+    """The cells in the order of the inverse product; they keep their signs. Its own inverse."""
+    x, z = cells[::-1, :D], np.roll(cells[::-1, D:], 1, axis=0)
+    return np.concatenate([x, z], axis=1)
+
+
+def reversed_rows(rows: Sequence[RowConstants]) -> list[RowConstants]:
+    """The rows of the inverse product."""
+    of_joints = [rows[0], *rows[:0:-1]]
+    cells = zip(
+        -reversed_cells(np.array([row.written for row in rows])),
+        reversed_cells(np.array([row.is_gradable for row in rows])),
+        reversed_cells(np.array([row.wrong_regardless for row in rows])),
+        reversed_cells(np.array([row.absent for row in rows])),
+        reversed_cells(np.array([row.slack for row in rows])),
+        strict=True,
+    )
+    return [
+        RowConstants(*row, joint.variable, joint.joint_sign)
+        for row, joint in zip(cells, of_joints, strict=True)
+    ]
+
+
+def reversed_targets(targets: Sequence[Target], offsets: Matrices) -> list[Target]:
+    """The targets of the inverse product, from a given tool to a base of the writer's choice.
+
+    ``offsets`` ``(n, L, 4, 4)`` is the Z of the reference's constants on each joint axis.
+    """
+    here = identity((offsets.shape[1],))
+    each_offset = iter(offsets)
+    passed = []
+    for target in targets:
+        frame = None if target.reference is None else here @ target.reference
+        if frame is not None and target.rebases:
+            here = frame
+        if target.kind in (TargetKind.REVOLUTE, TargetKind.PRISMATIC) and frame is not None:
+            frame = frame @ next(each_offset)
+        passed.append((target, frame))
+    found = []
+    for target, frame in passed[-2::-1]:
+        found.append(replace(target, reference=None if frame is None else inverse(here) @ frame))
+        if frame is not None and target.rebases:
+            here = frame
+    return [*found, Target(TargetKind.OPEN, inverse(here))]

@@ -1,0 +1,1 @@
+"""Other values of a few cells that make a table right."""

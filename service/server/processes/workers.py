@@ -1,0 +1,138 @@
+"""Several processes that serve one port, and the process that looks after them."""
+
+import logging
+import multiprocessing
+import os
+import signal
+import socket
+import time
+from collections.abc import Callable
+from multiprocessing.connection import wait
+from multiprocessing.process import BaseProcess
+from typing import Final
+
+from service.server.limits import GRACE
+from service.server.processes.process import ENDING
+from service.server.processes.shared_port import Seats, SharedPort
+
+# Seconds beyond the grace of a worker until it is killed.
+_MARGIN: Final = 1.5
+# Seconds until a worker that has ended is started anew.
+_PAUSE: Final = 1.0
+# Seconds between two looks whether the first worker listens.
+_LOOK: Final = 0.05
+
+_log = logging.getLogger("uvicorn.error")
+
+
+class Supervisor:
+    """Keeps so many workers at work until a signal comes."""
+
+    def __init__(
+        self,
+        work: Callable[[SharedPort], None],
+        listener: socket.socket,
+        number: int,
+        announce: Callable[[], None],
+        lost: Callable[[int], None] = lambda _: None,
+    ) -> None:
+        # It says that the port answers, as soon as a worker listens.
+        self._announce = announce
+        # It is told the number of a process that has ended.
+        self._lost = lost
+        self._work = work
+        self._listener = listener
+        self._seats = Seats.of(number)
+        self._workers: list[BaseProcess] = []
+        self._signals = 0
+        self._last = signal.SIGTERM.value
+
+    def run(self) -> bool:
+        """Run until a signal comes; false where no worker could start."""
+        # What is written here wakes the process from its wait.
+        awake, alarm = socket.socketpair()
+        with awake, alarm:
+            alarm.setblocking(False)
+            signal.set_wakeup_fd(alarm.fileno())
+            for number in (signal.SIGINT, signal.SIGTERM):
+                signal.signal(number, self._note)
+            self._workers = [self._start(place) for place in range(len(self._seats.counts))]
+            started = self._watch(awake)
+            self._listener.close()
+            self._end(awake)
+            signal.set_wakeup_fd(-1)
+        if self._signals > 1:
+            # As without workers: this process ends by the signal.
+            signal.signal(self._last, signal.SIG_DFL)
+            signal.raise_signal(self._last)
+        return started
+
+    def _note(self, number: int, _: object) -> None:
+        self._signals += 1
+        self._last = number
+
+    def _start(self, place: int) -> BaseProcess:
+        # A fresh interpreter: a fork would take over locks that another thread holds.
+        context = multiprocessing.get_context("spawn")
+        port = SharedPort(self._listener, self._seats, place, os.getpid())
+        worker = context.Process(target=self._work, args=(port,))
+        worker.start()
+        return worker
+
+    def _watch(self, awake: socket.socket) -> bool:
+        """Start anew whoever ends, until a signal comes; false where all end at their start."""
+        announced = False
+        while True:
+            wait(
+                [awake, *(worker.sentinel for worker in self._workers)],
+                None if announced else _LOOK,
+            )
+            if self._stopped():
+                return True
+            if not announced and self._seats.any_taken:
+                announced = True
+                self._announce()
+            gone = [worker for worker in self._workers if not worker.is_alive()]
+            if len(gone) == len(self._workers) and all(worker.exitcode == 1 for worker in gone):
+                return False
+            if not gone:
+                continue
+            for worker in gone:
+                _log.error("Worker %s has ended (exit code %s)", worker.pid, worker.exitcode)
+                self._seats.leave(self._workers.index(worker))
+                self._lost(worker.pid or 0)
+            wait([awake], _PAUSE)
+            if self._stopped():
+                return True
+            self._workers = [
+                self._start(place) if worker in gone else worker
+                for place, worker in enumerate(self._workers)
+            ]
+
+    def _stopped(self) -> bool:
+        return self._signals > 0
+
+    def _end(self, awake: socket.socket) -> None:
+        """Have the workers end in good order; by a second signal, or in the end, at once."""
+        _log.info(ENDING)
+        for worker in self._workers:
+            worker.terminate()
+        end = time.monotonic() + GRACE + _MARGIN
+        while alive := [worker for worker in self._workers if worker.is_alive()]:
+            left = end - time.monotonic()
+            if self._signals > 1 or left <= 0:
+                for worker in alive:
+                    worker.kill()
+                break
+            awake.setblocking(False)
+            _drain(awake)
+            wait([awake, *(worker.sentinel for worker in alive)], left)
+        for worker in self._workers:
+            worker.join()
+
+
+def _drain(awake: socket.socket) -> None:
+    try:
+        awake.recv(64)
+    except BlockingIOError:
+        return

@@ -1,0 +1,280 @@
+"""Fair turns between clients, which never leave the processor idle while a request waits.
+
+A request runs until it is answered or its slice of time is over; then the process reads what has
+arrived at its sockets, and the next step is one of the client that has used the least processor
+time. So a request waits for steps of a few milliseconds, whatever else is asked at the same time.
+Small requests share a slice, for to read the sockets costs as much as they do.
+"""
+
+import asyncio
+import math
+from collections import deque
+from collections.abc import Awaitable, Callable, Generator
+from functools import partial
+from time import thread_time
+from typing import Any, Final
+
+from starlette.requests import ClientDisconnect
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from service.access.client_key import client_key
+from service.api.http.problems import ProblemError
+from service.api.turns import CLIENT, ONE_ADDRESS, TURN, Client
+from service.server.limits import HEALTH
+from service.server.refusals import too_busy, too_many
+from service.server.turns.fair_queue import FairQueue, Ticket
+from service.submissions.strict_json import MAX_BODY_SIZE
+from service.time_slices import SLICE
+
+# The requests, and their bytes, that may wait of one client and of all. A class behind one address
+# sends 400 submissions in the same second before a deadline.
+OF_ONE: Final = (512, 16 * 1024 * 1024)
+OF_ALL: Final = (1024, 32 * 1024 * 1024)
+# How many answers on health, and how many refusals, are given each time the sockets are read.
+# On a thousand connections, they alone would keep the process busy.
+SMALL: Final = 4
+# The share of the last request in the mean time of a request.
+_RECENT: Final = 0.1
+_LONGEST_RETRY: Final = 30
+
+
+class Metered:
+    """An awaitable that counts the processor time of its own steps."""
+
+    def __init__(self, awaitable: Awaitable[None]) -> None:
+        self._awaitable = awaitable
+        self._spent = 0.0
+        self._began: float | None = None
+
+    @property
+    def spent(self) -> float:
+        """The seconds so far, those of an unfinished step included."""
+        return self._spent + (0.0 if self._began is None else thread_time() - self._began)
+
+    def __await__(self) -> Generator[Any, Any, None]:
+        """Run the steps."""
+        steps = self._awaitable.__await__()
+        resume: Callable[[], Any] = partial(next, steps)
+        while True:
+            self._began = thread_time()
+            try:
+                awaited = resume()
+            except StopIteration:
+                return
+            finally:
+                self._spent, self._began = self.spent, None
+            try:
+                value = yield awaited
+            except BaseException as error:  # noqa: BLE001 - handed on to where it belongs
+                resume = partial(steps.throw, error)
+            else:
+                resume = partial(steps.send, value)
+
+
+class _Lane:
+    """Small answers of one kind: those given since the sockets were read, and those that wait."""
+
+    def __init__(self) -> None:
+        self.given = 0
+        self.waiting: deque[asyncio.Future[None]] = deque()
+
+
+class FairAdmission:
+    """Lets whole requests through to the application step by step, in turn by client."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+        self._queue = FairQueue()
+        # Processor time since the sockets were read; whether they will be.
+        self._spent = 0.0
+        self._reading = False
+        # The mean processor time of a request.
+        self._mean = 0.0
+        # One lane each: a thousand refusals must not make a question about health wait.
+        self._health, self._refusals = _Lane(), _Lane()
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one ASGI connection."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        if scope["path"] in HEALTH:
+            await self._small_turn(self._health)
+            await self.app(scope, receive, send)
+            return
+        body, ended = await _body(receive)
+        if body is None:
+            return
+        host, port = scope.get("client") or ("", 0)
+        client = scope.get(CLIENT) or Client(client_key(host), ONE_ADDRESS)
+        ticket = Ticket(client, port, len(body))
+        refusal = self._refusal(ticket) if self._must_wait else None
+        if refusal is not None:
+            body = b""
+            await self._small_turn(self._refusals)
+            await refusal.response(scope["path"])(scope, receive, send)
+            return
+        self._queue.enter(ticket)
+        try:
+            await self._serve(ticket, scope, _Replayed(body, ended, receive), send)
+        finally:
+            self._queue.leave(ticket)
+
+    async def _serve(self, ticket: Ticket, scope: Scope, body: "_Replayed", send: Send) -> None:
+        """Serve a request in its turns."""
+        charged = 0.0
+
+        async def give_way() -> None:
+            nonlocal charged
+            self._charge(ticket, metered.spent - charged)
+            charged = metered.spent
+            await self._turn(ticket, body)
+
+        try:
+            await self._turn(ticket, body)
+        except ClientDisconnect:
+            return
+        metered = Metered(self.app({**scope, TURN: give_way}, body.receive, send))
+        try:
+            await metered
+        finally:
+            self._charge(ticket, metered.spent - charged)
+            self._mean += _RECENT * (metered.spent - self._mean)
+
+    @property
+    def waiting(self) -> int:
+        """The number of requests that wait for their turn."""
+        return self._queue.length
+
+    @property
+    def _must_wait(self) -> bool:
+        """Whether others wait, or the sockets have to be read first."""
+        return self._queue.length > 0 or self._spent >= SLICE
+
+    def _charge(self, ticket: Ticket, seconds: float) -> None:
+        self._spent += seconds
+        self._queue.charge(ticket, seconds)
+        self._read_soon()
+
+    def _refusal(self, ticket: Ticket) -> ProblemError | None:
+        """Return the problem of a request that finds no place in the queue, or None."""
+        requests, size = self._queue.waiting(ticket.client)
+        is_beyond = requests >= OF_ONE[0] or size + ticket.size > OF_ONE[1]
+        if is_beyond and not ticket.client.is_trusted:
+            return too_many(self._seconds(requests))
+        if self._queue.length >= OF_ALL[0] or self._queue.size + ticket.size > OF_ALL[1]:
+            return too_busy(self._seconds(self._queue.length))
+        return None
+
+    def _seconds(self, requests: int) -> int:
+        """Return the seconds after which a refused client should come again."""
+        return min(max(1, math.ceil(requests * self._mean)), _LONGEST_RETRY)
+
+    async def _turn(self, ticket: Ticket, body: "_Replayed") -> None:
+        """Wait until it is this request's turn. Raises ClientDisconnect if its client has gone."""
+        if self._must_wait:
+            ticket.turn = asyncio.get_running_loop().create_future()
+            self._queue.push(ticket)
+            self._read_soon()
+            try:
+                await ticket.turn
+            except asyncio.CancelledError:
+                self._queue.remove(ticket)
+                # At the end of the process, when all connections have been closed.
+                if body.is_unwanted():
+                    raise ClientDisconnect from None
+                raise
+            if body.is_unwanted():
+                raise ClientDisconnect
+        self._queue.begin(ticket)
+
+    async def _small_turn(self, lane: _Lane) -> None:
+        """Wait if too many small answers are asked for at once."""
+        if lane.given >= SMALL:
+            turn = asyncio.get_running_loop().create_future()
+            lane.waiting.append(turn)
+            await turn
+        else:
+            lane.given += 1
+            self._read_soon()
+
+    def _read_soon(self) -> None:
+        """Go on as soon as the sockets have been read."""
+        if not self._reading:
+            self._reading = True
+            # Twice: what is called soon once comes before the requests at the sockets.
+            loop = asyncio.get_running_loop()
+            loop.call_soon(loop.call_soon, self._next)
+
+    def _next(self) -> None:
+        """Let the next request go on, and some small answers."""
+        self._reading, self._spent = False, 0.0
+        called = 0
+        while self._queue.length and not called:
+            called += _wake(self._queue.pop().turn)
+        for lane in (self._health, self._refusals):
+            lane.given = 0
+            while lane.waiting and lane.given < SMALL:
+                lane.given += _wake(lane.waiting.popleft())
+            called += lane.given
+        if called:
+            self._read_soon()
+
+
+def _wake(turn: asyncio.Future[None]) -> bool:
+    """Let the request go on that waits for this, unless it has been given up."""
+    if turn.done():
+        return False
+    turn.set_result(None)
+    return True
+
+
+async def _body(receive: Receive) -> tuple[bytes | None, bool]:
+    """Return the body, no more of it than the application takes, and whether it is whole.
+
+    The body is None if the client has gone.
+    """
+    parts: list[bytes] = []
+    size = 0
+    while size <= MAX_BODY_SIZE:
+        message = await receive()
+        if message["type"] == "http.disconnect":
+            return None, False
+        parts.append(message.get("body", b""))
+        size += len(parts[-1])
+        if not message.get("more_body", False):
+            return b"".join(parts), True
+    return b"".join(parts), False
+
+
+class _Replayed:
+    """A body that has been read, to be received once more, and then what comes after it."""
+
+    def __init__(self, body: bytes, ended: bool, receive: Receive) -> None:
+        self._first: Message | None = {
+            "type": "http.request", "body": body, "more_body": not ended,
+        }  # fmt: skip
+        self._ended = ended
+        self._receive = receive
+
+    async def receive(self) -> Message:
+        """Return the next message."""
+        if self._first is None:
+            return await self._receive()
+        message, self._first = self._first, None
+        return message
+
+    def is_unwanted(self) -> bool:
+        """True if the client has gone, without waiting for what it does next.
+
+        Starlette's question after it lets the loop run on, and the next request would be begun.
+        """
+        if not self._ended:
+            return False
+        asking = self._receive().__await__()
+        try:
+            next(asking)
+        except StopIteration as told:
+            return bool(told.value["type"] == "http.disconnect")
+        asking.close()
+        return False

@@ -1,0 +1,53 @@
+"""`python -m service.web.tutor.check_process`: check exercise files for the service.
+
+The service starts this process. It ends with the service, or after some idle minutes.
+"""
+
+import os
+import queue
+import sys
+import threading
+import traceback
+from contextlib import suppress
+
+from service.web.tutor.checking import DONE, IDLE_SECONDS, READY, received, send
+from service.web.tutor.exercise_check import CheckRequest, checked
+
+# Students come before a tutor's checks.
+_NICE = 5
+
+
+def main() -> None:
+    """Answer each request with the findings, or with nothing where the checks fail."""
+    answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
+    # What is printed by mistake must not stand among the answers.
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+    if hasattr(os, "nice"):
+        os.nice(_NICE)
+    bodies: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+    threading.Thread(target=_read, args=(bodies,), daemon=True).start()
+    # Loads the algebra system, so that no check has to wait for it.
+    import service.authoring  # noqa: F401
+
+    with suppress(BrokenPipeError, queue.Empty):
+        send(answers, READY)
+        while True:
+            body = bodies.get(timeout=IDLE_SECONDS)
+            try:
+                content = checked(CheckRequest.model_validate_json(body))
+            except Exception:  # noqa: BLE001 - the service answers 500, and the log says why
+                traceback.print_exc()
+                content = b""
+            send(answers, DONE, content)
+
+
+def _read(bodies: "queue.SimpleQueue[bytes]") -> None:
+    """Pass on what is asked; end the process, in the midst of a check, when the service is gone."""
+    with suppress(EOFError):
+        while True:
+            bodies.put(received(sys.stdin.buffer)[1])
+    os._exit(0)
+
+
+if __name__ == "__main__":
+    main()

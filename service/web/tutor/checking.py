@@ -1,0 +1,161 @@
+"""The checks of the editor in a process of their own, which is ended where they take too long."""
+
+import os
+import subprocess
+import sys
+import threading
+import weakref
+from http import HTTPStatus
+from typing import IO, Final
+
+from service.api.http.problems import ProblemError
+from service.web.tutor.exercise_check import CheckRequest
+
+# What `exercises check` takes for the largest exercise of the catalogue is a tenth of it.
+SECONDS: Final = 20.0
+# A process without work ends by itself; it holds about 120 MB.
+IDLE_SECONDS: Final = 300.0
+# Seconds until a new process is ready, on a machine that is very busy.
+_START: Final = 60.0
+# The first byte of an answer.
+READY: Final = b"r"
+DONE: Final = b"d"
+_MODULE: Final = "service.web.tutor.check_process"
+
+
+class Checking:
+    """Checks texts one by one; the process starts with the first of them."""
+
+    def __init__(self, seconds: float = SECONDS) -> None:
+        self._seconds = seconds
+        self._process: subprocess.Popen[bytes] | None = None
+        self._is_ready = False
+        self._closed = False
+
+    def checked(self, body: CheckRequest) -> bytes:
+        """Return the findings on a text as JSON. Only one thread may call it at a time.
+
+        Raises ProblemError where the checks take too long, or the service ends.
+        """
+        if self._process is None or self._process.poll() is not None:
+            self._start()
+        process = self._process
+        assert process is not None
+        try:
+            content = self._asked(process, body.model_dump_json().encode())
+        except BaseException as error:
+            _end(process)
+            if self._closed:
+                raise _ending() from error
+            if isinstance(error, _TooLongError):
+                raise _too_long(self._seconds) from error
+            if isinstance(error, OSError) and process.returncode == 0:
+                # It had nothing to do for long, and ended just now.
+                return self.checked(body)
+            raise
+        if not content:
+            raise RuntimeError("the checks failed; the log has their traceback")
+        return content
+
+    def close(self) -> None:
+        """End the process, whatever it is at."""
+        self._closed = True
+        if self._process is not None:
+            # The thread that waits for its answer finds the pipe closed.
+            self._process.kill()
+
+    def _start(self) -> None:
+        if self._closed:
+            raise _ending()
+        # A session of its own: a Ctrl+C of the terminal is for the service, which ends this one.
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", _MODULE],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            start_new_session=os.name == "posix",
+        )
+        self._is_ready = False
+        weakref.finalize(self, _end, self._process)
+
+    def _asked(self, process: "subprocess.Popen[bytes]", body: bytes) -> bytes:
+        """Return what the process answers; nothing if it failed. Raises OSError, _TooLongError."""
+        # The end of the service may have come before this process could be ended with it.
+        if self._closed:
+            raise ConnectionResetError
+        if not self._is_ready:
+            _answer(process, READY, _START)
+            self._is_ready = True
+        assert process.stdin is not None
+        send(process.stdin, DONE, body)
+        return _answer(process, DONE, self._seconds)
+
+
+class _TooLongError(Exception):
+    """The process has not answered in time."""
+
+
+def _answer(process: "subprocess.Popen[bytes]", expected: bytes, seconds: float) -> bytes:
+    late = threading.Event()
+
+    def give_up() -> None:
+        late.set()
+        process.kill()
+
+    timer = threading.Timer(seconds, give_up)
+    timer.daemon = True
+    timer.start()
+    try:
+        assert process.stdout is not None
+        kind, content = received(process.stdout)
+    except EOFError as error:
+        if late.is_set():
+            raise _TooLongError from error
+        raise ConnectionResetError("the process of the checks has ended") from error
+    finally:
+        timer.cancel()
+    return content if kind == expected else b""
+
+
+def send(pipe: IO[bytes], kind: bytes, content: bytes = b"") -> None:
+    """Write a message: a byte for its kind, its length, its content."""
+    pipe.write(kind + len(content).to_bytes(4) + content)
+    pipe.flush()
+
+
+def received(pipe: IO[bytes]) -> tuple[bytes, bytes]:
+    """Return the kind and the content of the next message. Raises EOFError."""
+    head = pipe.read(5)
+    content = pipe.read(int.from_bytes(head[1:])) if len(head) == 5 else b""
+    if len(head) < 5 or len(content) < int.from_bytes(head[1:]):
+        raise EOFError
+    return head[:1], content
+
+
+def _end(process: "subprocess.Popen[bytes]") -> None:
+    process.kill()
+    process.wait()
+    for pipe in (process.stdin, process.stdout):
+        if pipe is not None:
+            try:
+                pipe.close()
+            except OSError:
+                # Something of the last message was still to be written.
+                continue
+
+
+def _too_long(seconds: float) -> ProblemError:
+    return ProblemError(
+        HTTPStatus.UNPROCESSABLE_ENTITY,
+        f"The checks of this exercise take more than {seconds:g} seconds, so they were ended. "
+        "Check fewer parts at once, or use dh-grader exercises check FILE, which has no limit.",
+        "checks-too-long",
+        "The checks take too long",
+    )
+
+
+def _ending() -> ProblemError:
+    return ProblemError(
+        HTTPStatus.SERVICE_UNAVAILABLE,
+        "The service is ending. Send this request again in a minute.",
+        headers={"Retry-After": "60"},
+    )

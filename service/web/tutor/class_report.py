@@ -1,0 +1,186 @@
+"""The report on a class from files that a browser chose, as ``dh-grader grade`` makes it."""
+
+import io
+import tempfile
+import time
+import zipfile
+import zlib
+from collections.abc import Iterator
+from dataclasses import replace
+from datetime import UTC, datetime
+from http import HTTPStatus
+from pathlib import Path, PurePosixPath
+from typing import Annotated, Final
+
+from pydantic import Base64Bytes, BaseModel, ConfigDict, Field, ValidationError
+
+from service.api.http.lookup import Catalogue, require_exercise
+from service.api.http.problems import ProblemError, invalid
+from service.formats.shared.graded import GradedSubmission
+from service.local_grading import GradingTerms, graded
+from service.submissions.assignment import PASS_MARK, Assignment, UnknownPartNameError, of_one
+from service.submissions.handed_in import MAX_FILES, HandedIn, all_handed_in
+from service.submissions.strict_json import MAX_BODY_SIZE
+
+# Unpacked. A body holds 256 KiB, and what students hand in is much alike.
+MAX_UPLOAD: Final = 8 * 1024 * 1024
+MAX_SUBMISSIONS: Final = 500
+# Seconds. What a class hands in takes one or two; only files made to be costly take longer.
+MOST_SECONDS: Final = 60.0
+_LONGEST_PATH: Final = 1_000
+# Characters outside the texts of an upload, and quotation marks around texts: each may take a
+# hundred bytes once it is read. The page sends 7 and 8 for each file.
+_MOST_MARKS: Final = 50 * MAX_FILES
+# In bytes of UTF-8; no file system that is common takes more.
+_LONGEST_NAME: Final = 255
+
+
+class UploadedFile(BaseModel):
+    """A file as a student named it; of one that is no text the bytes, of one too large neither."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    path: Annotated[str, Field(min_length=1, max_length=_LONGEST_PATH)]
+    text: str | None = None
+    base64: Base64Bytes | None = None
+
+    @property
+    def content(self) -> bytes:
+        """The bytes; those of a file that is too large only as many as say so."""
+        if self.text is not None:
+            return self.text.encode(errors="replace")
+        return b"\0" * (MAX_BODY_SIZE + 1) if self.base64 is None else self.base64
+
+
+class ClassUpload(BaseModel):
+    """All files of a class, and the exercise that they answer, or one part of it."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    exercise: str
+    part: str | None = None
+    files: Annotated[list[UploadedFile], Field(min_length=1, max_length=MAX_FILES)]
+
+
+def unpacked(body: bytes) -> ClassUpload:
+    """The upload in a body, JSON packed by gzip. Raises ProblemError."""
+    unpacker = zlib.decompressobj(16 + zlib.MAX_WBITS)
+    try:
+        content = unpacker.decompress(body, MAX_UPLOAD)
+    except zlib.error as error:
+        raise _unusable("The body is not packed by gzip.") from error
+    if unpacker.unconsumed_tail or not unpacker.eof:
+        raise _unusable(
+            f"The files are more than {MAX_UPLOAD // 1024 // 1024} MiB. Choose fewer, or use "
+            "dh-grader grade FOLDER --format html."
+        )
+    if _marks(content) > _MOST_MARKS:
+        raise _unusable("The body holds more than the files of a class, their paths and contents.")
+    try:
+        return ClassUpload.model_validate_json(content)
+    except ValidationError as error:
+        details = error.errors(include_url=False, include_input=False, include_context=False)
+        raise invalid(details, list(ClassUpload.model_fields)) from error
+
+
+def _marks(content: bytes) -> int:
+    """Return how many characters of JSON are outside texts, the quotation marks included."""
+    content = content.replace(rb"\\", b"").replace(rb"\"", b"")
+    quotes = content.count(b'"')
+    # Too many for a list of what is between them.
+    return quotes if quotes > _MOST_MARKS else quotes + sum(map(len, content.split(b'"')[::2]))
+
+
+def class_archive(upload: ClassUpload, catalogue: Catalogue) -> bytes:
+    """The folder that the command line writes, as a ZIP archive. Raises ProblemError.
+
+    The files stand in a temporary folder as long as they are read, so that they are found and
+    named as everywhere else.
+    """
+    exercise = require_exercise(catalogue, upload.exercise)
+    try:
+        assignment = of_one(exercise, upload.part)
+    except UnknownPartNameError as error:
+        raise _unusable(str(error)) from error
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        _write(upload, folder)
+        found = list(all_handed_in([folder], parts=assignment.part_names))
+        if not found:
+            raise _unusable("There is no submission among these files.")
+        if len(found) > MAX_SUBMISSIONS:
+            raise _unusable(
+                f"There are more than {MAX_SUBMISSIONS} submissions. Choose fewer, or use "
+                "dh-grader grade FOLDER --format html."
+            )
+        return _archive(found, assignment, folder)
+
+
+def _write(upload: ClassUpload, folder: Path) -> None:
+    for file in upload.files:
+        path = PurePosixPath(file.path)
+        is_usable = all(
+            step not in ("", ".", "..") and "\0" not in step
+            and len(step.encode(errors="replace")) <= _LONGEST_NAME
+            for step in file.path.split("/")
+        )  # fmt: skip
+        try:
+            if not is_usable:
+                raise OSError
+            target = folder / path
+            target.parent.mkdir(parents=True, exist_ok=True)
+            with target.open("xb") as output:
+                output.write(file.content)
+        except (OSError, ValueError) as error:
+            shown = file.path[:60].encode("ascii", "backslashreplace").decode()
+            raise _unusable(f"A file has a name that cannot be used here: {shown}") from error
+
+
+def _archive(found: list[HandedIn], assignment: Assignment, folder: Path) -> bytes:
+    # Only here: half of what grading over HTTP does not need.
+    from rich.console import Console
+
+    from service.formats import report_format
+    from service.formats.shared.report_format import Setting
+
+    chosen = report_format("html")
+    assert chosen.folder is not None
+    terms = GradingTerms(
+        assignment, PASS_MARK, for_students=chosen.for_students, echo=chosen.shows_entries
+    )
+    setting = Setting(terms.answered, Console(file=io.StringIO()), datetime.now(UTC))
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for document in chosen.folder(_all_graded(found, terms, folder), setting):
+            archive.writestr(document.path, b"".join(document.pieces))
+    return packed.getvalue()
+
+
+def _all_graded(
+    found: list[HandedIn], terms: GradingTerms, folder: Path
+) -> Iterator[GradedSubmission]:
+    """Each with names that are seen from the folder of the class."""
+    above = f"{folder}/"
+    end = time.monotonic() + MOST_SECONDS
+    for handed in found:
+        if time.monotonic() >= end:
+            raise _unusable(
+                f"Grading these files takes more than {MOST_SECONDS:g} seconds. Choose fewer, or "
+                "use dh-grader grade FOLDER --format html."
+            )
+        submission = graded(handed, terms)
+        files = tuple(
+            replace(
+                file,
+                file=file.file.removeprefix(above),
+                problem=file.problem.replace(above, ""),
+            )
+            for file in submission.files
+        )
+        yield replace(submission, name=submission.name.removeprefix(above), files=files)
+
+
+def _unusable(detail: str) -> ProblemError:
+    return ProblemError(
+        HTTPStatus.UNPROCESSABLE_ENTITY, detail, "unusable-files", "The files cannot be used"
+    )

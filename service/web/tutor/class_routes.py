@@ -1,0 +1,50 @@
+"""The routes of the report on a class."""
+
+from typing import Final
+
+from fastapi import APIRouter, Request
+from starlette.responses import HTMLResponse, Response
+
+from service.api.http.bounded_work import BoundedWork
+from service.api.http.chunked_response import PiecewiseResponse
+from service.api.http.lookup import Catalogue
+from service.web.assets import Assets
+from service.web.page_headers import NO_STORE, PRIVATE_HEADERS, policy
+from service.web.tutor.class_report import class_archive, unpacked
+from service.web.tutor.tutor_pages import class_page
+
+_HEADERS: Final = {**PRIVATE_HEADERS, "Content-Security-Policy": policy(frame_src="'self'")}
+
+
+def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> APIRouter:
+    """The page to choose files on, the frame of the reports, and the grading."""
+    router = APIRouter()
+
+    @router.get("/class")
+    async def class_form() -> Response:
+        """The page to choose the files of a class on."""
+        return HTMLResponse(class_page(catalogue, assets), headers=_HEADERS)
+
+    @router.get("/class/report")
+    async def class_frame() -> Response:
+        """The empty frame that the reports are shown in, with the policy of their styles."""
+        from service.formats.class_page.index import STYLE as INDEX_STYLE
+        from service.formats.documents.html import STYLE as REPORT_STYLE
+        from service.formats.shared.html_page import style_sources
+
+        own = policy(
+            script_src="'none'",
+            connect_src="'none'",
+            style_src=style_sources(INDEX_STYLE, REPORT_STYLE),
+        )
+        content = '<!doctype html><html lang="en"><head><title>Report</title></head></html>'
+        return HTMLResponse(content, headers={**PRIVATE_HEADERS, "Content-Security-Policy": own})
+
+    @router.post("/class")
+    async def report(request: Request) -> Response:
+        """The folder of a class as a ZIP archive; nothing of it is kept."""
+        packed = await request.body()
+        content = await work.do(lambda: class_archive(unpacked(packed), catalogue))
+        return PiecewiseResponse(content, headers=NO_STORE, media_type="application/zip")
+
+    return router

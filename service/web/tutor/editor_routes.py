@@ -1,0 +1,73 @@
+"""The routes of the exercise editor."""
+
+from functools import partial
+from http import HTTPStatus
+from typing import Final
+
+from fastapi import APIRouter, Request
+from starlette.responses import HTMLResponse, JSONResponse, Response
+
+from service.api.http.bodies import body_as
+from service.api.http.bounded_work import BoundedWork
+from service.api.http.lookup import Catalogue, exercise_or_404
+from service.api.http.problems import ProblemError
+from service.api.permissions.access import is_at_the_machine
+from service.web.assets import Assets
+from service.web.page_headers import NO_STORE, PRIVATE_HEADERS
+from service.web.tutor.checking import Checking
+from service.web.tutor.exercise_check import CheckRequest
+from service.web.tutor.exercise_folder import ExerciseFolder, SaveRequest
+from service.web.tutor.tutor_pages import editor_page
+
+_NEW: Final = "my-exercise"
+
+
+def editor_routes(
+    catalogue: Catalogue,
+    assets: Assets,
+    folder: ExerciseFolder,
+    work: BoundedWork,
+    checking: Checking,
+) -> APIRouter:
+    """The editor, the check of its text, and the writing of its file."""
+    router = APIRouter()
+
+    @router.get("/editor")
+    async def editor(request: Request, exercise: str | None = None) -> Response:
+        """The editor with the file of an exercise, or with a new one."""
+        # Only here: they bring an algebra system with them.
+        from service.authoring import template
+
+        exercise_id = exercise or _NEW
+        file = folder.opened(exercise_id)
+        if file is None and exercise is not None:
+            exercise_or_404(catalogue, exercise)
+        text, mark = (file.text, file.mark) if file else (template(exercise_id), "")
+        page = editor_page(
+            exercise_id,
+            text,
+            mark,
+            assets,
+            can_write=folder.can_write and is_at_the_machine(request),
+        )
+        return HTMLResponse(page, headers=PRIVATE_HEADERS)
+
+    @router.post("/check")
+    async def check(request: Request) -> Response:
+        """The findings on a text, which is not kept."""
+        body = await body_as(CheckRequest, request)
+        content = await work.do(partial(checking.checked, body))
+        return Response(content, headers=NO_STORE, media_type="application/json")
+
+    @router.post("/files")
+    async def save(request: Request) -> Response:
+        """Write a file to the editor's folder."""
+        if folder.can_write and not is_at_the_machine(request):
+            raise ProblemError(
+                HTTPStatus.FORBIDDEN, "Files are written for whoever is at this machine only."
+            )
+        body = await body_as(SaveRequest, request)
+        mark = await work.do(partial(folder.save, body))
+        return JSONResponse({"mark": mark}, headers=NO_STORE)
+
+    return router

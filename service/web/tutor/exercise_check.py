@@ -1,0 +1,124 @@
+"""An exercise file as its author types it: the checks of ``exercises check``, and a preview."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Final
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+
+from service.api.statement import statement_html
+from service.catalogue import (
+    ID_ADVICE,
+    CatalogueError,
+    Exercise,
+    Fault,
+    is_exercise_id,
+    read_exercise,
+)
+from service.catalogue.files.lines import line_of, value_lines
+from service.formats.shared.plain_text import number
+from service.submissions.file_content import MAX_TOML_DOTS
+
+# The largest exercise that comes with the program has 8 kB.
+MAX_CHARACTERS: Final = 64 * 1024
+
+
+class CheckRequest(BaseModel):
+    """The text of an exercise file; it is checked and not kept."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    id: Annotated[str, Field(max_length=100)]
+    text: Annotated[str, Field(max_length=MAX_CHARACTERS)]
+
+
+@dataclass(frozen=True, slots=True)
+class FileFinding:
+    """One finding of the checks: ``level`` is unusable, failed or warning."""
+
+    level: str
+    field: str
+    text: str
+    line: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class ExercisePreview:
+    """What students will see, in short."""
+
+    title: str
+    source: str
+    statement_html: str
+    parts: tuple[str, ...]
+    figure: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class CheckAnswer:
+    """The findings; the preview is there where the file can be used."""
+
+    findings: tuple[FileFinding, ...]
+    summary: str
+    preview: ExercisePreview | None = None
+
+
+_ANSWER: Final = TypeAdapter(CheckAnswer)
+
+
+def checked(body: CheckRequest) -> bytes:
+    """The answer as JSON."""
+    return _ANSWER.dump_json(check(body.id, body.text))
+
+
+def check(exercise_id: str, text: str) -> CheckAnswer:
+    """The checks that ``exercises check`` makes of a file with this text."""
+    # Only here: they bring an algebra system with them.
+    from service.authoring import examine, lazy_shares
+
+    try:
+        exercise = exercise_of(exercise_id, text)
+    except CatalogueError as error:
+        faults = (
+            FileFinding("unusable", each.field, each.reason, each.line) for each in error.faults
+        )
+        return CheckAnswer(tuple(faults), "The file cannot be used.")
+    lines = value_lines(text.replace("\r\n", "\n"))
+    findings = tuple(
+        FileFinding(remark.level.value, remark.field, remark.text, line_of(remark.field, lines))
+        for remark in examine(exercise)
+    )
+    return CheckAnswer(findings, _summary(exercise, lazy_shares(exercise)), _preview(exercise))
+
+
+def exercise_of(exercise_id: str, text: str) -> Exercise:
+    """The exercise of the text that a file of this name would hold. Raises CatalogueError."""
+    file = Path(f"{exercise_id}.toml")
+    if not is_exercise_id(exercise_id):
+        raise CatalogueError([Fault(file, "", f"the id is the name of the file: {ID_ADVICE}")])
+    if text.count(".") > MAX_TOML_DOTS:
+        raise CatalogueError([Fault(file, "", f"has more than {MAX_TOML_DOTS:,} dots")])
+    return read_exercise(file, text)
+
+
+def _summary(exercise: Exercise, lazy: Mapping[str, float]) -> str:
+    told = [_count(len(exercise.parts), "part"), _count(len(exercise.checks), "check")]
+    earned = ", ".join(f"{int(100 * share)} % of {part}" for part, share in lazy.items())
+    return f"{', '.join(told)}; a lazy answer earns {earned}."
+
+
+def _preview(exercise: Exercise) -> ExercisePreview:
+    from service.figures.figure import exercise_figure
+
+    parts = tuple(f"{part.title}, {number(part.points)} points" for part in exercise.parts)
+    return ExercisePreview(
+        exercise.title,
+        exercise.source,
+        statement_html(exercise.statement),
+        parts,
+        exercise_figure(exercise) if exercise.reference is not None else None,
+    )
+
+
+def _count(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"

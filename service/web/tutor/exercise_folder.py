@@ -1,0 +1,137 @@
+"""The exercise files that the editor opens, and the one folder that it may write to."""
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from http import HTTPStatus
+from pathlib import Path
+from threading import Lock
+from typing import Annotated, Final
+
+from pydantic import Field
+
+from service.api.http.problems import ProblemError
+from service.catalogue import (
+    ID_ADVICE,
+    CatalogueError,
+    exercise_files,
+    is_exercise_id,
+    read_regular,
+)
+from service.web.tutor.exercise_check import MAX_CHARACTERS, CheckRequest, exercise_of
+
+# A character of the text has four bytes at most.
+_LARGEST: Final = 4 * MAX_CHARACTERS
+
+
+class SaveRequest(CheckRequest):
+    """The text to write; ``before`` is the mark of the file that it takes the place of."""
+
+    before: Annotated[str, Field(max_length=64)] = ""
+
+
+@dataclass(frozen=True, slots=True)
+class OpenedFile:
+    """The text of a file, and its mark; "" where the editor's folder has no such file yet."""
+
+    text: str
+    mark: str
+
+
+class ExerciseFolder:
+    """The files of the catalogue's folders, and of the folder that may be written to."""
+
+    def __init__(self, folders: Sequence[Path], written: Path | None) -> None:
+        self._folders = folders
+        self._written = written
+        self._writing = Lock()
+
+    @property
+    def can_write(self) -> bool:
+        """Whether there is a folder to write to."""
+        return self._written is not None
+
+    def opened(self, exercise_id: str) -> OpenedFile | None:
+        """The file of an exercise; that of the editor's own folder comes first."""
+        if not is_exercise_id(exercise_id):
+            return None
+        own = self._own(exercise_id)
+        if own is not None:
+            return OpenedFile(own.decode(errors="replace"), _mark(own))
+        try:
+            files = exercise_files(*self._folders)
+        except CatalogueError:
+            return None
+        found = next((file for file in files if file.stem == exercise_id), None)
+        if found is None:
+            return None
+        return OpenedFile(read_regular(found, _LARGEST).decode(errors="replace"), "")
+
+    def save(self, body: SaveRequest) -> str:
+        """Write the file and return its mark. Raises ProblemError where that may not be.
+
+        The file has the old content or the new one, never half of it.
+        """
+        if self._written is None:
+            raise _refused("This service writes no files: it has no DH_GRADER_EDITOR_DIR.")
+        if not is_exercise_id(body.id):
+            raise _refused(f"This cannot be the id of an exercise: {ID_ADVICE}.")
+        try:
+            exercise_of(body.id, body.text)
+        except CatalogueError as error:
+            raise _refused("A file that cannot be used is not written: mend it first.") from error
+        content = body.text.encode()
+        with self._writing:
+            try:
+                self._write(self._written / f"{body.id}.toml", content, body)
+            except OSError as error:
+                raise _refused(f"The file cannot be written: {error.strerror}.") from error
+        return _mark(content)
+
+    def _write(self, file: Path, content: bytes, body: SaveRequest) -> None:
+        handle, name = tempfile.mkstemp(prefix=f".{body.id}-", dir=file.parent)
+        written = Path(name)
+        try:
+            with os.fdopen(handle, "wb") as output:
+                output.write(content)
+                output.flush()
+                os.fsync(output.fileno())
+            written.chmod(0o644)
+            own = self._own(body.id)
+            if (_mark(own) if own is not None else "") != body.before:
+                raise _changed(body.id)
+            if own is None:
+                # Unlike a move, this fails where the file has come meanwhile.
+                os.link(written, file)
+            else:
+                written.replace(file)
+        except FileExistsError as error:
+            raise _changed(body.id) from error
+        finally:
+            written.unlink(missing_ok=True)
+
+    def _own(self, exercise_id: str) -> bytes | None:
+        """The file of the folder that may be written to, or None. Raises OSError."""
+        if self._written is None:
+            return None
+        try:
+            return read_regular(self._written / f"{exercise_id}.toml", _LARGEST)
+        except FileNotFoundError:
+            return None
+
+
+def _mark(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def _refused(detail: str) -> ProblemError:
+    return ProblemError(HTTPStatus.CONFLICT, detail, "not-saved", "The file is not saved")
+
+
+def _changed(exercise_id: str) -> ProblemError:
+    return _refused(
+        f"{exercise_id}.toml has changed since it was opened here, and stays as it is. Download "
+        "your text, open the file anew, and join the two."
+    )

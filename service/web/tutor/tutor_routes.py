@@ -1,0 +1,100 @@
+"""The routes of a tutor's pages: solutions, the editor, the report on a class."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from http import HTTPStatus
+from pathlib import Path
+
+from fastapi import APIRouter, Depends, Request
+from starlette.responses import HTMLResponse, Response
+
+from service.api.http.bounded_work import BoundedWork
+from service.api.http.chunked_response import PiecewiseResponse
+from service.api.http.lookup import Catalogue, exercise_or_404, reached
+from service.api.http.memoized import Kept
+from service.api.http.problems import ProblemError
+from service.api.permissions.access import Access
+from service.catalogue import Exercise, Robot
+from service.web.assets import Assets
+from service.web.page_headers import NO_STORE, PRIVATE_HEADERS
+from service.web.tutor.checking import Checking
+from service.web.tutor.class_routes import class_routes
+from service.web.tutor.editor_routes import editor_routes
+from service.web.tutor.exercise_folder import ExerciseFolder
+from service.web.tutor.tutor_pages import solution_page, tutor_page
+
+
+@dataclass(frozen=True, slots=True)
+class Tutoring:
+    """Who may see solutions, the folders of exercise files, and the one that may be written to.
+
+    ``records`` says whether the service records attempts; ``checking`` checks the editor's text.
+    """
+
+    access: Access
+    folders: Sequence[Path] = field(default=())
+    editor_dir: Path | None = None
+    records: bool = False
+    checking: Checking = field(default_factory=Checking)
+
+
+def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
+    """The pages and the routes that they ask; each asks for the tutor's right first."""
+    access = tutoring.access
+
+    async def require(request: Request) -> None:
+        access.require_solutions(request, request.path_params.get("exercise_id"))
+
+    router = APIRouter(prefix="/tutor", include_in_schema=False)
+    work = BoundedWork()
+    folder = ExerciseFolder(tutoring.folders, tutoring.editor_dir)
+    for routes in (
+        _solution_routes(catalogue, assets, access),
+        editor_routes(catalogue, assets, folder, work, tutoring.checking),
+        class_routes(catalogue, assets, work),
+    ):
+        router.include_router(routes, dependencies=[Depends(require, scope="function")])
+
+    @router.get("")
+    async def home(request: Request) -> Response:
+        """What there is for tutors; with a key for certain exercises, for tutors of these."""
+        caller = access.require_solutions_of_some(request)
+        shown = reached(catalogue, caller)
+        content = tutor_page(shown, assets, of_all=caller.exercises is None)
+        return HTMLResponse(content, headers=PRIVATE_HEADERS)
+
+    return router
+
+
+def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> APIRouter:
+    router = APIRouter()
+    solutions, figures = Kept(), Kept()
+
+    @router.get("/solutions/{exercise_id}")
+    async def solution(request: Request, exercise_id: str) -> Response:
+        """The model solution of an exercise."""
+        exercise = exercise_or_404(catalogue, exercise_id)
+        of_all = access.require_solutions_of_some(request).exercises is None
+        key = (exercise.id, exercise.version, exercise.title, of_all)
+        drawn = partial(solution_page, exercise, assets, of_all=of_all)
+        content = await solutions.of(key, drawn)
+        return PiecewiseResponse(content, headers=PRIVATE_HEADERS, media_type="text/html")
+
+    @router.get("/solutions/{exercise_id}/frames.svg")
+    async def frames(exercise_id: str) -> Response:
+        """The robot with the frames of the reference's table."""
+        exercise = exercise_or_404(catalogue, exercise_id)
+        if not isinstance(exercise.reference, Robot):
+            raise ProblemError(HTTPStatus.NOT_FOUND, "The exercise has no frames to draw.")
+        key = (exercise.id, exercise.version, exercise.title, exercise.view)
+        content = await figures.of(key, partial(_frames, exercise))
+        return Response(content, headers=NO_STORE, media_type="image/svg+xml")
+
+    return router
+
+
+def _frames(exercise: Exercise) -> bytes:
+    from service.figures.figure import reference_figure
+
+    return reference_figure(exercise).encode()

@@ -1,0 +1,151 @@
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from service.catalogue import Exercise
+from service.catalogue.robots.robot import Robot
+from service.contract.frames import MOST_CONFIGURATIONS
+from tests.shipped import shipped_exercises
+
+ROOT = Path(__file__).parents[3]
+URL = "/v1/frames"
+SHIPPED = shipped_exercises()
+
+
+def answered(client: httpx.Client, body: object) -> Any:
+    response = client.post(URL, json=body)
+    assert response.status_code == 200, response.text
+    return response.json()
+
+
+def test_the_requests_of_the_page_on_figures(client: httpx.Client) -> None:
+    page = (ROOT / "docs" / "figures.md").read_text(encoding="utf-8")
+    robot, table = map(json.loads, re.findall(r"```json \S+\n(.*?)```", page, re.DOTALL))
+    found = answered(client, robot)
+    assert [cell["error"]["suggestion"] for cell in found["table"]["unread"]] == ["a2"]
+    assert found["symbols"] == {"a1": 0.5, "a2": 0.6}
+    assert len(found["mechanism"]["configurations"]) == len(found["table"]["frames"]) == 2
+    # Two links of 0.5 and 0.6, the first at 0.5 rad, the second at 0.25 rad to x0.
+    tool = found["mechanism"]["configurations"][1]["tool"]
+    assert tool == pytest.approx([0.5 * 0.877582562 + 0.6 * 0.968912422, 0.388154912, 0])
+    free = answered(client, table)
+    assert free["symbols"] == {"d1": 0.6}
+    assert "mechanism" not in free
+    assert f"at most {MOST_CONFIGURATIONS}" in page
+
+
+def texts_in(value: Any) -> set[str]:
+    match value:
+        case str():
+            return {value}
+        case dict():
+            return {*value, *(text for each in value.values() for text in texts_in(each))}
+        case list():
+            return {text for each in value for text in texts_in(each)}
+        case _:
+            return set()
+
+
+def parameters(exercise: Exercise) -> set[str]:
+    """The texts of all cells of the answer, in both conventions, that are no 0."""
+    assert isinstance(exercise.reference, Robot)
+    rows = [row for table in exercise.reference.tables.values() for row in table.rows]
+    return {cell.text() for row in rows for cell in row} - {"0"}
+
+
+TABLES = [name for name, exercise in SHIPPED.items() if isinstance(exercise.reference, Robot)]
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_mechanism_tells_nothing_that_the_statement_does_not(
+    client: httpx.Client, name: str
+) -> None:
+    exercise = SHIPPED[name]
+    found = answered(client, {"exercise": name})
+    public = {variable.name for variable in exercise.variables}
+    assert "table" not in found
+    assert set(found["symbols"]) <= public
+    told = texts_in(found)
+    assert not (parameters(exercise) - public) & told
+    fields = {
+        "symbols", "joints", "mechanism", "joint", "variable", "kind", "low", "high", "home",
+        "size", "azimuth", "elevation", "configurations", "centres", "axes", "links", "base",
+        "base_normal", "tool", "tool_direction",
+    }  # fmt: skip
+    assert told - public <= {*fields, "R", "P"}
+    svg = client.get(f"/v1/exercises/{name}/figure.svg").text
+    shown = set(re.findall(r"<text[^>]*>(.*?)</text>", svg))
+    plain = {re.sub(r"<[^>]*>", "", each).replace("θ", "theta") for each in shown}
+    assert not (parameters(exercise) - public) & plain
+
+
+def test_another_choice_of_frames_gives_the_same_mechanism(client: httpx.Client) -> None:
+    """Two exercises on one arm, with frames of their own in either convention."""
+    answers = [answered(client, {"exercise": name}) for name in ("rrrp", "rrrp-proximal")]
+    one, other = (answer["mechanism"]["configurations"][0] for answer in answers)
+    assert one["tool"] == pytest.approx(other["tool"])
+    for axis, same in zip(one["axes"], other["axes"], strict=True):
+        assert axis == pytest.approx(same, abs=1e-9)
+    for link, same in zip(one["links"], other["links"], strict=True):
+        assert [pytest.approx(corner, abs=1e-9) for corner in link] == same
+
+
+@pytest.mark.parametrize(
+    ("body", "place"),
+    [
+        ({}, "#"),
+        ({"exercise": "nothing"}, "#/exercise"),
+        ({"exercise": "dh-conditions"}, "#/exercise"),
+        ({"table": {"rows": []}}, "#/table/structure"),
+        ({"table": {"rows": [], "structure": "RX"}}, "#/table/structure"),
+        ({"table": {"rows": [], "structure": "R" * 11}}, "#/table/structure"),
+        ({"exercise": "scara", "table": {"rows": [], "structure": "RR"}}, "#/table/structure"),
+        ({"exercise": "planar-rr", "joints": [[0]]}, "#/joints/0"),
+        ({"exercise": "planar-rr", "joints": [[0, 1e300]]}, "#/joints/0/1"),
+        ({"exercise": "planar-rr", "joints": []}, "#/joints"),
+        ({"exercise": "planar-rr", "joints": [[0, 0]] * 31}, "#/joints"),
+        ({"exercise": "planar-rr", "symbols": {"b": 1}}, "#/symbols/b"),
+        ({"exercise": "planar-rr", "symbols": {"theta1": 1}}, "#/symbols/theta1"),
+        ({"exercise": "planar-rr", "symbols": {"a1": "1"}, "more": 1}, "#/more"),
+    ],
+)
+def test_a_request_that_does_not_fit_is_refused(
+    client: httpx.Client, body: object, place: str
+) -> None:
+    response = client.post(URL, json=body)
+    assert response.status_code == 422
+    assert place in [error["pointer"] for error in response.json()["errors"]]
+
+
+@pytest.mark.parametrize("length", [0, 1e-9, -0.3, 1e6])
+@pytest.mark.parametrize("name", ["stanford-arm", "planar-rr", "spherical-wrist", "planar-rpr-poe"])
+def test_any_lengths_can_be_drawn(client: httpx.Client, name: str, length: float) -> None:
+    symbols = {
+        v.name: length for v in SHIPPED[name].variables if v.kind == "length" and not v.joint
+    }
+    joints = [[0.1] * len(SHIPPED[name].joints)]
+    text = client.post(URL, json={"exercise": name, "symbols": symbols, "joints": joints}).text
+    assert "NaN" not in text
+    assert "null" not in text
+    assert "configurations" in text
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        "<script>alert(1)</script>",
+        [["\u202e", "<b>", "javascript:alert(1)", "]]>"]] * 12,
+        [["q1^q1^q1", "9" * 400, "(" * 500, "1/0"]],
+        [[[[]], {}, None, True]],
+        {"a": {"b": 1}},
+        [["0"] * 4] * 400,
+    ],
+)
+def test_hostile_tables_are_only_unread(client: httpx.Client, rows: object) -> None:
+    found = answered(client, {"table": {"rows": rows, "structure": "RP"}})
+    assert not found["table"]["complete"]
+    assert found["table"]["unread"] or found["table"]["error"]

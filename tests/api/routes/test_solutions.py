@@ -1,0 +1,128 @@
+"""Model solutions over HTTP: for those who have switched them on, and never in the way."""
+
+import asyncio
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import httpx
+import pytest
+from fastapi import FastAPI
+
+from service.api.application import application
+from service.api.http.memoized import Kept
+from service.api.permissions.access import Access
+from service.api.routes.solutions import _solved
+from service.catalogue import Exercise
+from tests.api.conftest import InProcess
+
+PATH = "/v1/exercises/{}/solution"
+
+
+@pytest.fixture(scope="module")
+def tutor(catalogue: Mapping[str, Exercise]) -> Iterator[httpx.Client]:
+    app = application(catalogue, access=Access(solutions=True))
+    with httpx.Client(transport=InProcess(app), base_url="http://service") as client:
+        yield client
+
+
+def test_they_are_off_and_the_answer_says_how_to_switch_them_on(client: httpx.Client) -> None:
+    for name in ("stanford-arm", "nothing"):
+        response = client.get(PATH.format(name))
+        assert response.status_code == 403
+        assert response.headers["content-type"] == "application/problem+json"
+        assert response.json()["type"] == "urn:dh-grader:problem:solutions-off"
+        assert "DH_GRADER_SOLUTIONS=true" in response.json()["detail"]
+
+
+def test_the_right_answer_to_each_part(tutor: httpx.Client, client: httpx.Client) -> None:
+    response = tutor.get(PATH.format("spatial-rrr"))
+    assert response.status_code == 200
+    assert response.headers["cache-control"] == "no-store"
+    solution = response.json()
+    listed = client.get("/v1/exercises/spatial-rrr").json()
+    assert [each["part"] for each in solution["parts"]] == [each["id"] for each in listed["parts"]]
+    assert solution["version"] == listed["version"]
+    assert solution["notation"]["c23"] == "cos(theta2 + theta3)"
+    assert [each["label"] for each in solution["links"]] == ["1", "2", "3"]
+    assert solution["pose"]["latex"].startswith(r"\begin{bmatrix}")
+    for form in ("answer", "text"):
+        answers = {
+            each["part"]: each[form]
+            for each in solution["parts"]
+            if form == "answer" or each["kind"] != "link_transforms"
+        }
+        report = client.post("/v1/exercises/spatial-rrr/grade", json={"answers": answers}).json()
+        graded = [part for part in report["parts"] if part["part"] in answers]
+        assert {part["verdict"] for part in graded} == {"correct"}
+
+
+def test_an_exercise_without_a_robot_has_no_links(tutor: httpx.Client) -> None:
+    solution = tutor.get(PATH.format("fundamental-rotations")).json()
+    assert solution["links"] == []
+    assert "pose" not in solution
+
+
+def test_an_unknown_exercise(tutor: httpx.Client) -> None:
+    response = tutor.get(PATH.format("skara"))
+    assert response.status_code == 404
+    assert "Did you mean 'scara'?" in response.json()["detail"]
+
+
+def test_the_documented_example_is_what_is_answered(tutor: httpx.Client) -> None:
+    document: dict[str, Any] = tutor.get("/openapi.json").json()
+    operation = document["paths"]["/v1/exercises/{exercise_id}/solution"]["get"]
+    documented = operation["responses"]["200"]["content"]["application/json"]["example"]
+    assert documented == tutor.get(PATH.format("planar-rr")).json()
+
+
+def test_a_changed_exercise_has_a_solution_of_its_own(
+    catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch,
+    client_of: Callable[[FastAPI], httpx.Client],
+) -> None:  # fmt: skip
+    monkeypatch.setattr("service.api.routes.solutions._solved", lambda each: each.version.encode())
+    live = {"scara": catalogue["scara"]}
+    with client_of(application(live, access=Access(solutions=True))) as tutor:
+        assert tutor.get(PATH.format("scara")).text == catalogue["scara"].version
+        live["scara"] = replace(catalogue["scara"], version="other")
+        assert tutor.get(PATH.format("scara")).text == "other"
+
+
+def test_the_loop_goes_on_while_one_is_worked_out(
+    catalogue: Mapping[str, Exercise], figure: Callable[[str], None]
+) -> None:
+    """What stalls it is only the interpreter's hand-over between threads, some milliseconds."""
+
+    arm = catalogue["baxter-left-arm"]
+
+    async def watched() -> tuple[float, float, int]:
+        start = last = time.perf_counter()
+        longest, turns = 0.0, 0
+        task = asyncio.create_task(Kept().of("arm", partial(_solved, arm)))
+        while not task.done():
+            await asyncio.sleep(0)
+            now = time.perf_counter()
+            longest, last, turns = max(longest, now - last), now, turns + 1
+        return time.perf_counter() - start, longest, turns
+
+    took, longest, turns = asyncio.run(watched())
+    figure(f"solution of baxter-left-arm: {took * 1e3:.0f} ms, loop held up {longest * 1e3:.0f} ms")
+    assert turns > 5
+
+
+PROGRAM = r"""
+import sys
+import service.app, service.grading, service.cli.program
+print(sorted({"sympy", "service.solutions.solution"} & set(sys.modules)))
+"""
+
+
+def test_what_serves_and_grades_imports_no_algebra_system() -> None:
+    result = subprocess.run(
+        [sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True
+    )
+    assert result.stdout.strip() == "[]"

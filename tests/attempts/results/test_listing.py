@@ -1,0 +1,101 @@
+from collections.abc import Mapping
+from datetime import timedelta
+from itertools import count
+
+import pytest
+from sqlalchemy import event
+
+from service.attempts.attempt import AttemptFilter, ListedAttempt
+from service.attempts.errors import BadCursorError
+from service.attempts.results.listing import history, page
+from service.attempts.store import AttemptStore
+from service.catalogue import Exercise
+from tests.attempts.recorded import LAZY, NO_TWIST, NOON, RIGHT, recorded
+
+EVERY = AttemptFilter()
+
+
+def all_pages(store: AttemptStore, wanted: AttemptFilter, most: int) -> list[list[ListedAttempt]]:
+    pages, cursor = [], None
+    with store.engine.connect() as connection:
+        for _ in count():
+            shown, cursor = page(connection, wanted, cursor, most)
+            pages.append(shown)
+            if cursor is None:
+                break
+    return pages
+
+
+def test_pages_have_every_attempt_once_also_while_more_come(
+    store: AttemptStore, catalogue: Mapping[str, Exercise]
+) -> None:
+    scara = catalogue["scara"]
+    # Three of each moment: the order within one is that of arrival.
+    written = [recorded(store, scara, f"l{i}", NO_TWIST, hours=i // 3).id for i in range(7)]
+    assert [[each.id for each in shown] for shown in all_pages(store, EVERY, 3)] == [
+        written[6:3:-1],
+        written[3:0:-1],
+        written[0:1],
+    ]
+    with store.engine.connect() as connection:
+        _, cursor = page(connection, EVERY, None, 3)
+    recorded(store, scara, "late", RIGHT, hours=9)
+    with store.engine.connect() as connection:
+        following, _ = page(connection, EVERY, cursor, 3)
+    assert [each.id for each in following] == written[3:0:-1]
+
+
+def test_filters_hold_together(store: AttemptStore, catalogue: Mapping[str, Exercise]) -> None:
+    scara, planar = catalogue["scara"], catalogue["planar-rr"]
+    ada = recorded(store, scara, "ada", NO_TWIST)
+    second = recorded(store, scara, "ada", RIGHT, 2, hours=1)
+    unread = recorded(store, scara, "ada", "?!", None, hours=2)
+    other = recorded(store, planar, "grace", "a1 0 0 θ1\na2 0 0 θ2", hours=1)
+
+    def found(wanted: AttemptFilter) -> set[str]:
+        return {each.id for shown in all_pages(store, wanted, 2) for each in shown}
+
+    hour = timedelta(hours=1)
+    assert found(EVERY) == {ada.id, second.id, unread.id, other.id}
+    assert found(AttemptFilter(exercise="scara")) == {ada.id, second.id, unread.id}
+    assert found(AttemptFilter(learner="grace")) == {other.id}
+    assert found(AttemptFilter(since=NOON + hour, until=NOON + 2 * hour)) == {second.id, other.id}
+    assert found(AttemptFilter(counted=False)) == {unread.id}
+    assert found(AttemptFilter(learner="ada", counted=True, since=NOON + hour)) == {second.id}
+
+
+def test_a_cursor_that_is_none_is_refused(store: AttemptStore) -> None:
+    with store.engine.connect() as connection:
+        for cursor in (
+            "",
+            "x",
+            "1",
+            "1.2.3",
+            "-1.2",
+            "ffffffffffffffff.1",
+            "1." * 9,
+            "1_0.0x1",
+            "1.٣",
+        ):
+            with pytest.raises(BadCursorError):
+                page(connection, EVERY, cursor, 3)
+
+
+def test_an_attempt_has_its_answers(store: AttemptStore, catalogue: Mapping[str, Exercise]) -> None:
+    written = recorded(store, catalogue["scara"], "ada", LAZY)
+    with store.engine.connect() as connection:
+        found = history(connection, written.id)
+        assert history(connection, "0" * 32) is None
+    assert found is not None
+    assert (found.submission, found.report) == (written.submission, written.report)
+    assert (found.attempt.learner, found.attempt.earned) == ("ada", written.points)
+
+
+def test_a_list_reads_no_report(store: AttemptStore) -> None:
+    """Reports are a hundred times larger than all else that is listed."""
+    statements: list[str] = []
+    event.listen(store.engine, "before_cursor_execute", lambda *given: statements.append(given[2]))
+    with store.engine.connect() as connection:
+        page(connection, AttemptFilter(exercise="scara"), None, 3)
+    (statement,) = (each for each in statements if "SELECT" in each)
+    assert "report" not in statement

@@ -1,0 +1,126 @@
+"""What was deleted is in no file of SQLite any more, or the caller is told so."""
+
+import random
+import time
+from collections.abc import Mapping
+from dataclasses import replace
+
+import pytest
+from sqlalchemy import Engine
+
+from service.attempts.regrades.outdated import Regrading
+from service.attempts.storage.database import in_transaction, open_database
+from service.attempts.storage.erasure import finish_overwriting, overwrite_deleted
+from service.attempts.store import AttemptStore
+from service.attempts.tutoring import forget, override
+from service.catalogue import Exercise, FeedbackLevel
+from tests.attempts.erasure import files_with, reader
+from tests.attempts.recorded import NOON, recorded
+from tests.guards import ANSWER
+
+WRITTEN = "q7777777"
+TABLE = "a1 0 0 θ1\na2 0 0 {}\n0 0 d3 0\n0 0 d4 θ4"
+
+
+def forgotten(engine: Engine, learner: str) -> bool | None:
+    in_transaction(engine, lambda connection: forget(connection, learner))
+    return overwrite_deleted(engine)
+
+
+def until_erased(text: str, path: str) -> None:
+    end = time.monotonic() + ANSWER
+    while files_with(text, path):
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+def test_a_reader_keeps_what_was_deleted_until_it_ends(
+    sqlite_url: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    store = AttemptStore.open(sqlite_url)
+    recorded(store, catalogue["scara"], "ada-4711", TABLE.format(WRITTEN))
+    with reader(sqlite_url):
+        assert forgotten(store.engine, "ada-4711") is False
+        # As is promised, it can be read there still.
+        assert files_with(WRITTEN, sqlite_url)
+        finish_overwriting(store.engine)
+        assert files_with(WRITTEN, sqlite_url)
+        # Nobody else has to wait for the reader.
+        recorded(store, catalogue["scara"], "grace", TABLE.format("θ2"))
+    finish_overwriting(store.engine)
+    assert files_with(WRITTEN, sqlite_url) == files_with("ada-4711", sqlite_url) == []
+    assert files_with("grace", sqlite_url)
+    store.close()
+
+
+def test_a_running_store_finishes_what_another_program_has_begun(
+    sqlite_url: str, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.attempts.storage.writer._TIDYING", 0.05)
+    store = AttemptStore.open(sqlite_url)
+    store.start()
+    recorded(store, catalogue["scara"], "ada-4711", TABLE.format(WRITTEN))
+    command = open_database(sqlite_url, create=False)
+    with reader(sqlite_url):
+        assert forgotten(command, "ada-4711") is False
+        time.sleep(0.3)
+        assert files_with(WRITTEN, sqlite_url)
+    until_erased(WRITTEN, sqlite_url)
+    assert files_with("ada-4711", sqlite_url) == []
+    store.close()
+    command.dispose()
+
+
+def test_a_store_finishes_at_its_start(sqlite_url: str, catalogue: Mapping[str, Exercise]) -> None:
+    store = AttemptStore.open(sqlite_url)
+    recorded(store, catalogue["scara"], "ada-4711", TABLE.format(WRITTEN))
+    # One that reads on and on keeps SQLite from tidying up when the others end.
+    with reader(sqlite_url):
+        in_transaction(store.engine, lambda connection: forget(connection, "ada-4711"))
+        store.close()
+        assert files_with(WRITTEN, sqlite_url)
+    idle = open_database(sqlite_url, create=False)
+    with idle.connect() as connection:
+        connection.exec_driver_sql("PRAGMA user_version")
+        connection.rollback()
+        again = AttemptStore.open(sqlite_url)
+        again.start()
+        until_erased(WRITTEN, sqlite_url)
+        again.close()
+    idle.dispose()
+
+
+def test_nothing_stays_of_learners_whose_attempts_were_moved_about(
+    sqlite_url: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    """Rows of many sizes are regraded, given other points and deleted in any order."""
+    store = AttemptStore.open(sqlite_url)
+    scara, draw = catalogue["scara"], random.Random(4)
+    learners = [f"learner-{number:03}" for number in range(40)]
+    for learner in learners:
+        for ordinal in range(1, draw.randint(2, 4)):
+            padding = f"{learner}x" * draw.randint(1, 120)
+            submission = {"answers": {"table": padding}}
+            attempt = recorded(
+                store, scara, learner, TABLE.format("0"), ordinal,
+                report=f'{{"read": "{padding}"}}', submission=str(submission),
+            )  # fmt: skip
+            if draw.random() < 0.3:
+                with store.engine.begin() as connection:
+                    override(connection, attempt.id, 1.0, f"{learner} asked", "me", NOON)
+    regrading = Regrading(replace(scara, version="2"), FeedbackLevel.FULL)
+    with store.engine.begin() as connection:
+        regrading.enqueue(connection)
+    draw.shuffle(learners)
+    for learner in learners[:30]:
+        assert forgotten(store.engine, learner) is True
+        assert files_with(learner, sqlite_url) == []
+    assert all(files_with(learner, sqlite_url) for learner in learners[30:])
+    store.close()
+
+
+def test_postgresql_overwrites_in_its_own_time(postgresql_url: str) -> None:
+    store = AttemptStore.open(postgresql_url)
+    finish_overwriting(store.engine)
+    assert overwrite_deleted(store.engine) is None
+    store.close()

@@ -1,0 +1,418 @@
+import json
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import Result
+
+from service.formats.documents.json import rendered
+from service.grading import Report, Submission, grade
+from tests.shipped import shipped_exercises
+
+Run = Callable[..., Result]
+Save = Callable[..., Path]
+
+ROWS = [
+    {"a": 0, "alpha": 0, "d": 0, "theta": "q1"},
+    {"a": "l1", "alpha": 0, "d": 0, "theta": "q2"},
+    {"a": "l2", "alpha": 0, "d": 0, "theta": "q3"},
+    {"a": "l3", "alpha": 0, "d": 0, "theta": 0},
+]
+RIGHT = {"rows": ROWS}
+HALF = {"rows": [*ROWS[:2], *({**row, "a": 7, "theta": 1} for row in ROWS[2:])]}
+TOML = """
+angle_unit = "degrees"
+[answers.table]
+rows = [
+    { a = 0, alpha = 360, d = 0, theta = "q1" },
+    { a = "l1", alpha = 0, d = 0.0, theta = "q2" },
+    { a = "l2", alpha = 0, d = 0, theta = "q3" },
+    { a = "l3", alpha = 0, d = 0, theta = 0 },
+]
+"""
+
+
+@pytest.fixture
+def save(tmp_path: Path) -> Save:
+    def save(content: Any, name: str = "answer.json") -> Path:
+        file = tmp_path / name
+        data = content if isinstance(content, bytes) else json.dumps(content).encode()
+        file.write_bytes(data)
+        return file
+
+    return save
+
+
+def table_only(run: Run, *arguments: object) -> Result:
+    return run("grade", "--exercise", "planar-rrr", "--part", "table", *arguments)
+
+
+def test_a_right_answer_passes(run: Run, save: Save) -> None:
+    result = table_only(run, save({"answers": {"table": RIGHT}}))
+    assert result.exit_code == 0, result.output
+    assert "table (dh_table): correct, 8 / 8 points" in result.stdout
+    assert "Total for planar-rrr: 8 / 8 points, 100 %" in result.stdout
+    assert result.stderr == ""
+
+
+def test_one_below_the_pass_mark_does_not(run: Run, save: Save) -> None:
+    file = save({"answers": {"table": HALF}})
+    result = table_only(run, file)
+    assert result.exit_code == 1
+    assert "partial" in result.stdout
+    assert table_only(run, file, "--pass-mark", "0.1").exit_code == 0
+
+
+def test_the_pass_mark_itself_passes(run: Run, save: Save) -> None:
+    file = save({"answers": {"table": RIGHT}})
+    # 8 of the exercise's 16 points
+    assert run("grade", file, "--exercise", "planar-rrr", "--pass-mark", "0.5").exit_code == 0
+    assert run("grade", file, "--exercise", "planar-rrr", "--pass-mark", "0.51").exit_code == 1
+
+
+def test_a_file_may_hold_the_answer_of_the_part_alone(run: Run, save: Save) -> None:
+    assert table_only(run, save(RIGHT)).exit_code == 0
+    toml = TOML.replace("[answers.table]", "").replace('angle_unit = "degrees"', "")
+    toml = toml.replace("360", "0")
+    assert table_only(run, save(toml.encode(), "a.toml")).exit_code == 0
+
+
+def test_with_a_part_the_others_neither_count_nor_are_graded(run: Run, save: Save) -> None:
+    file = save({"answers": {"table": RIGHT, "pose": "nonsense"}})
+    result = table_only(run, file, "--format", "json")
+    [entry] = json.loads(result.stdout)
+    assert [part["part"] for part in entry["report"]["parts"]] == ["table"]
+    assert entry["report"]["score"] == 1
+
+
+def test_toml_is_read_like_json(run: Run, save: Save) -> None:
+    result = table_only(run, save(TOML.encode(), "answer.TOML"))
+    assert result.exit_code == 0, result.output
+
+
+def test_json_holds_exactly_the_report(run: Run, save: Save) -> None:
+    answers = {"table": HALF}
+    result = run(
+        "grade", save({"answers": answers}), "--exercise", "planar-rrr", "--format", "json"
+    )
+    exercise = shipped_exercises()["planar-rrr"]
+    [entry] = json.loads(result.stdout)
+    assert entry["report"] == json.loads(rendered(grade(exercise, Submission(answers))))
+    assert result.stderr == ""
+    assert "\x1b" not in result.stdout
+
+
+def test_several_files_are_a_list_and_the_worst_decides(run: Run, save: Save) -> None:
+    right, half = save(RIGHT, "right.json"), save(HALF, "half.json")
+    broken = save(b"{", "broken.json")
+    assert table_only(run, right, right).exit_code == 0
+    assert table_only(run, right, half).exit_code == 1
+    result = table_only(run, broken, right, half, "--format", "json")
+    assert result.exit_code == 2
+    entries = json.loads(result.stdout)
+    assert [entry["file"] for entry in entries] == [str(broken), str(right), str(half)]
+    assert "line 1, column 2" in entries[0]["error"]
+    assert [entry["report"]["score"] for entry in entries[1:]] == [1.0, pytest.approx(0.5, abs=0.3)]
+
+
+def test_several_files_are_told_apart_in_text(run: Run, save: Save) -> None:
+    right, half = save(RIGHT, "right.json"), save(HALF, "half.json")
+    # A long path is wrapped.
+    output = "".join(table_only(run, right, half).stdout.split())
+    assert output.index("right.json") < output.index("100%") < output.index("half.json")
+
+
+def test_the_feedback_level_comes_from_the_command_or_else_from_the_file(
+    run: Run, save: Save
+) -> None:
+    full = {"answers": {"table": HALF}}
+    short = save(full | {"feedback": "score"}, "short.json")
+    assert "row" not in table_only(run, short).stdout
+    assert "rows 3, e a" in table_only(run, short, "--feedback", "full").stdout
+    assert "row" not in table_only(run, save(full), "--feedback", "score").stdout
+
+
+def test_echo_shows_how_each_cell_was_read(run: Run, save: Save) -> None:
+    answer = save({"answers": {"table": HALF}})
+    assert "read  a" in table_only(run, answer, "--echo").stdout
+    assert "read  a" not in table_only(run, answer).stdout
+
+
+@pytest.mark.parametrize("output_format", ["text", "json", "csv", "html", "junit"])
+def test_the_output_goes_to_a_file(
+    run: Run, save: Save, tmp_path: Path, output_format: str
+) -> None:
+    target = tmp_path / "report"
+    answer = save(HALF)
+    on_screen = table_only(run, answer, "--format", output_format)
+    to_file = table_only(run, answer, "--format", output_format, "--output", target)
+    assert to_file.stdout == ""
+    assert to_file.exit_code == on_screen.exit_code == 1
+    assert target.read_bytes() == on_screen.stdout_bytes
+    assert sorted(tmp_path.iterdir()) == sorted([answer, target])
+
+
+def test_an_interrupted_run_leaves_no_half_of_a_file(
+    run: Run, save: Save, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answer, target = save(RIGHT), save(b"from yesterday", "out.csv")
+    graded = []
+
+    def interrupted(*arguments: Any) -> Report:
+        graded.append(arguments)
+        if len(graded) == 2:
+            raise KeyboardInterrupt
+        return grade(*arguments)
+
+    monkeypatch.setattr("service.local_grading.grade", interrupted)
+    result = table_only(run, answer, answer, "--format", "csv", "--output", target)
+    assert result.exit_code != 0
+    assert len(graded) == 2
+    assert target.read_bytes() == b"from yesterday"
+    assert sorted(tmp_path.iterdir()) == sorted([answer, target])
+
+
+@pytest.mark.skipif(os.name == "nt", reason="has no such device")
+def test_a_device_is_written_to_and_not_replaced(run: Run, save: Save) -> None:
+    assert table_only(run, save(RIGHT), "--output", os.devnull).exit_code == 0
+    assert Path(os.devnull).is_char_device()
+
+
+def test_a_format_for_one_submission_refuses_several(run: Run, save: Save, tmp_path: Path) -> None:
+    target = tmp_path / "results.json"
+    right = save(RIGHT)
+    several = table_only(run, right, right, "--format", "gradescope", "--output", target)
+    assert several.exit_code == 2
+    assert "gradescope holds one submission, and 2 files are given" in several.stderr
+    assert not target.exists()
+    assert table_only(run, right, "--format", "gradescope").exit_code == 0
+
+
+def test_a_platform_hears_of_a_file_that_cannot_be_used(run: Run, save: Save) -> None:
+    result = table_only(run, save(b"{"), "--format", "prairielearn")
+    assert result.exit_code == 2
+    assert json.loads(result.stdout)["gradable"] is False
+    assert "line 1, column 2" in result.stderr
+
+
+def test_a_format_that_lacks_its_platform_says_so(
+    run: Run, save: Save, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("CLASSROOM", raising=False)
+    result = table_only(run, save(RIGHT), "--format", "classroom50")
+    assert result.exit_code == 2
+    assert result.stderr.startswith("classroom50: ")
+    assert "CLASSROOM, " in result.stderr
+
+
+def test_students_are_told_no_more_than_the_exercise_allows(run: Run, save: Save) -> None:
+    answer = save({"answers": {"table": HALF}})
+    asked = save({"answers": {"table": HALF}, "feedback": "score"}, "score.json")
+    greedy = save({"answers": {"table": HALF}, "feedback": "full"}, "full.json")
+    assert "It should be" in table_only(run, answer, "--format", "text").stdout
+    for name in ("gradescope", "html", "junit", "markdown", "github", "prairielearn"):
+        told = table_only(run, answer, "--format", name).stdout
+        assert "row 3, e a" in told.replace("rows", "row")
+        assert "It should be" not in told
+        assert "It should be" not in table_only(run, greedy, "--format", name).stdout
+        assert (
+            "It should be" in table_only(run, answer, "--format", name, "--feedback", "full").stdout
+        )
+        assert "row 3" not in table_only(run, asked, "--format", name).stdout.replace("rows", "row")
+
+
+def test_the_time_of_release_is_told_to_gradescope(run: Run, save: Save) -> None:
+    result = table_only(
+        run, save(RIGHT), "--format", "gradescope", "--visibility", "after_due_date"
+    )
+    assert json.loads(result.stdout)["visibility"] == "after_due_date"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="allows no such names")
+def test_the_name_of_a_file_is_a_name_and_nothing_else(run: Run, save: Save) -> None:
+    name = "\x1b[31m\n::set-output name=a::b\n##[error]<script>.json"
+    broken = save(b"{", name)
+    result = table_only(run, broken, "--format", "markdown")
+    for printed in (result.stdout, result.stderr):
+        assert "\x1b" not in printed
+        assert not any(line.lstrip().startswith("::") for line in printed.splitlines())
+        assert "##[" not in printed
+    [entry] = json.loads(table_only(run, broken, "--format", "json").stdout)
+    assert entry["file"] == str(broken)
+
+
+def test_an_output_that_cannot_be_written_is_said(run: Run, save: Save, tmp_path: Path) -> None:
+    answer = save(RIGHT)
+    for output in (tmp_path / "no" / "report", answer / "report"):
+        result = table_only(run, answer, "--output", output)
+        assert result.exit_code == 2
+        assert result.stderr.count("cannot be written") == len(result.stderr.splitlines()) == 1
+
+
+def test_an_output_takes_the_place_of_nothing_that_is_read(
+    run: Run, save: Save, tmp_path: Path
+) -> None:
+    answer = save(RIGHT)
+    assignment = save(b'title = "1"\n[[exercises]]\nid = "planar-rrr"\n', "homework.toml")
+    other_name = tmp_path / "folder" / ".." / "answer.json"
+    (tmp_path / "folder").mkdir()
+    for output in (answer, other_name, assignment):
+        before = output.read_bytes()
+        result = run("grade", answer, "--assignment", assignment, "--output", output)
+        assert result.exit_code == 2
+        assert "would be overwritten" in result.stderr
+        assert output.read_bytes() == before
+
+
+def test_an_output_takes_the_place_of_no_submission_but_of_an_earlier_output(
+    run: Run, save: Save, tmp_path: Path
+) -> None:
+    (tmp_path / "class" / "bert").mkdir(parents=True)
+    command = ("grade", tmp_path / "class", "--exercise", "planar-rrr", "--format", "csv")
+    for name in ("class/anna.json", "class/bert/answer.json"):
+        answer = save({"answers": {"table": RIGHT}}, name)
+        before = answer.read_bytes()
+        refused = run(*command, "--output", answer)
+        assert (refused.exit_code, answer.read_bytes()) == (2, before)
+        assert "stands among the submissions" in refused.stderr
+    points = tmp_path / "class" / "points.csv"
+    for _ in range(2):
+        assert run(*command, "--output", points).exit_code == 1
+        assert points.read_text(encoding="utf-8").count("\n") == 3
+
+
+@pytest.mark.parametrize(
+    ("option", "word", "meant"),
+    [
+        ("--format", "htlm", "html"),
+        ("--feedback", "verdict", "verdicts"),
+        ("--visibility", "visable", "visible"),
+    ],
+)
+def test_a_mistyped_choice_brings_the_nearest(
+    run: Run, save: Save, option: str, word: str, meant: str
+) -> None:
+    result = table_only(run, save(RIGHT), option, word)
+    assert result.exit_code == 2
+    told = " ".join(result.stderr.replace("│", " ").split())
+    assert f"{word!r} is not one of " in told
+    assert f"Did you mean {meant}?" in told
+    assert "Value error" not in told
+
+
+def test_a_class_in_a_format_for_one_submission_says_what_it_was_taken_for(
+    run: Run, save: Save, tmp_path: Path
+) -> None:
+    for name in ("class/anna/answer.json", "class/bert/answer.json"):
+        (tmp_path / name).parent.mkdir(parents=True)
+        save({"answers": {"table": RIGHT}}, name)
+    folder = tmp_path / "class"
+    result = run("grade", folder, "--exercise", "planar-rrr", "--format", "gradescope")
+    assert result.exit_code == 2
+    assert f"so the folder {folder} was taken for that of one student" in result.stderr
+
+
+def test_an_exercise_without_an_answer_is_not_called_unreadable(run: Run, save: Save) -> None:
+    empty, unread = save({"answers": {}}), save({"answers": {"table": "l1 +"}}, "unread.json")
+    command = ("--exercise", "planar-rrr", "--format")
+    told = {
+        (file.name, name): run("grade", file, *command, name).stdout
+        for file in (empty, unread)
+        for name in ("text", "gradescope")
+    }
+    for (file, _), page in told.items():
+        assert ("could be read" in page) == (file == "unread.json")
+        assert ("not answered" in page or "Nothing is answered" in page) == (file != "unread.json")
+
+
+@pytest.mark.parametrize(
+    ("content", "name", "reason"),
+    [
+        (b'{\n "answers": {]}', "a.json", "line 2, column 14"),
+        (b"", "a.json", "is empty"),
+        (b'{"a": \xff}', "a.json", ": is not UTF-8 text: byte 7 is wrong; save it as UTF-8"),
+        (b'{"a": ]}', "a.json", "is not usable JSON: expecting value (line 1, column 7)"),
+        (b"\xff", "a.json", "not UTF-8"),
+        (b"[" * 5000 + b"]" * 5000, "a.json", "deep"),
+        (b" " * 300_000, "a.json", "larger than 256 KiB"),
+        (b'{"answers": {"table": 1, "table": 2}}', "a.json", "twice"),
+        (b'{"rows": []}', "a.json", "--part"),
+        (b'{"answers": []}', "a.json", 'answers is []; write {"PART": '),
+        (b'{"answers": null}', "a.json", 'answers is null; write {"PART": '),
+        (b'{"answers": {}, "echo": 1}', "a.json", "echo is 1; write true or false"),
+        (
+            b'{"answers": {}, "angle_unit": "deg"}', "a.json",
+            'angle_unit is "deg"; it may be radians, degrees. Did you mean degrees?',
+        ),
+        (b'{"answers": {}, "unit": "deg"}', "a.json", "unit"),
+        (b'{"answers": {"tabel": 1}}', "a.json", "table, pose"),
+        (b"answers = \n", "a.toml", "line 1, column 11"),
+        (b"\xff", "a.toml", "not UTF-8"),
+        (b"a = " + b"[" * 5000, "a.toml", ""),
+        (b"a = " + b"[" * 100 + b"]" * 100, "a.toml", "deep"),
+        (b"a = " + b"9" * 5000, "a.toml", "not usable TOML: a number has thousands of digits\n"),
+    ],
+)  # fmt: skip
+def test_an_unusable_file_says_why(
+    run: Run, save: Save, content: bytes, name: str, reason: str
+) -> None:
+    file = save(content, name)
+    result = run("grade", file, "--exercise", "planar-rrr")
+    assert result.exit_code == 2
+    assert result.stderr.startswith(str(file))
+    assert reason in result.stderr
+    assert result.stdout == ""
+
+
+def test_a_missing_file_and_a_folder_say_why(run: Run, tmp_path: Path) -> None:
+    missing = run("grade", tmp_path / "none.json", "--exercise", "planar-rrr")
+    assert missing.exit_code == 2
+    assert "No such file" in missing.stderr
+    assert run("grade", tmp_path, "--exercise", "planar-rrr").exit_code == 2
+
+
+def test_dates_and_nan_in_toml_cost_only_their_cells(run: Run, save: Save) -> None:
+    toml = TOML.replace("d = 0.0", "d = 2024-01-01").replace('a = "l2"', "a = nan")
+    result = table_only(run, save(toml.encode(), "a.toml"), "--format", "json")
+    assert result.exit_code in (0, 1), result.output
+    rows = json.loads(result.stdout)[0]["report"]["parts"][0]["rows"]
+    assert rows[1]["cells"][0]["verdict"] == "correct"
+    assert rows[2]["cells"][0]["verdict"] == "unreadable"
+
+
+def test_an_unknown_exercise_brings_the_nearest(run: Run, save: Save) -> None:
+    result = run("grade", save(RIGHT), "--exercise", "planar_rrr")
+    assert result.exit_code == 2
+    assert "Did you mean 'planar-rrr'?" in result.stderr
+
+
+def test_an_unknown_part_brings_the_nearest(run: Run, save: Save) -> None:
+    result = run("grade", save(RIGHT), "--exercise", "planar-rrr", "--part", "tabel")
+    assert result.exit_code == 2
+    assert "Did you mean 'table'?" in result.stderr
+
+
+@pytest.mark.parametrize(
+    "arguments", [[], ["x.json"], ["x.json", "--exercise", "scara", "--pass-mark", "2"]]
+)
+def test_a_wrong_command_line_is_unusable_input(run: Run, arguments: list[str]) -> None:
+    assert run("grade", *arguments).exit_code == 2
+
+
+def test_a_class_is_a_folder_of_pages_with_an_overview(
+    run: Run, save: Save, tmp_path: Path
+) -> None:
+    files = [save(RIGHT, "anna.json"), save(HALF, "ben.json"), save(b"{", "cleo.json")]
+    folder = tmp_path / "class"
+    result = table_only(run, *files, "--format", "html", "--output", folder)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    pages = sorted(path.name for path in (folder / "reports").iterdir())
+    assert pages == ["anna.html", "ben.html", "cleo.html"]
+    assert "Class overview" in (folder / "index.html").read_text(encoding="utf-8")
+    (folder / "mine.txt").touch()
+    result = table_only(run, *files, "--format", "html", "--output", folder)
+    assert result.exit_code == 2
+    assert f"{folder}: holds 'mine.txt'" in result.stderr.replace("\n", "")

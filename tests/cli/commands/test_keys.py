@@ -1,0 +1,129 @@
+"""`dh-grader keys`, and a start that is refused for want of them."""
+
+import re
+import shutil
+import sqlite3
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from service.access.key_text import is_spelt_right
+from service.catalogue import shipped_folder
+from service.cli.commands.keys import commands
+from service.server.installed import installed_app
+from service.settings import Settings, SettingsError, load_settings
+
+SECRET = "0123456789abcdef" * 4
+
+
+@pytest.fixture(autouse=True)
+def _installation(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    for name in Settings.model_fields:
+        monkeypatch.delenv(f"DH_GRADER_{name.upper()}", raising=False)
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(tmp_path / "attempts.db"))
+    # One exercise, so that an application is made quickly.
+    folder = tmp_path / "exercises"
+    folder.mkdir()
+    shutil.copy(shipped_folder() / "scara.toml", folder)
+    monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", str(folder))
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(commands, arguments)
+
+
+def refused(host: str | None = "0.0.0.0", **options: Any) -> str:
+    """Why the service does not start; empty where it does."""
+    try:
+        installed_app(load_settings(**options), host)
+    except SettingsError as error:
+        return str(error)
+    return ""
+
+
+def test_a_key_is_created_shown_once_listed_and_revoked(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert "DH_GRADER_SECRET" in run("create", "a course").stderr
+    monkeypatch.setenv("DH_GRADER_SECRET", SECRET)
+    created = run("create", "a [b]course[/b]\x1b", "--scope", "tutor", "--exercise", "scara")
+    text = created.stdout.strip()
+    assert is_spelt_right(text)
+    [key] = re.findall(r"Key (\w{8}), valid until", created.stderr)
+    listed = run("list").stdout
+    for told in (key, "a [b]course[/b]", "grade tutor", "scara", "until 20", "never used"):
+        assert told in listed
+    assert text not in listed
+    assert "\x1b" not in listed
+    assert run("revoke", key).exit_code == 0
+    assert "revoked 20" in run("list").stdout
+    assert run("revoke", key).exit_code == 2
+    assert run("create", "c", "--exercise", "scarra").exit_code != 0
+
+
+def test_who_lets_others_in_has_keys_or_says_that_it_needs_none(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert "DH_GRADER_OPEN=until-keys" in refused()
+    assert refused("192.0.2.1")
+    assert refused("grader.example.edu")
+    for here in ("127.0.0.1", "localhost", "::1", "127.1.2.3", None):
+        assert not refused(here)
+    for said in ("until-keys", "grade", "grade,record", "none"):
+        assert not refused(open=said)
+    monkeypatch.setenv("DH_GRADER_SECRET", SECRET)
+    assert refused()
+    run("create", "a course")
+    assert not refused()
+    monkeypatch.delenv("DH_GRADER_SECRET")
+    assert "DH_GRADER_SECRET" in refused("127.0.0.1")
+
+
+def test_another_secret_than_that_of_the_keys_is_refused_until_they_are_revoked(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("DH_GRADER_SECRET", SECRET)
+    [key] = re.findall(r"Key (\w{8}), valid until", run("create", "a course").stderr)
+    told = "This is not the secret with which the keys in the database were made."
+    monkeypatch.setenv("DH_GRADER_SECRET", SECRET[::-1])
+    assert refused("127.0.0.1").startswith(f"DH_GRADER_SECRET: {told}")
+    for arguments in (("create", "another"), ("list",)):
+        result = run(*arguments)
+        assert (result.exit_code, told in result.stderr.replace("\n", " ")) == (2, True)
+        assert "another" not in result.output
+    assert key in run("list").stdout
+    # A database of the version before tells no secret, and keeps that of the next key.
+    with sqlite3.connect(tmp_path / "attempts.db") as connection:
+        connection.execute("DELETE FROM key_secrets")
+    assert not refused()
+    monkeypatch.setenv("DH_GRADER_SECRET", SECRET)
+    [other] = re.findall(r"Key (\w{8}), valid until", run("create", "a course").stderr)
+    # Whoever has lost the secret begins anew.
+    monkeypatch.setenv("DH_GRADER_SECRET", SECRET[::-1])
+    assert told in refused()
+    for each in (key, other):
+        assert run("create", "a course").exit_code == 2
+        assert run("revoke", each).exit_code == 0
+    assert run("create", "a course").exit_code == 0
+    assert not refused()
+
+
+def test_what_cannot_be_used_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    file = tmp_path / "secret"
+    monkeypatch.setenv("DH_GRADER_SECRET_FILE", str(file))
+    assert "DH_GRADER_SECRET_FILE: cannot be read" in refused()
+    file.write_text("short\n", encoding="utf-8")
+    assert "DH_GRADER_SECRET_FILE: the secret is short" in refused()
+    file.write_text(f"{SECRET}\n", encoding="utf-8")
+    assert is_spelt_right(run("create", "a course").stdout.strip())
+    for name, value in (
+        ("secret", "short"),
+        ("open", "tutor"),
+        ("open", "grade,all"),
+        ("key_rate", "often"),
+        ("address_rate", "1 per fortnight"),
+    ):
+        assert f"DH_GRADER_{name.upper()}: " in refused(**{name: value})
+    told = refused(key_rate="1/day", rates_store="redis+nonsense://user:hidden@host")
+    assert told.startswith("DH_GRADER_RATES_STORE: ")
+    assert "hidden" not in told

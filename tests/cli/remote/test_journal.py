@@ -1,0 +1,80 @@
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+from service.catalogue import Exercise
+from service.cli.remote.journal import Journal, digest, journal_beside
+from service.grading import Report, Submission, grade
+
+ONE, OTHER, THIRD = digest(["θ", 1]), digest(["θ", 2]), digest(["θ", "1"])
+
+
+@pytest.fixture
+def reports(catalogue: Mapping[str, Exercise]) -> tuple[Report, Report]:
+    exercise = catalogue["planar-rr"]
+    right = ["a1 c1 + a2 c12", "a1 s1 + a2 s12"]
+    return (
+        grade(exercise, Submission({"position": right}, echo=True)),
+        grade(exercise, Submission({"position": ["θ \u2028 \n +", '"']})),
+    )
+
+
+def test_what_one_run_keeps_the_next_one_has(
+    tmp_path: Path, reports: tuple[Report, Report]
+) -> None:
+    first = Journal(tmp_path / "j")
+    first.add(ONE, reports[0])
+    first.add(OTHER, reports[1])
+    assert first.report(ONE) is None  # what came in this run has been used already
+    second = Journal(tmp_path / "j")
+    assert (second.report(ONE), second.report(OTHER)) == reports
+    assert second.report(THIRD) is None
+    second.remove()
+    assert not (tmp_path / "j").exists()
+    second.remove()
+
+
+@pytest.mark.parametrize("cut", [2, 30, 120, 1000])
+def test_a_line_that_was_broken_off_costs_only_itself(
+    tmp_path: Path, reports: tuple[Report, Report], cut: int
+) -> None:
+    path = tmp_path / "j"
+    journal = Journal(path)
+    journal.add(ONE, reports[0])
+    journal.add(OTHER, reports[1])
+    path.write_bytes(path.read_bytes()[:-cut])
+    Journal(path).add(THIRD, reports[1])
+    last = Journal(path)
+    assert last.report(ONE) == reports[0]
+    assert last.report(OTHER) is None
+    assert last.report(THIRD) == reports[1]
+
+
+@pytest.mark.parametrize("content", [b"", b"\xff\x00", b'{"digest": "%b", "report": {}}\n'])
+def test_a_file_that_is_no_journal_holds_nothing(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "j").write_bytes(content.replace(b"%b", ONE.encode()))
+    assert Journal(tmp_path / "j").report(ONE) is None
+
+
+def test_a_run_goes_on_where_it_cannot_be_written(
+    tmp_path: Path, reports: tuple[Report, Report], capsys: pytest.CaptureFixture[str]
+) -> None:
+    journal = Journal(tmp_path / "no such folder" / "j")
+    journal.add(ONE, reports[0])
+    journal.add(OTHER, reports[1])
+    assert capsys.readouterr().err.count("cannot be written") == 1
+
+
+def test_it_stands_beside_the_output_and_is_no_submission_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / "pages"
+    folder.mkdir()
+    assert journal_beside(tmp_path / "a/points.csv") == tmp_path / "a/.points.csv.graded"
+    assert journal_beside(Path("pages/")) == Path(".pages.graded")
+    monkeypatch.chdir(folder)
+    assert journal_beside(Path()) == tmp_path / ".pages.graded"
+    assert journal_beside(None) == Path(".dh-grader.graded")
+    assert journal_beside(Path("/dev/null")) == Path(".dh-grader.graded")

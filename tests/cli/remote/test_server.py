@@ -1,0 +1,241 @@
+"""``dh-grader grade --server``: a real server process grades, and is killed in the midst of it."""
+
+import json
+import signal
+from itertools import product
+from pathlib import Path
+from random import Random
+
+import httpx
+import pytest
+
+from service.cli.remote.journal import Journal
+from service.grading import Report
+from tests.api.serving import Served, served
+from tests.cli.conftest import Run
+from tests.client.scripted import http, scripted
+
+PAGE = (Path(__file__).parents[3] / "docs" / "client.md").read_text(encoding="utf-8")
+POSITION = ["a1 c1 + a2 c12", "a1 s1 + a2 s12"]
+REFUSAL = {
+    "type": "about:blank", "title": "No", "status": 422, "detail": "Not so.", "instance": "/",
+}  # fmt: skip
+ASSIGNMENT = """\
+title = "Homework"
+
+[[exercises]]
+id = "planar-rr"
+parts = ["table", "position"]
+points = 10
+
+[[exercises]]
+id = "stanford-arm"
+"""
+
+
+@pytest.fixture
+def homework(tmp_path: Path) -> Path:
+    """A class of right, wrong, unreadable, unusable and missing answers."""
+    folder = tmp_path / "class"
+    folder.mkdir()
+    entries = [*POSITION, "q1", "a1 c1 +", "1/0", "0", 0]
+    # No two alike: a report is kept by what it is on, and the second one would not be asked for.
+    positions = Random(5).sample([*product(entries, repeat=2)], 20)
+    for i, position in enumerate(positions):
+        answers = {"position": position, "table": "a1, 0, 0, q1\na2, 0, 0, q2"}
+        (folder / f"s{i:02}.json").write_text(json.dumps({"answers": answers}), encoding="utf-8")
+    (folder / "broken.json").write_text("{", encoding="utf-8")
+    (folder / "other.json").write_text('{"answers": {"tabel": 1}}', encoding="utf-8")
+    (folder / "unit.json").write_text(
+        json.dumps(
+            {"answers": {"position": POSITION}, "angle_unit": "degrees", "feedback": "score"}
+        ),
+        encoding="utf-8",
+    )
+    return folder
+
+
+def graded_posts(server: Served) -> int:
+    return server.log.read_text(encoding="utf-8").count("/grade HTTP/1.1")
+
+
+@pytest.mark.parametrize(
+    "what",
+    [
+        ("--exercise", "planar-rr", "--format", "json", "--feedback", "hints", "--echo"),
+        ("--exercise", "planar-rr", "--format", "html"),
+        ("--exercise", "planar-rr", "--part", "position", "--format", "csv"),
+        ("--assignment", "hw.toml", "--format", "markdown"),
+    ],
+    ids=lambda what: what[-1],
+)
+def test_a_server_gives_the_document_that_is_made_here(
+    run: Run, server: Served, homework: Path, monkeypatch: pytest.MonkeyPatch, what: tuple[str, ...]
+) -> None:
+    monkeypatch.chdir(homework.parent)
+    Path("hw.toml").write_text(ASSIGNMENT, encoding="utf-8")
+    here = run("grade", "class", *what, "--jobs", 1)
+    there = run("grade", "class", *what, "--server", server.address, "--jobs", 3)
+    assert (there.exit_code, there.stdout, there.stderr) == (2, here.stdout, here.stderr)
+    assert list(Path().glob(".*")) == []
+
+
+def test_killed_in_the_midst_it_is_asked_for_exactly_the_rest(
+    run: Run, homework: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    # The waits are tested elsewhere.
+    monkeypatch.setattr("service.client.retries.random.uniform", lambda *_: 0.0)
+    kept: list[str] = []
+    add = Journal.add
+
+    def kill_after_five(self: Journal, of: str, report: Report) -> None:
+        add(self, of, report)
+        kept.append(of)
+        if len(kept) == 5:
+            first.process.send_signal(signal.SIGKILL)
+            first.process.wait()
+
+    command = ["grade", "class", "--exercise", "planar-rr", "--format", "json", "--jobs", 2]
+    command += ["--output", "points.json", "--feedback", "hints"]
+    expected = run(*command, "--jobs", 1)
+    whole = Path("points.json").read_text(encoding="utf-8")
+    (tmp_path / "first").mkdir()
+    with served(tmp_path / "first") as first:
+        monkeypatch.setattr(Journal, "add", kill_after_five)
+        command += ["--server", first.address]
+        broken = run(*command)
+        monkeypatch.setattr(Journal, "add", add)
+    assert broken.exit_code == 2
+    lines = broken.stderr.splitlines()
+    ungraded = [line.partition(":")[0] for line in lines if ": is not graded: " in line]
+    # 21 can be sent; a second one may have been on its way when the server was killed.
+    assert len(ungraded) == 21 - len(kept) > 10
+    *_, told, advice = lines
+    assert told.startswith(f"Not graded: {len(ungraded)} of 23, for {first.address} cannot be")
+    assert advice.replace(".json", ".csv") in PAGE
+    results = {each["file"]: each for each in json.loads(Path("points.json").read_bytes())}
+    assert {
+        file for file, each in results.items() if "cannot be reached" in each.get("error", "")
+    } == set(ungraded)
+    (tmp_path / "second").mkdir()
+    with served(tmp_path / "second", DH_GRADER_PORT=str(first.port)) as second:
+        again = run(*command)
+    # The last lines of the log may come later than their answers, but before the end.
+    assert graded_posts(second) == len(ungraded)
+    assert again.stderr == expected.stderr
+    assert Path("points.json").read_text(encoding="utf-8") == whole
+    assert not Path(".points.json.graded").exists()
+
+
+def test_what_the_server_refuses_or_fails_at_costs_no_other(
+    run: Run, server: Served, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with httpx.Client(base_url=server.address, trust_env=False) as client:
+        view = http(200, client.get("/v1/exercises/planar-rr").text)
+        answers = {"answers": {"position": POSITION}}
+        report = http(200, client.post("/v1/exercises/planar-rr/grade", json=answers).text)
+    for name in "abc":
+        # Three that are not alike, so that nothing but the order says which is which.
+        answers["answers"]["position"] = [*POSITION[:1], f"{POSITION[1]} + 0 {ord(name)}"]
+        Path(f"{name}.json").write_text(json.dumps(answers), encoding="utf-8")
+    command = ["grade", "a.json", "b.json", "c.json", "--exercise", "planar-rr", "--format", "csv"]
+    command += ["--jobs", "1", "--server"]
+    refused = http(422, json.dumps(REFUSAL))
+    with scripted(view, http(500), refused, report, view, report, refused) as scripted_server:
+        first = run(*command, scripted_server.address)
+        assert first.exit_code == 2
+        assert first.stderr.splitlines()[:3] == [
+            f"a.json: is not graded: {scripted_server.address} answers with the status 500.",
+            "b.json: is refused by the server: Not so.",
+            f"Not graded: 1 of 3, for {scripted_server.address} answers with the status 500.",
+        ]
+        second = run(*command, scripted_server.address)
+        assert second.stderr == "b.json: is refused by the server: Not so.\n"
+        assert len(scripted_server.requests) == 7
+    assert [line.split(",")[:2] for line in second.stdout.splitlines()[1:]] == [
+        ["a.json", "2"], ["b.json", ""], ["c.json", "2"],
+    ]  # fmt: skip
+    assert list(Path().glob(".*")) == []
+
+
+def test_another_key_is_given_reports_of_its_own(
+    run: Run, server: Served, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with httpx.Client(base_url=server.address, trust_env=False) as client:
+        view = http(200, client.get("/v1/exercises/planar-rr").text)
+        answers = {"answers": {"position": POSITION}}
+        report = http(200, client.post("/v1/exercises/planar-rr/grade", json=answers).text)
+    for name in "ab":
+        answers = {"answers": {"position": [*POSITION[:1], f"{POSITION[1]} + 0 {ord(name)}"]}}
+        Path(f"{name}.json").write_text(json.dumps(answers), encoding="utf-8")
+    command = ["grade", "a.json", "b.json", "--exercise", "planar-rr", "--format", "csv"]
+    command += ["--jobs", "1", "--server"]
+    with scripted(view, report, http(500), view, report, report) as scripted_server:
+        first = run(*command, scripted_server.address, "--key", "dhg_1")
+        assert "Not graded: 1 of 2" in first.stderr
+        run(*command, scripted_server.address, "--key", "dhg_2")
+        assert len(scripted_server.requests) == 6
+
+
+def test_the_environment_names_server_and_key(
+    run: Run, homework: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with scripted(http(401, "<h1>who?</h1>")) as server:
+        monkeypatch.setenv("DH_GRADER_SERVER", server.address)
+        monkeypatch.setenv("DH_GRADER_KEY", "dhg_1")
+        result = run("grade", homework, "--exercise", "planar-rr")
+    assert result.exit_code == 2
+    assert result.stderr == f"{server.address} answers with the status 401.\n"
+    assert server.requests[0].line == "GET /v1/exercises/planar-rr HTTP/1.1"
+    assert server.requests[0].headers["authorization"] == "Bearer dhg_1"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("--exercise", "planar-r"), "Did you mean 'planar-rr'? Known are: "),
+        (
+            ("--exercise", "planar-rr", "--part", "tabel"),
+            "has no part 'tabel'. Did you mean 'table'",
+        ),
+        (("--assignment", "hw.toml"), "exercises[0].id (line 3): There is no exercise 'own'"),
+        (("--exercise", "planar-rr", "--key", "a b"), "The key is empty or holds a character"),
+    ],
+)
+def test_what_a_server_has_not_ends_with_the_reason(
+    run: Run, server: Served, homework: Path, monkeypatch: pytest.MonkeyPatch,
+    arguments: tuple[str, ...], told: str,
+) -> None:  # fmt: skip
+    monkeypatch.chdir(homework.parent)
+    text = 'title = "x"\n[[exercises]]\nid = "own"\n'
+    Path("hw.toml").write_text(text, encoding="utf-8")
+    result = run("grade", "class", "--server", server.address, *arguments)
+    assert result.exit_code == 2
+    assert told in result.stderr
+
+
+def test_an_exercise_of_ones_own_file_is_not_on_a_server(
+    run: Run, server: Served, homework: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(homework.parent)
+    run("exercises", "new", "own")
+    text = 'title = "x"\n[[exercises]]\npath = "own.toml"\n'
+    Path("hw.toml").write_text(text, encoding="utf-8")
+    result = run("grade", "class", "--assignment", "hw.toml", "--server", server.address)
+    assert result.exit_code == 2
+    assert "own.toml is a file of yours" in result.stderr
+
+
+@pytest.mark.parametrize("address", ["localhost:8000", "", "https://u:p@example.edu"])
+def test_an_address_that_is_none(run: Run, homework: Path, address: str) -> None:
+    result = run("grade", homework, "--exercise", "planar-rr", "--server", address)
+    assert result.exit_code == 2
+    assert "ddress of a server" in result.stderr
+
+
+def test_a_key_without_a_server_is_a_mistake(run: Run, homework: Path) -> None:
+    result = run("grade", homework, "--exercise", "planar-rr", "--key", "dhg_1")
+    assert (result.exit_code, result.stderr) == (2, "--key goes with --server URL.\n")

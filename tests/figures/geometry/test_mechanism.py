@@ -1,0 +1,126 @@
+"""The drawn points move as the robot does, by formulas that the drawing does not use.
+
+Figures go along screw axes; here everything is worked out by the link transforms of the table, or
+by SciPy's matrix exponential where a robot has no table.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from service.catalogue import Exercise
+from service.catalogue.robots.robot import Robot
+from service.catalogue.robots.screw_robot import ScrewRobot
+from service.figures.geometry.mechanism import mechanism_of
+from service.figures.geometry.symbol_numbers import drawing_numbers
+from service.kinematics.dh import Convention
+from service.kinematics.transforms import Numbers
+from tests.shipped import shipped_exercises
+
+POSES = 5
+EXACT = 1e-9
+SHIPPED = shipped_exercises()
+ROBOTS = [name for name, exercise in SHIPPED.items() if exercise.reference is not None]
+
+
+def link_transform(row: Numbers, convention: Convention) -> Numbers:
+    """The transform of one row, multiplied out by hand from the two definitions."""
+    a, alpha, d, theta = row
+    turn_x, turn_z = np.eye(4), np.eye(4)
+    turn_x[1:3, 1:3] = [[np.cos(alpha), -np.sin(alpha)], [np.sin(alpha), np.cos(alpha)]]
+    turn_z[:2, :2] = [[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]]
+    turn_x[0, 3], turn_z[2, 3] = a, d
+    return turn_z @ turn_x if convention is Convention.STANDARD else turn_x @ turn_z
+
+
+def bodies(exercise: Exercise, values: Mapping[str, float]) -> tuple[list[Numbers], list[Numbers]]:
+    """A frame on each body, the base first, and the frames whose z axes are the joints'."""
+    reference = exercise.reference
+    each = {name: np.array([value]) for name, value in values.items()}
+    if isinstance(reference, Robot):
+        table = reference.tables[reference.convention]
+        reached = [np.eye(4)]
+        for row in table.values(each, 1)[..., 0]:
+            reached.append(reached[-1] @ link_transform(row, table.convention))
+        count = len(reference.joints)
+        on_axes = reached if table.convention is Convention.STANDARD else reached[1:]
+        # A fixed last row belongs to the last body.
+        return [*reached[:count], reached[-1]], on_axes[:count]
+    assert isinstance(reference, ScrewRobot)
+    reached = [np.eye(4)]
+    for joint, (w, v) in zip(
+        reference.joints, reference.screws(each, 1)[:, 0].reshape(-1, 2, 3), strict=True
+    ):
+        screw = np.array(
+            [[0, -w[2], w[1], v[0]], [w[2], 0, -w[0], v[1]], [-w[1], w[0], 0, v[2]], [0] * 4]
+        )
+        reached.append(reached[-1] @ expm(screw * values[joint.variable]))
+    home = reference.frame(
+        "tool",
+        dict.fromkeys(values, np.zeros(1))
+        | {
+            name: value
+            for name, value in each.items()
+            if name not in {j.variable for j in reference.joints}
+        },
+        1,
+    )[0]
+    return [*reached[:-1], reached[-1] @ home], []
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_every_drawn_point_is_carried_by_its_link(name: str) -> None:
+    exercise = SHIPPED[name]
+    numbers = drawing_numbers(exercise.variables)
+    assert exercise.reference is not None
+    mechanism = mechanism_of(exercise.reference, numbers)
+    amounts = np.random.default_rng(1).uniform(-2.0, 2.0, (POSES, len(exercise.joints)))
+    rigid: list[list[Numbers]] = [[] for _ in range(len(exercise.joints) + 1)]
+    for amount, shown in zip(amounts, mechanism.at(amounts), strict=True):
+        values = numbers | {
+            joint.variable: q for joint, q in zip(exercise.joints, amount, strict=True)
+        }
+        carried, on_axes = bodies(exercise, values)
+        assert shown.tool == pytest.approx(carried[-1][:3, 3], abs=EXACT)
+        for joint, frame, axis, centre in zip(
+            exercise.joints, on_axes, shown.axes, shown.centres, strict=False
+        ):
+            assert axis == pytest.approx(frame[:3, 2], abs=EXACT)
+            if not joint.prismatic:
+                assert np.cross(centre - frame[:3, 3], frame[:3, 2]) == pytest.approx(0, abs=EXACT)
+        for i, (body, line) in enumerate(zip(carried, shown.links, strict=True)):
+            # The first point of a link is in the joint before it, which may slide along it.
+            points = line[1:] if i and exercise.joints[i - 1].prismatic else line
+            rigid[i].append((points - body[:3, 3]) @ body[:3, :3])
+    for seen in rigid:
+        for points in seen[1:]:
+            assert points == pytest.approx(seen[0], abs=EXACT)
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_links_lead_from_joint_to_joint_without_a_gap(name: str) -> None:
+    exercise = SHIPPED[name]
+    numbers = drawing_numbers(exercise.variables)
+    assert exercise.reference is not None
+    mechanism = mechanism_of(exercise.reference, numbers)
+    [shown] = mechanism.at(np.full((1, len(exercise.joints)), 0.7))
+    assert shown.links[0][0] == pytest.approx(shown.base)
+    assert shown.links[-1][-1] == pytest.approx(shown.tool)
+    for i, centre in enumerate(shown.centres):
+        assert shown.links[i][-1] == pytest.approx(centre)
+        assert shown.links[i + 1][0] == pytest.approx(centre)
+
+
+def test_joints_whose_axes_meet_are_drawn_apart() -> None:
+    """The wrist of the Stanford arm, and its shoulder."""
+    exercise = SHIPPED["stanford-arm"]
+    numbers = drawing_numbers(exercise.variables)
+    assert exercise.reference is not None
+    mechanism = mechanism_of(exercise.reference, numbers)
+    [shown] = mechanism.at(np.array([[numbers[joint.variable] for joint in exercise.joints]]))
+    apart = np.linalg.norm(np.diff(shown.centres, axis=0), axis=1)
+    assert apart.min() > 0.1 * mechanism.size
+    # With d3 drawn out the wrist centre is above the boom's box: joint 5 sits in it.
+    assert shown.centres[4] == pytest.approx([0, numbers["d2"], numbers["d3"]])

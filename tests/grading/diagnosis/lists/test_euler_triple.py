@@ -1,0 +1,79 @@
+"""Misconceptions about three angles that describe a rotation together."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from service.grading.diagnosis.lists import euler_triple
+from service.grading.diagnosis.lists.euler_triple import WrongTriple, explain_triple
+from service.grading.numerics.samples import SAMPLES
+from service.kinematics.transforms import Numbers
+from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+
+Q1, Q2 = np.random.default_rng(8).uniform(-3, 3, (2, SAMPLES))
+
+
+def triple(*angles: Numbers | float) -> Numbers:
+    return np.array([np.zeros(SAMPLES) + angle for angle in angles])
+
+
+RIGHT = triple(Q1, 0.4, Q2)
+ROTATION = Rotation.from_euler("ZYX", RIGHT.T)
+
+
+def case(*angles: Numbers | float) -> WrongTriple:
+    """These angles where q1, 0.4, q2 would be right, about moving axes."""
+    return WrongTriple(triple(*angles), ROTATION.as_matrix(), "ZYX", fixed=False)
+
+
+def in_sequence(name: Any, rotation: Rotation = ROTATION) -> Numbers:
+    """The right rotation in one of SciPy's sequences."""
+    return np.asarray(rotation.as_euler(name).T)
+
+
+PAIRS = [
+    Pair(euler_triple.some_angles, case(-Q1, 0.4, -Q2), case(Q1 + 0.1, 0.4, Q2), "sign"),
+    Pair(euler_triple.other_order, case(Q2, 0.4, Q1), case(Q2, 0.5, Q1), "angle_order"),
+    Pair(
+        euler_triple.other_sequence,
+        case(*in_sequence("XZX")),
+        case(*in_sequence("XZX") + 0.1),
+        "other_euler_sequence",
+    ),
+    Pair(
+        euler_triple.inverse_rotation,
+        case(*in_sequence("ZYX", ROTATION.inv())),
+        case(Q1, -0.4, Q2),
+    ),
+]
+
+
+@each_pair(PAIRS)
+def test_a_misconception(pair: Pair) -> None:
+    assert_explains_one_case_alone(pair)
+
+
+@pytest.mark.parametrize(
+    ("written", "code", "slipped"),
+    [
+        (case(Q1, -0.4, Q2), "sign", [False, True, False]),
+        (case(Q1, np.degrees(0.4), np.degrees(Q2)), "degrees_as_radians", [False, True, True]),
+        (case(Q1, np.radians(0.4), Q2), "radians_as_degrees", [False, True, False]),
+        (case(np.pi / 2 - Q1, 0.4, np.pi / 2 - Q2), "swapped_atan2", [True, False, True]),
+    ],
+)
+def test_the_angles_with_the_slip(written: WrongTriple, code: str, slipped: list[bool]) -> None:
+    found = explain_triple(written)
+    assert found is not None
+    assert [finding.code for finding in found.findings] == [code]
+    assert np.asarray(found.entries).tolist() == slipped
+
+
+def test_a_constant_is_no_exchanged_arctangent() -> None:
+    assert explain_triple(case(Q1, np.pi / 2 - 0.4, Q2)) is None
+
+
+def test_right_angles_are_left_alone() -> None:
+    assert explain_triple(case(Q1, 0.4, Q2)) is None

@@ -1,0 +1,45 @@
+"""Misconceptions about the coordinates of a point."""
+
+import numpy as np
+
+from service.grading.diagnosis.lists import position
+from service.grading.diagnosis.lists.position import WrongPosition
+from service.grading.diagnosis.motions.link_products import Chain
+from service.grading.misconception import diagnosed
+from service.grading.numerics.samples import SAMPLES
+from service.kinematics.dh import Convention
+from service.kinematics.transforms import Numbers
+from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+
+RNG = np.random.default_rng(11)
+ONE, TWO = RNG.uniform(-3, 3, (2, SAMPLES))
+L1, L2 = RNG.uniform(0.3, 0.9, (2, SAMPLES))
+ZERO = np.zeros(SAMPLES)
+
+# The planar RR arm.
+TABLE = np.array([[L1, ZERO, ZERO, ONE], [L2, ZERO, ZERO, TWO]])
+TIP = np.array([L1 * np.cos(ONE), L1 * np.sin(ONE)]) + L2 * np.array(
+    [np.cos(ONE + TWO), np.sin(ONE + TWO)]
+)
+ELBOW = np.array([L1 * np.cos(ONE), L1 * np.sin(ONE)])
+
+
+def case(written: Numbers) -> WrongPosition:
+    chain = Chain(TABLE, Convention.STANDARD, ("0", "1", "2"))
+    return WrongPosition(written, TIP, 0.6, (0, 1), (chain,))
+
+
+PAIRS = [
+    Pair(position.exchanged_coordinates, case(TIP[::-1]), case(TIP[::-1] + 0.1)),
+    Pair(position.reversed_position, case(-TIP), case(TIP * [[1], [-1]])),
+    Pair(position.other_pose, case(ELBOW), case(2 * ELBOW), "wrong_frame"),
+]
+
+
+@each_pair(PAIRS)
+def test_a_misconception(pair: Pair) -> None:
+    assert_explains_one_case_alone(pair)
+
+
+def test_a_right_position_is_left_alone() -> None:
+    assert diagnosed(case(TIP), position.MISCONCEPTIONS) is None

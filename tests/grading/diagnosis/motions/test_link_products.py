@@ -1,0 +1,60 @@
+"""Misconceptions about a product of link transforms."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from service.grading.diagnosis.motions import link_products
+from service.grading.diagnosis.motions.link_products import Chain, LinkPose, named
+from service.grading.feedback import Finding
+from service.grading.misconception import Written
+from service.kinematics.transforms import Numbers
+from tests.grading.diagnosis.example_chain import A1, A2, A3, A4, CHAIN, POSE, X, Z, product
+from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+
+
+@dataclass(frozen=True)
+class WrongPose:
+    """A pose ``(COUNT, 4, 4)`` where ``POSE`` would be right."""
+
+    actual: Numbers
+
+    def explained_by(self, hypotheses: Iterable[LinkPose]) -> list[LinkPose]:
+        return [each for each in hypotheses if np.allclose(each.answer, self.actual)]
+
+
+def chain(_case: WrongPose) -> Chain:
+    return CHAIN
+
+
+MODIFIED = [x @ z for z, x in zip(Z, X, strict=True)]
+PAIRS = [
+    Pair(function, WrongPose(explained), WrongPose(left_alone), source=chain)
+    for function, explained, left_alone in (
+        (link_products.reversed_product, product(A4, A3, A2, A1), product(A4, A3, A1, A2)),
+        (link_products.other_convention, product(*MODIFIED), product(A1, *MODIFIED[1:])),
+        (link_products.wrong_frame, product(A1, A2), A2),
+        (link_products.wrong_base, product(A3, A4), A3),
+        (link_products.missing_link, product(A1, A2, A4), product(A1, A2, A3)),
+        (link_products.premultiplied, product(A3, A1, A2, A4), product(A1, A3, A2, A4)),
+        (link_products.row_order, product(A2, A3, A1, A4), product(A2, A1, A3, A4)),
+    )
+]
+
+
+@each_pair(PAIRS)
+def test_a_misconception(pair: Pair) -> None:
+    assert not np.allclose(pair.explained.actual, POSE)
+    assert_explains_one_case_alone(pair)
+
+
+def test_all_links_multiplied_from_the_left() -> None:
+    poses = [pose.answer for pose in link_products.premultiplied(CHAIN)]
+    assert np.allclose(poses[-1], product(*MODIFIED[::-1]))
+
+
+def test_the_subject_of_the_first_sentence_is_put_in_front() -> None:
+    pose = Written(POSE, Finding("wrong_frame", "the pose of frame {2}."))
+    [other, finding] = named(pose, "This matrix is", Finding("sign", "Wrong."))()
+    assert (other.hint, finding.hint) == ("Wrong.", "This matrix is the pose of frame {2}.")

@@ -1,0 +1,242 @@
+"""Slips in a motion made of several, which the exercise gives in formulas."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+
+from service.catalogue import Exercise
+from service.expressions import Symbol, Vocabulary, read
+from service.grading import FeedbackLevel, PartReport
+from service.grading.diagnosis.motions import motion_slips
+from service.grading.diagnosis.motions.given_motion import GivenMotion
+from service.grading.diagnosis.wrong_value import WrongNumbers
+from service.kinematics.rotations import about
+from service.kinematics.transforms import Matrices, Numbers
+from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.grading.support.exercise_texts import Make, all_codes, one_part
+from tests.grading.support.submitting import full_marks, handed_in, part
+
+COUNT = 8
+RNG = np.random.default_rng(21)
+VALUES = {name: RNG.uniform(0.3, 1.2, COUNT) for name in ("phi", "psi", "a", "b", "l", "k")}
+WORDS = Vocabulary([Symbol(name, "angle" if len(name) > 1 else "length") for name in VALUES])
+
+
+def step(displacement: tuple[str, str, str], axis: str, angle: str) -> Matrices:
+    """The motion by a displacement, then a turn."""
+    motion = np.tile(np.eye(4), (COUNT, 1, 1))
+    motion[:, :3, :3] = about(axis, VALUES[angle]) if angle else np.eye(3)
+    motion[:, :3, 3] = np.transpose(
+        [VALUES[name] if name else np.zeros(COUNT) for name in displacement]
+    )
+    return motion
+
+
+# Along x and z, a turn about z; along y, a turn about x; along z. The first two are a lecture's.
+H1, H2, H3 = (
+    step(("a", "", "b"), "Z", "phi"),
+    step(("", "l", ""), "X", "psi"),
+    step(("", "", "k"), "X", ""),
+)
+RIGHT = H1 @ H2 @ H3
+TRANSFORM = [
+    ["cφ", "-sφ cψ", "sφ sψ", "a - l sφ + k sφ sψ"],
+    ["sφ", "cφ cψ", "-cφ sψ", "l cφ - k cφ sψ"],
+    ["0", "sψ", "cψ", "b + k cψ"],
+    ["0", "0", "0", "1"],
+]
+MOTION = GivenMotion(
+    tuple(tuple(read(text, WORDS) for text in row) for row in TRANSFORM),
+    VALUES,
+    COUNT,
+    ("phi", "psi"),
+    ("a", "b", "l", "k"),
+)
+
+
+def wrong(actual: Numbers, right: Numbers) -> WrongNumbers:
+    """Matrices or vectors ``(COUNT, ...)``."""
+    actual, right = np.moveaxis(actual, 0, -1), np.moveaxis(right, 0, -1)
+    return WrongNumbers(actual, right, np.ones(right.shape[:-1]))
+
+
+def position(actual: Numbers) -> WrongNumbers:
+    return wrong(actual, RIGHT[:, :3, 3])
+
+
+def rotation(actual: Numbers) -> WrongNumbers:
+    return wrong(actual[:, :3, :3], RIGHT[:, :3, :3])
+
+
+def turned(matrix: Matrices, vector: Numbers) -> Numbers:
+    return np.asarray((matrix[:, :3, :3] @ vector[..., None])[..., 0])
+
+
+D1, D2, D3 = H1[:, :3, 3], H2[:, :3, 3], H3[:, :3, 3]
+FROM_LEFT, FROM_RIGHT = H3 @ H2 @ H1, H1 @ H3 @ H2
+PAIRS = [
+    Pair(
+        motion_slips.steps_in_reverse,
+        wrong(FROM_LEFT[:, :3], RIGHT[:, :3]),
+        wrong(FROM_RIGHT[:, :3], RIGHT[:, :3]),
+        "reversed_product",
+    ),
+    Pair(motion_slips.turns_in_another_order, rotation(H2 @ H1), rotation(H1), "reversed_product"),
+    Pair(motion_slips.turn_left_out, rotation(H2), rotation(H2 @ H1), "missing_turn"),
+    Pair(
+        motion_slips.turn_reversed,
+        rotation(H1[:, :3, :3] @ np.swapaxes(H2[:, :3, :3], 1, 2)),
+        rotation(np.swapaxes(RIGHT[:, :3, :3], 1, 2)),
+        "turn_sign",
+    ),
+    Pair(
+        motion_slips.displacement_not_turned,
+        position(D1 + turned(H1, D2) + turned(H2, D3)),
+        position(D1 + turned(H1, D2)),
+    ),
+    Pair(
+        motion_slips.missing_displacement,
+        position(D1 + turned(H1 @ H2, D3)),
+        position(D1 + D3),
+    ),
+    Pair(
+        motion_slips.lone_displacement,
+        position(turned(H1, D3)),
+        position(D1 + D3),
+        "missing_displacement",
+    ),
+]
+PAIRS = [pair._replace(source=lambda _: MOTION) for pair in PAIRS]
+
+
+@each_pair(PAIRS)
+def test_a_misconception(pair: Pair) -> None:
+    assert_explains_one_case_alone(pair)
+
+
+def test_what_the_formulas_say_that_the_motion_is_made_of() -> None:
+    assert MOTION.order == ("phi", "psi")
+    assert [(each.lengths, each.angles) for each in MOTION.displacements] == [
+        (("a", "b"), ()),
+        (("l",), ("phi",)),
+        (("k",), ("phi", "psi")),
+    ]
+    assert MOTION.steps is not None
+    for found, given in zip(MOTION.steps, (H1, H2, H3), strict=True):
+        assert np.allclose(found, given)
+
+
+SYMBOLS = """
+[symbols]
+phi = { kind = "angle", description = "a turn about z" }
+psi = { kind = "angle", description = "a turn about x" }
+a = { kind = "length", description = "along x" }
+b = { kind = "length", description = "along z" }
+l = { kind = "length", description = "along y" }
+k = { kind = "length", description = "along z again" }
+"""
+AS_TRANSFORM = one_part("transform", f"expected = {TRANSFORM}", SYMBOLS)
+AS_POSITION = one_part("position", f"expected = {[row[3] for row in TRANSFORM[:3]]}", SYMBOLS)
+NUMBERS = ["0.5 - 0.3 sφ", "0.3 cφ", "0.2"]
+WITH_NUMBERS = one_part("position", f"expected = {NUMBERS}", SYMBOLS)
+# The position, the code, and what the message must say of it.
+POSITIONS: dict[str, tuple[list[str], str, str]] = {
+    "d1 + d2 + d3": (["a", "l", "b + k"], "displacement_not_turned", "l is not turned by phi"),
+    "d1 + R1 d2 + d3": (
+        ["a - l sφ", "l cφ", "b + k"], "displacement_not_turned", "k is not turned by psi",
+    ),
+    "d1 + R1 d2 + R2 d3": (
+        ["a - l sφ", "l cφ - k sψ", "b + k cψ"],
+        "displacement_not_turned",
+        "k is not turned by phi",
+    ),
+    "d1 + R1 d2": (["a - l sφ", "l cφ", "b"], "missing_displacement", "the third motion"),
+    "R1 d2 + R1 R2 d3": (
+        ["k sφ sψ - l sφ", "l cφ - k cφ sψ", "k cψ"], "missing_displacement", "the first motion",
+    ),
+    "d3 alone": (["0", "0", "k"], "missing_displacement", "the third motion alone"),
+    "d1 alone": (["a", "0", "b"], "missing_displacement", "the first motion alone"),
+}  # fmt: skip
+
+
+def graded(exercise: Exercise, answer: object) -> PartReport:
+    return part(handed_in(exercise, {"it": answer}, feedback=FeedbackLevel.HINTS), "it")
+
+
+@pytest.mark.parametrize("name", POSITIONS)
+@pytest.mark.parametrize("text", [AS_TRANSFORM, AS_POSITION], ids=["transform", "position"])
+def test_a_slip_in_three_motions(text: str, name: str, make_exercise: Make) -> None:
+    answer, code, said = POSITIONS[name]
+    rows: object = answer
+    if text is AS_TRANSFORM:
+        upper = [[*row[:3], number] for row, number in zip(TRANSFORM[:3], answer, strict=True)]
+        rows = [*upper, TRANSFORM[3]]
+    report = graded(make_exercise(text), rows)
+    [message] = report.feedback
+    assert message.code == code
+    assert said in message.message
+    assert all_codes(report) == {code}
+
+
+def test_the_motions_in_reverse(make_exercise: Make) -> None:
+    """H3 H2 H1, multiplied out by hand."""
+    answer = [
+        ["cφ", "-sφ", 0, "a"],
+        ["cψ sφ", "cψ cφ", "-sψ", "l - b sψ"],
+        ["sψ sφ", "sψ cφ", "cψ", "k + b cψ"],
+        [0, 0, 0, 1],
+    ]
+    exercise = make_exercise(AS_TRANSFORM)
+    assert all_codes(graded(exercise, answer)) == {"reversed_product"}
+    assert full_marks(graded(exercise, TRANSFORM))
+
+
+def test_displacements_in_numbers(make_exercise: Make) -> None:
+    exercise = make_exercise(WITH_NUMBERS)
+    assert full_marks(graded(exercise, NUMBERS))
+    report = graded(exercise, ["0.5", "0.3", "0.2"])
+    assert all_codes(report) == {"displacement_not_turned"}
+    assert "the displacement is not turned by phi" in report.feedback[0].message
+    # Zeros show nothing.
+    assert "displacement_not_turned" not in all_codes(graded(exercise, ["0", "0", "0"]))
+
+
+def test_the_lectures_displacements_added_up(catalogue: Mapping[str, Exercise]) -> None:
+    exercise = catalogue["rigid-motion-chain"]
+    report = part(handed_in(exercise, {"origin": ["l1", "l2", "h"]}), "origin")
+    [message] = report.feedback
+    assert message.code == "displacement_not_turned"
+    assert "l2 is not turned by phi" in message.message
+
+
+AS_ROTATION = one_part("rotation", f"expected = {[row[:3] for row in TRANSFORM[:3]]}", SYMBOLS)
+CONSTANT = one_part(
+    "transform",
+    'expected = [["1", "0", "0", "a"], '
+    + repr(
+        [
+            ["0", "1", "0", "0"],
+            ["0", "0", "1", "0"],
+            ["0", "0", "0", "1"],
+        ]
+    )[1:],
+    SYMBOLS,
+)
+
+
+def test_a_rotation_alone_and_a_shift_alone(make_exercise: Make) -> None:
+    """Neither a position nor a turn is looked for where there is none."""
+    exercise = make_exercise(AS_ROTATION)
+    turned = [["cφ", "-sφ", "0"], ["sφ", "cφ", "0"], ["0", "0", "1"]]
+    assert all_codes(graded(exercise, turned)) == {"missing_turn"}
+    assert "value" in all_codes(graded(exercise, [["2 cφ", *row[1:3]] for row in TRANSFORM[:3]]))
+    wrong = [["1", "0", "0", "2 a"], *([str(int(i == j)) for j in range(4)] for i in (1, 2, 3))]
+    assert all_codes(graded(make_exercise(CONSTANT), wrong)) == {"value"}
+    turned = [
+        ["0", "1", "0", "a"],
+        ["1", "1", "0", "0"],
+        ["0", "0", "1", "0"],
+        ["0", "0", "0", "1"],
+    ]
+    assert "value" in all_codes(graded(make_exercise(CONSTANT), turned))

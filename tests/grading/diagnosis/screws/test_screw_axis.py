@@ -1,0 +1,117 @@
+"""Misconceptions about a screw axis."""
+
+import numpy as np
+import pytest
+
+from service.grading.diagnosis.screws import screw_axis
+from service.grading.diagnosis.screws.screw_axis import WrongScrew, explain_screw
+from service.grading.numerics.samples import SAMPLES
+from service.kinematics.transforms import Numbers
+from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+
+RNG = np.random.default_rng(9)
+LENGTH = RNG.uniform(0.3, 0.9, SAMPLES)
+PITCH = RNG.uniform(0.1, 0.4, SAMPLES)
+
+
+def axis(*numbers: Numbers | float) -> Numbers:
+    return np.array([np.zeros(SAMPLES) + number for number in numbers])
+
+
+# The axis along z through (l, 0, 0), from the base; the tool lies at (2l, 0, 0).
+TURN = axis(0, 0, 1, 0, -LENGTH, 0)
+TURN_SEEN_FROM_TOOL = axis(0, 0, 1, 0, LENGTH * 2 - LENGTH, 0)
+SCREW = axis(0, 0, 1, 0, -LENGTH, PITCH)
+SLIDE = axis(0, 0, 0, 1, 0, 0)
+
+
+def case(actual: Numbers, expected: Numbers = TURN, elsewhere: Numbers | None = None) -> WrongScrew:
+    scale = np.repeat([1.0, 0.5], 3)
+    return WrongScrew(actual, expected, scale, elsewhere, "space")
+
+
+# Seen from a third place, so that the other frame differs from another sign of the moment.
+ELSEWHERE = axis(0, 0, 1, 0.2, LENGTH, 0)
+PAIRS = [
+    Pair(
+        screw_axis.other_frame,
+        case(ELSEWHERE, TURN, ELSEWHERE),
+        case(axis(0, 0, 1, 0.3, 0, 0), TURN, ELSEWHERE),
+        "body_for_space",
+    ),
+    Pair(
+        screw_axis.moment_sign,
+        case(axis(0, 0, 1, 0, LENGTH, PITCH), SCREW),
+        case(axis(0, 0, 1, 0, LENGTH, -PITCH), SCREW),
+        "moment_sign",
+    ),
+    Pair(screw_axis.axis_reversed, case(-SCREW, SCREW), case(-SLIDE + 0.1, SLIDE), "axis_reversed"),
+    Pair(
+        screw_axis.not_normalised,
+        case(3 * TURN),
+        case(axis(0, 0, 3, 0, -LENGTH, 0)),
+        "not_normalised",
+    ),
+    Pair(
+        screw_axis.sliding_as_turning,
+        case(axis(1, 0, 0, 0, 0, 0), SLIDE),
+        case(axis(0, 0, 0, 0, 1, 0), SLIDE),
+        "infinite_pitch",
+    ),
+    Pair(
+        screw_axis.turning_as_sliding,
+        case(axis(0, 0, 0, 0, 0, 1)),
+        case(axis(0, 0, 0, 0, 1, 0)),
+        "infinite_pitch",
+    ),
+    Pair(
+        screw_axis.exchanged_halves,
+        case(axis(0, -LENGTH, 0, 0, 0, 1)),
+        case(axis(0, LENGTH, 0, 0, 0, 1)),
+        "exchanged_halves",
+    ),
+    Pair(
+        screw_axis.point_for_velocity,
+        case(axis(0, 0, 1, LENGTH, 0, 0.4)),
+        case(axis(0, 0, 1, 0, LENGTH, 0)),
+        "point_for_velocity",
+    ),
+    Pair(
+        screw_axis.pitch,
+        case(axis(0, 0, 1, 0, -LENGTH, 0), SCREW),
+        case(axis(0, 0, 1, 0, LENGTH, 0), SCREW),
+        "pitch",
+    ),
+    Pair(
+        screw_axis.point_off_axis,
+        case(axis(0, 0, 1, 0.4, LENGTH / 2, PITCH), SCREW),
+        case(axis(0, 0, 1, 0.4, LENGTH / 2, 0), SCREW),
+    ),
+    Pair(
+        screw_axis.other_direction,
+        case(axis(0, 0.6, 0.8, 0.4, 0, 0)),
+        case(axis(0, 0, -1, 0.4, 0, 0)),
+    ),
+]
+
+
+@pytest.mark.parametrize("direction", [(0, 0, 1), (0.6, 0, 0.8)])
+def test_a_slide_along_another_line(direction: tuple[float, float, float]) -> None:
+    finding = explain_screw(case(axis(0, 0, 0, *direction), SLIDE))
+    assert finding is not None
+    assert finding.code == "other_direction"
+    assert "v is not along the axis" in finding.hint
+
+
+@each_pair(PAIRS)
+def test_a_misconception(pair: Pair) -> None:
+    assert_explains_one_case_alone(pair)
+
+
+@pytest.mark.parametrize("right", [TURN, SCREW, SLIDE])
+def test_a_right_axis_is_left_alone(right: Numbers) -> None:
+    assert explain_screw(case(right, right, TURN_SEEN_FROM_TOOL)) is None
+
+
+def test_an_axis_without_values_is_left_alone() -> None:
+    assert explain_screw(case(TURN * np.nan)) is None

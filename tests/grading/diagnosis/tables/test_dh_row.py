@@ -1,0 +1,89 @@
+"""Misconceptions about the DH row of a transform, and the conditions that it has one."""
+
+import numpy as np
+import pytest
+
+from service.grading.diagnosis.tables import dh_row
+from service.grading.diagnosis.tables.dh_row import WrongRow, violated
+from service.grading.misconception import diagnosed
+from service.grading.numerics.samples import SAMPLES
+from service.kinematics.dh import Convention, link_transforms
+from service.kinematics.dh_row import row
+from service.kinematics.transforms import Matrices, Numbers, rot_x, rot_y
+from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+from tests.kinematics.constructions import trans
+
+RNG = np.random.default_rng(10)
+A, ALPHA, D, THETA = ROW = RNG.uniform(0.3, 1.2, (4, SAMPLES))
+ZERO = np.zeros(SAMPLES)
+STANDARD, MODIFIED = Convention.STANDARD, Convention.MODIFIED
+
+
+def link(convention: Convention, *cells: Numbers) -> Matrices:
+    return link_transforms(convention, *cells)
+
+
+def case(
+    written: list[Numbers], transform: Matrices, convention: Convention = STANDARD
+) -> WrongRow:
+    scale = np.array([0.7, 1.0, 0.7, 1.0])
+    return WrongRow(np.array(written), row(transform, convention), scale, transform, convention)
+
+
+FULL = link(STANDARD, *ROW)
+# Without a twist and an offset both conventions have a row, and so has the inverse.
+FLAT = link(STANDARD, A, ZERO, ZERO, THETA)
+# After half a turn both conventions have a row, each its own.
+HALF_TURN = np.full(SAMPLES, np.pi)
+TURNED = link(STANDARD, A, ALPHA, ZERO, HALF_TURN)
+SCREW_ALONG_Z = link(STANDARD, ZERO, ZERO, D, THETA)
+
+PAIRS = [
+    Pair(
+        dh_row.exchanged_parameters,
+        case([D, ALPHA, A, THETA], FULL),
+        case([D, ALPHA, A, -THETA], FULL),
+    ),
+    Pair(
+        dh_row.other_convention,
+        case([-A, -ALPHA, ZERO, HALF_TURN], TURNED),
+        case([-A, ALPHA, ZERO, HALF_TURN], TURNED),
+    ),
+    Pair(
+        dh_row.inverse_row,
+        case([ZERO, ZERO, -D, -THETA], SCREW_ALONG_Z),
+        case([-A, ZERO, ZERO, -THETA], FLAT),
+        "inverse_transform",
+    ),
+]
+
+
+@each_pair(PAIRS)
+def test_a_misconception(pair: Pair) -> None:
+    assert_explains_one_case_alone(pair)
+
+
+def test_a_right_row_is_left_alone() -> None:
+    assert diagnosed(case(list(ROW), FULL), dh_row.MISCONCEPTIONS) is None
+
+
+@pytest.mark.parametrize(
+    ("transform", "codes"),
+    [
+        (FULL, []),
+        (trans(0.5, 0, 0.2) @ rot_y(0.3), ["dh_not_perpendicular"]),
+        (trans(0.5, 0.4, 0.2) @ rot_x(0.3), ["dh_not_intersecting"]),
+        (trans(0.5, 0.4, 0.2) @ rot_y(0.3), ["dh_not_perpendicular", "dh_not_intersecting"]),
+    ],
+)
+def test_which_condition_is_broken(transform: Matrices, codes: list[str]) -> None:
+    batch = np.broadcast_to(transform, (SAMPLES, 4, 4))
+    findings = violated(batch, STANDARD, 0.7)
+    assert [finding.code for finding in findings] == codes
+    assert all("x1" in finding.hint and "z0" in finding.hint for finding in findings)
+
+
+def test_the_modified_convention_speaks_of_its_own_axes() -> None:
+    [finding] = violated(np.broadcast_to(rot_y(0.3), (SAMPLES, 4, 4)), MODIFIED, 0.7)
+    assert "x0" in finding.hint
+    assert "z1" in finding.hint

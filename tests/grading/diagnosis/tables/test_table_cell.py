@@ -1,0 +1,161 @@
+"""Misconceptions about a table cell."""
+
+import numpy as np
+import pytest
+
+from service.catalogue import Joint
+from service.expressions import Symbol, Vocabulary, read
+from service.grading.diagnosis.tables import table_cell
+from service.grading.diagnosis.tables.table_cell import diagnose
+from service.grading.diagnosis.wrong_value import WrongCell, undefined
+from service.grading.numerics.joint_motion import coefficients
+from service.grading.numerics.samples import HALF, SAMPLES, Samples
+from service.grading.report import Correction
+from service.kinematics.chain import COLUMNS
+from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+
+RNG = np.random.default_rng(5)
+JOINTS = (Joint(1, "q1", False), Joint(2, "q2", False), Joint(3, "d3", True))
+LETTERS = {name: np.tile(RNG.uniform(0.2, 0.9, HALF), 2) for name in ("a1", "a2")}
+VALUES = {joint.variable: RNG.uniform(-3, 3, SAMPLES) for joint in JOINTS} | LETTERS
+SAMPLE = Samples(VALUES)
+KINDS = {"q1": "angle", "q2": "angle", "d3": "length", "a1": "length", "a2": "length"}
+# The robot has no theta3, for its joint 3 slides, and no d1; a table may contain them all the same.
+WORDS = Vocabulary(
+    [Symbol(name, kind) for name, kind in KINDS.items()]  # type: ignore[arg-type]
+    + [Symbol("theta3", "angle"), Symbol("d1", "length")]
+)
+TYPED = SAMPLE.with_names({"theta3", "d1"}).values
+
+
+def wrong(column: str, number: int, written: str, right: str) -> WrongCell:
+    """A cell of the row of a joint: its column, the joint's number, the written and right cell."""
+    angle = column in ("alpha", "theta")
+    quantity = "angle" if angle else "length"
+    expression = read(written, WORDS, quantity=quantity)  # type: ignore[arg-type]
+    expected = read(right, WORDS, quantity=quantity)  # type: ignore[arg-type]
+    values = [np.zeros(SAMPLES) + text.evaluate(TYPED) for text in (expression, expected)]
+    values[0][~np.isfinite(values[0])] = np.nan
+    contained, required = (
+        None if counts is None else {JOINTS[k]: n for k, n in enumerate(counts) if n}
+        for counts in coefficients(np.array(values), JOINTS, SAMPLE, np.array([angle, angle]))
+    )
+    return WrongCell(
+        expression=expression,
+        actual=values[0],
+        expected=values[1],
+        correction=Correction(right, right),
+        samples=SAMPLE,
+        scale=1.0 if angle else 0.5,
+        angle=angle,
+        column=COLUMNS.index(column),
+        joint=JOINTS[number - 1],
+        contained=contained,
+        required=required or {},
+        joints=JOINTS,
+    )
+
+
+# The codes of those that have another name.
+CODES = {"joint_variable_converted": "degrees_as_radians"}
+PAIRS = [
+    Pair(function, wrong(*explained), wrong(*left_alone), CODES.get(function.__name__, ""))
+    for function, explained, left_alone in (
+        (table_cell.joint_variable_absent, ("theta", 3, "theta3", "0"), ("theta", 3, "q2", "0")),
+        (undefined, ("d", 1, "a1/0", "a1"), ("d", 1, "a2", "a1")),
+        (
+            table_cell.joint_variable_missing,
+            ("theta", 1, "pi/2", "q1 + pi/2"),
+            ("theta", 1, "q2", "q1"),
+        ),
+        (table_cell.joint_variable_sign, ("d", 3, "-d3", "d3"), ("d", 3, "d3 + a1", "d3")),
+        (
+            table_cell.joint_variable_index,
+            ("theta", 1, "q2", "q1"),
+            ("theta", 1, "q1 + q2", "q1"),
+        ),
+        (
+            table_cell.joint_variable_doubled,
+            ("theta", 2, "2*q2", "q2"),
+            ("theta", 2, "-q2", "q2"),
+        ),
+        (
+            table_cell.joint_variable_converted,
+            ("theta", 2, "180*q2/pi + 90deg", "q2 + 90deg"),
+            ("theta", 2, "90*q2/pi + 90deg", "q2 + 90deg"),
+        ),
+        (table_cell.joint_variable_column, ("alpha", 1, "q1", "0"), ("alpha", 1, "q2", "0")),
+        (
+            table_cell.joint_variable_extra,
+            ("theta", 1, "q1 + q2", "q1"),
+            ("theta", 1, "-q1", "q1"),
+        ),
+        (table_cell.wrong_quantity, ("d", 1, "90deg", "a1"), ("d", 1, "90", "a1")),
+        (table_cell.sign, ("a", 1, "-a1", "a1"), ("a", 1, "-a2", "a1")),
+        (table_cell.distance_left_out, ("d", 1, "0", "a1"), ("d", 1, "a2", "a1")),
+        (table_cell.distance_extra, ("d", 3, "d3 + a1", "d3"), ("a", 3, "a1", "a2")),
+        (
+            table_cell.degrees_as_radians,
+            ("alpha", 1, "90", "pi/2"),
+            ("alpha", 1, "91", "pi/2"),
+        ),
+        (
+            table_cell.radians_as_degrees,
+            ("alpha", 1, "pi*pi/360", "pi/2"),
+            ("alpha", 1, "0", "pi/2"),
+        ),
+        (
+            table_cell.quarter_turn,
+            ("theta", 1, "q1", "q1 + pi/2"),
+            ("theta", 1, "q1 + pi", "q1"),
+        ),
+        (
+            table_cell.half_turn,
+            ("theta", 1, "q1 + pi", "q1"),
+            ("theta", 1, "q1 + pi/2", "q1"),
+        ),
+    )
+]
+
+
+@each_pair(PAIRS)
+def test_a_misconception(pair: Pair) -> None:
+    finding = assert_explains_one_case_alone(pair)
+    assert finding.correction == pair.explained.correction
+
+
+@each_pair(PAIRS)
+def test_it_is_the_first_that_explains_its_cell(pair: Pair) -> None:
+    assert diagnose(pair.explained).code == (pair.code or pair.function.__name__)
+
+
+def test_what_no_misconception_explains_shows_a_counterexample() -> None:
+    finding = diagnose(wrong("a", 1, "a1 + 0.3", "a1"))
+    assert finding.code == "value"
+    assert finding.values is not None
+    assert finding.values["yours"] == pytest.approx(float(VALUES["a1"][0]) + 0.3, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("column", "written", "right", "is_told"),
+    [
+        ("a", "0.4", "a1", True),
+        ("d", "d3 + 0.4", "d3 + a1", False),
+        ("a", "a2", "a1", False),
+        ("a", "0.4", "0.5", False),
+        ("alpha", "0.4", "pi/2", False),
+    ],
+)
+def test_a_number_for_a_length_is_asked_for_in_symbols(
+    column: str, written: str, right: str, is_told: bool
+) -> None:
+    hint = diagnose(wrong(column, 3, written, right)).hint
+    assert hint.endswith("Give it in the exercise's symbols.") is is_told, hint
+
+
+@pytest.mark.parametrize("right", ["a1", "0", "d3"])
+def test_a_length_that_the_exercise_does_not_have(right: str) -> None:
+    """Nobody means the variable of joint 1 by d1, for that joint turns."""
+    finding = diagnose(wrong("d", 3 if right == "d3" else 1, "d1", right))
+    assert finding.code == "unknown_symbol"
+    assert finding.hint == "This exercise has no d1. It has d3."

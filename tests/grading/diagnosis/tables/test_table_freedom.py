@@ -1,0 +1,243 @@
+"""Tables that have lost a degree of freedom, and tables that only look so."""
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+import pytest
+
+from service.catalogue import Exercise, Robot
+from service.grading.diagnosis.tables.table_freedom import lost_freedom
+from service.grading.feedback import Finding
+from service.grading.numerics.samples import SAMPLES, Samples, draw
+from service.kinematics.chain import ALPHA, THETA, A, D, Table
+from service.kinematics.dh import Convention
+from tests.shipped import shipped_exercises
+from tests.together import together
+
+H = np.pi / 2
+Cell = str | float
+
+
+@pytest.fixture
+def stanford(catalogue: Mapping[str, Exercise]) -> Exercise:
+    return catalogue["stanford-arm"]
+
+
+def samples_of(exercise: Exercise) -> Samples:
+    return draw(exercise, "freedom")
+
+
+def written(rows: Sequence[Sequence[Cell]], samples: Samples) -> Table:
+    """A table of numbers and of letters' names."""
+    return np.array(
+        [
+            [
+                samples.values[cell] if isinstance(cell, str) else np.full(SAMPLES, float(cell))
+                for cell in row
+            ]
+            for row in rows
+        ]
+    )
+
+
+def found(
+    exercise: Exercise,
+    table: Table,
+    convention: Convention = Convention.STANDARD,
+    rows: Sequence[int | None] | None = None,
+) -> tuple[Finding, ...]:
+    joint_rows = range(len(exercise.robot.joints)) if rows is None else rows
+    return lost_freedom(table, joint_rows, convention, exercise, samples_of(exercise))
+
+
+PRINTED: list[list[Cell]] = [
+    [0, H, 0.3, "theta1"],
+    [0, H, "d2", "theta2"],
+    [0, H, "d3", H],
+    [0, H, 0, "theta4"],
+    [0, 0, 0, "theta5"],
+    [0, 0, "d6", "theta6"],
+]
+
+
+def test_the_printed_stanford_table(stanford: Exercise) -> None:
+    """The worked example of robots.md, "Errata"."""
+    [finding] = found(stanford, written(PRINTED, samples_of(stanford)))
+    assert finding.code == "lost_freedom"
+    assert finding.hint == (
+        "Joints 5 and 6 turn about one and the same line, so the arm has lost a degree of freedom: "
+        "check α of row 5."
+    )
+    assert finding.correction == "The axes of these joints are at right angles."
+
+
+REFERENCES = [
+    (exercise_id, convention)
+    for exercise_id, exercise in shipped_exercises().items()
+    if isinstance(exercise.reference, Robot)
+    for convention in exercise.robot.tables
+]
+
+
+@together(("exercise_id", "convention"), REFERENCES)
+def test_a_reference_has_lost_nothing(
+    exercise_id: str, convention: Convention, catalogue: Mapping[str, Exercise]
+) -> None:
+    exercise = catalogue[exercise_id]
+    values = samples_of(exercise).values
+    assert (
+        found(exercise, exercise.robot.tables[convention].values(values, SAMPLES), convention) == ()
+    )
+
+
+@pytest.mark.parametrize(
+    ("convention", "row"), [(Convention.STANDARD, 0), (Convention.MODIFIED, 1)]
+)
+def test_parallel_axes_that_fall_together(
+    convention: Convention, row: int, catalogue: Mapping[str, Exercise]
+) -> None:
+    exercise = catalogue["scara"]
+    table = exercise.robot.tables[convention].values(samples_of(exercise).values, SAMPLES)
+    table[row, A] = 0.0
+    [finding] = found(exercise, table, convention)
+    assert finding.hint.startswith("Joints 1 and 2 turn about one and the same line")
+    assert finding.hint.endswith(f"check a of row {row + 1}.")
+    assert finding.correction == "The axes of these joints are parallel, but apart."
+
+
+def test_joints_that_are_not_neighbours(stanford: Exercise) -> None:
+    table = stanford.robot.tables[Convention.STANDARD].values(samples_of(stanford).values, SAMPLES)
+    table[1, ALPHA] = 0.0
+    [finding] = found(stanford, table)
+    assert finding.hint.startswith("Joints 2 and 4 turn")
+    assert finding.hint.endswith("check α of rows 2 and 3.")
+
+
+def test_four_joints_in_the_place_of_three(catalogue: Mapping[str, Exercise]) -> None:
+    """With α3 = 90° the last joint slides in the plane that the other three move in."""
+    exercise = catalogue["rrrp"]
+    table = exercise.robot.tables[Convention.STANDARD].values(samples_of(exercise).values, SAMPLES)
+    table[2, ALPHA] = H
+    [finding] = found(exercise, table)
+    assert "joints 1, 2, 3 and 4" in finding.hint
+    assert "fewer degrees of freedom than the robot" in finding.hint
+
+
+CARTESIAN = """
+title = "Cartesian arm"
+source = "Spong, Hutchinson, Vidyasagar, 3-7"
+statement = "Three sliding joints at right angles."
+
+[robot]
+structure = "PPP"
+convention = "standard"
+joints = ["d1", "d2", "d3"]
+table = [
+    ["0", "-90deg", "d1", "0"],
+    ["0", "-90deg", "d2", "-90deg"],
+    ["0", "0", "d3", "0"],
+]
+
+[[parts]]
+id = "table"
+kind = "dh_table"
+title = "Table"
+prompt = "Give the table."
+points = 1
+convention = "standard"
+"""
+
+
+def test_two_joints_that_slide_along_one_direction(
+    make_exercise: Callable[[str], Exercise],
+) -> None:
+    exercise = make_exercise(CARTESIAN)
+    table = exercise.robot.tables[Convention.STANDARD].values(samples_of(exercise).values, SAMPLES)
+    assert found(exercise, table) == ()
+    table[0, ALPHA] = np.pi
+    table[0, A] = 0.4
+    [finding] = found(exercise, table)
+    assert finding.hint.startswith("Joints 1 and 2 slide along one and the same direction")
+    assert finding.hint.endswith("check α of row 1.")
+
+
+REDUNDANT = """
+title = "Four parallel axes, the last two on one line"
+source = "Made for this test."
+statement = "A planar arm with a redundant joint."
+
+[robot]
+structure = "RRRR"
+convention = "standard"
+joints = ["q1", "q2", "q3", "q4"]
+table = [
+    ["l1", "0", "0", "q1"],
+    ["l2", "0", "0", "q2"],
+    ["0", "0", "h", "q3"],
+    ["l1", "0", "0", "q4"],
+]
+
+[symbols]
+l1 = { kind = "length", description = "l1" }
+l2 = { kind = "length", description = "l2" }
+h = { kind = "length", description = "h" }
+
+[[parts]]
+id = "table"
+kind = "dh_table"
+title = "Table"
+prompt = "Give the table."
+points = 1
+convention = "standard"
+"""
+
+
+def test_what_the_robot_itself_lacks_is_no_loss(make_exercise: Callable[[str], Exercise]) -> None:
+    exercise = make_exercise(REDUNDANT)
+    table = exercise.robot.tables[Convention.STANDARD].values(samples_of(exercise).values, SAMPLES)
+    assert found(exercise, table) == ()
+    table[0, A] = 0.0
+    [finding] = found(exercise, table)
+    assert finding.hint.startswith("Joints 1 and 2 turn")
+
+
+def test_nothing_is_told_where_a_joint_stands_still(stanford: Exercise) -> None:
+    # The axes of joints 4 and 6 are one line only because joint 5 does not turn.
+    table = stanford.robot.tables[Convention.STANDARD].values(samples_of(stanford).values, SAMPLES)
+    table[4, THETA] = 0.0
+    assert not found(stanford, table)
+
+
+def test_a_joint_without_a_row_is_left_out(stanford: Exercise) -> None:
+    table = written(PRINTED, samples_of(stanford))[:5]
+    assert found(stanford, table, rows=[0, 1, 2, 3, 4, None]) == ()
+    table = written(PRINTED, samples_of(stanford))[3:]
+    [finding] = found(stanford, table, rows=[None, None, None, 0, 1, 2])
+    assert finding.hint.startswith("Joints 5 and 6 turn")
+
+
+def test_an_unreadable_cell_says_nothing(stanford: Exercise) -> None:
+    table = written(PRINTED, samples_of(stanford))
+    table[0, A] = np.nan
+    assert found(stanford, table) == ()
+
+
+def test_a_wrong_table_may_be_free_all_the_same(stanford: Exercise) -> None:
+    table = stanford.robot.tables[Convention.STANDARD].values(samples_of(stanford).values, SAMPLES)
+    table[1, D] *= -1
+    table[4, ALPHA] *= -1
+    table[3, A] = 0.3
+    assert found(stanford, table) == ()
+
+
+@together("length", [1e5, 1e7, 1e9])
+@together(("exercise_id", "convention"), REFERENCES)
+def test_a_length_beyond_all_others_takes_no_freedom(
+    exercise_id: str, convention: Convention, length: float, catalogue: Mapping[str, Exercise]
+) -> None:
+    exercise = catalogue[exercise_id]
+    values = samples_of(exercise).values
+    for row in range(len(exercise.robot.joints)):
+        table = exercise.robot.tables[convention].values(values, SAMPLES)
+        table[row, A] += length
+        assert found(exercise, table, convention) == (), row

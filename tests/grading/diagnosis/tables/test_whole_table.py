@@ -1,0 +1,193 @@
+"""Misconceptions about a whole table.
+
+They are tried on the Stanford arm of Spong, Hutchinson and Vidyasagar, with d1
+and a2 added so that every column holds something. A table is right if its pose is, multiplied out
+here.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.catalogue import Joint
+from service.grading.diagnosis.tables import whole_table
+from service.grading.diagnosis.tables.whole_table import MISCONCEPTIONS, WrongTable, explaining
+from service.grading.judging.own_frames import written_table
+from service.grading.judging.own_frames.written_table import WrittenTable
+from service.grading.numerics.samples import HALF, SAMPLES, Samples
+from service.kinematics.chain import ALPHA, THETA, A, D, Table
+from service.kinematics.dh import Convention
+from tests.frame_choice.kinematics import screw_x, screw_z
+from tests.grading.diagnosis.pairs import Pair, assert_explains_one_case_alone, each_pair
+
+RNG = np.random.default_rng(6)
+JOINTS = tuple(Joint(i + 1, f"q{i + 1}", i == 2) for i in range(6))
+SAMPLE = Samples({joint.variable: RNG.uniform(0.2, 1.4, SAMPLES) for joint in JOINTS})
+LENGTHS = {name: np.tile(RNG.uniform(0.2, 0.9, HALF), 2) for name in ("d1", "d2", "a2", "d6")}
+QUARTER = np.pi / 2
+
+
+def right() -> Table:
+    table = np.zeros((6, 4, SAMPLES))
+    table[:, ALPHA] = np.array([-QUARTER, QUARTER, 0, -QUARTER, QUARTER, 0])[:, None]
+    table[0, D], table[1, D], table[5, D] = LENGTHS["d1"], LENGTHS["d2"], LENGTHS["d6"]
+    table[1, A] = LENGTHS["a2"]
+    for i, joint in enumerate(JOINTS):
+        table[i, D if joint.prismatic else THETA] += SAMPLE.values[joint.variable]
+    return table
+
+
+def pose(table: Table, convention: Convention) -> NDArray[np.float64]:
+    reached = np.tile(np.eye(4), (table.shape[-1], 1, 1))
+    for a, alpha, d, theta in table:
+        z, x = screw_z(d, theta), screw_x(a, alpha)
+        reached = reached @ (z @ x if convention is Convention.STANDARD else x @ z)
+    return reached
+
+
+def valid(candidates: NDArray[np.float64], convention: Convention) -> NDArray[np.bool_]:
+    wanted = pose(right(), Convention.STANDARD)
+    return np.array([np.abs(pose(t, convention) - wanted).max() < 1e-6 for t in candidates])
+
+
+def wrong(table: Table) -> WrongTable:
+    """The table where ``right()`` would be right."""
+    written = written_table.written_table(table, Convention.STANDARD, right(), JOINTS, SAMPLE)
+    return WrongTable(written, written, valid)
+
+
+def in_modified_rows(table: Table) -> Table:
+    """Row i with the link before joint i: the last link has no row, here it is none."""
+    table[:, :2] = np.concatenate([np.zeros((1, 2, SAMPLES)), table[:-1, :2]])
+    return table
+
+
+def twists_too_late(table: Table) -> Table:
+    """Only the twists: with the lengths it would be the other convention."""
+    table[:, ALPHA] = np.roll(table[:, ALPHA], 1, axis=0)
+    return table
+
+
+def with_columns(table: Table, one: int, other: int, row: int) -> Table:
+    table[row, [one, other]] = table[row, [other, one]]
+    return table
+
+
+def with_rows(table: Table, i: int, j: int) -> Table:
+    table[[i, j]] = table[[j, i]]
+    return table
+
+
+def with_angles(table: Table, factor: float) -> Table:
+    motion = wrong(right()).written.motion
+    constants = table - motion
+    constants[:, [ALPHA, THETA]] *= factor
+    return constants + motion
+
+
+def with_sign(table: Table, column: int) -> Table:
+    motion = wrong(right()).written.motion
+    constants = table - motion
+    constants[:, column] *= -1
+    return constants + motion
+
+
+def with_cell(table: Table, row: int, column: int, value: float) -> Table:
+    table[row, column] = value
+    return table
+
+
+def with_lengths_exchanged() -> WrongTable:
+    """d1 where d2 belongs, and the other way."""
+    table = right()
+    table[0, D], table[1, D] = LENGTHS["d2"], LENGTHS["d1"]
+    written = replace(wrong(table).written, exchanges=(("d1", "d2", right() - table),))
+    return WrongTable(written, written, valid)
+
+
+PAIRS = [
+    Pair(
+        function,
+        explained if isinstance(explained, WrongTable) else wrong(explained),
+        wrong(left_alone),
+        source=lambda case: case.written,
+    )
+    for function, explained, left_alone in (
+        (
+            written_table.other_convention,
+            in_modified_rows(right()),
+            with_rows(right(), 0, 1),
+        ),
+        (
+            written_table.degrees_as_radians,
+            with_angles(right(), 180 / np.pi),
+            with_angles(right(), 2.0),
+        ),
+        (
+            written_table.radians_as_degrees,
+            with_angles(right(), np.pi / 180),
+            with_angles(right(), 0.5),
+        ),
+        (
+            whole_table.lengths_exchanged,
+            with_lengths_exchanged(),
+            with_cell(right(), 0, D, 0.3),
+        ),
+        (
+            whole_table.link_columns_shifted,
+            twists_too_late(right()),
+            with_cell(right(), 0, ALPHA, QUARTER),
+        ),
+        (
+            whole_table.column_sign,
+            with_sign(right(), ALPHA),
+            with_cell(right(), 0, ALPHA, 0.3),
+        ),
+        (
+            whole_table.columns_swapped,
+            with_columns(right(), A, D, 1),
+            with_cell(right(), 1, A, 0.0),
+        ),
+        (
+            whole_table.row_order,
+            with_rows(right(), 3, 4),
+            with_cell(right(), 3, ALPHA, QUARTER),
+        ),
+    )
+]
+
+
+@each_pair(PAIRS)
+def test_a_misconception(pair: Pair) -> None:
+    for case in (pair.explained, pair.left_alone):
+        assert not valid(case.written.values[None], Convention.STANDARD)[0]
+    assert_explains_one_case_alone(pair)
+
+
+@each_pair(PAIRS)
+def test_its_finding_is_told(pair: Pair) -> None:
+    assert pair.function.__name__ in codes(pair.explained, combine=True)
+
+
+def test_the_order_of_the_misconceptions() -> None:
+    assert [pair.function for pair in PAIRS] == list(MISCONCEPTIONS)
+
+
+def test_two_misconceptions_at_once() -> None:
+    both = wrong(in_modified_rows(with_angles(right(), 180 / np.pi)))
+    assert codes(both, combine=True) == ["other_convention", "degrees_as_radians"]
+    assert codes(both, combine=False) == []
+    [found] = explaining(both, combine=True)
+    assert valid(found.answer.values[None], found.answer.convention)[0]
+
+
+def codes(case: WrongTable, *, combine: bool) -> list[str]:
+    found = explaining(case, combine=combine)
+    return [finding.code for repaired in found for finding in repaired.findings]
+
+
+def test_a_table_of_one_row() -> None:
+    one = WrittenTable(right()[:1], 0 * right()[:1], Convention.STANDARD, right()[:1])
+    for misconception in MISCONCEPTIONS:
+        assert all(each.answer.values.shape == (1, 4, SAMPLES) for each in misconception(one))

@@ -1,0 +1,82 @@
+"""The places that the names of link transforms give, as textbooks and programs write them."""
+
+import pytest
+
+from service.grading.reading.matrices.matrix_names import (
+    indices_of,
+    is_changed,
+    is_product,
+    places_of,
+)
+from tests.together import together
+
+
+def places(names: str, count: int) -> list[int | None]:
+    return list(places_of([indices_of(name.strip()) for name in names.split("|")], count)[0])
+
+
+@together(
+    "names",
+    [
+        "A1 | A2 | A3", "A_1 | A_2 | A_3", "A_{1} | A_{2} | A_{3}", "A{1} | A{2} | A{3}",
+        "A_1(q_1) | A_2(q_2) | A_3(q_3)", r"A_1(\theta_1) | A_2(\theta_2) | A_3(d_3)",
+        r"{}^{0}T_{1} | {}^{1}T_{2} | {}^{2}T_{3}", "^0T_1 | ^1T_2 | ^2T_3", "T01 | T12 | T23",
+        r"{}^0_1T | {}^1_2T | {}^2_3T", "T_{01} | T_{12} | T_{23}", "T_{0,1} | T_{1,2} | T_{2,3}",
+        "T_1^0 | T_2^1 | T_3^2", r"\mathbf{A}^0_1 | \mathbf{A}^1_2 | \mathbf{A}^2_3",
+        "A(:,:,1) | A(:,:,2) | A(:,:,3)", "T0_1 | T1_2 | T2_3", "Link 1 | Link 2 | Link 3",
+        "A[0] | A[1] | A[2]", "A0 | A1 | A2", "T_1 | T_2 | T_e", "A1 | A2 | An", "A1 | A2 | Ae",
+        "T01 | T12 | T_{2,tool}", "T01 | T02 | T03", "T12 | T23 | T34", "H10 | H21 | H32",
+    ],
+)  # fmt: skip
+def test_three_names_in_order(names: str) -> None:
+    assert places(names, 3) == [1, 2, 3]
+
+
+@pytest.mark.parametrize(
+    ("names", "count", "expected"),
+    [
+        ("A3 | A1 | A2", 3, [3, 1, 2]),
+        ("T12 | T01", 2, [2, 1]),
+        ("A1 | A2 | T", 2, [1, 2, None]),
+        ("A1 | A2 | T_{02}", 2, [1, 2, None]),
+        ("T01 | T12 | T02", 2, [1, 2, None]),
+        ("T01 | T12 | T23 | T03", 3, [1, 2, 3, None]),
+        ("A1 | A1", 2, [1, 1]),
+        ("A1 | A7", 2, [1, None]),
+        ("A11 | A12", 12, [11, 12]),
+        ("A1 | A3", 3, [1, 3]),
+        ("ans | ans", 2, [None, None]),
+        ("A1*A2*A3", 3, [None]),
+    ],
+)
+def test_other_names(names: str, count: int, expected: list[int | None]) -> None:
+    assert places(names, count) == expected
+
+
+def test_names_that_count_from_zero_are_told_from_those_that_do_not() -> None:
+    def unusual(*names: str) -> str:
+        return places_of([indices_of(name) for name in names], len(names))[1]
+
+    assert unusual("A0", "A1")
+    assert not unusual("A1", "A2")
+    assert not unusual("T01", "T12")
+
+
+@pytest.mark.parametrize(
+    "name", ["inv(A1)", "A1'", "A1.T", "A1inv", "A_1^T", "A_1^{-1}", "A_1^{T}", r"A_1^\top"]
+)
+def test_names_of_inverses_and_transposes(name: str) -> None:
+    assert is_changed(name)
+
+
+@pytest.mark.parametrize(
+    "name", ["A1", "^0T_1", "{}^{0}T_{1}", "{}^T_2 T", r"A_1(\theta_1)", "T_1^0", "Link 2", "A1.m"]
+)
+def test_names_of_links(name: str) -> None:
+    assert not is_changed(name)
+    assert not is_product(name)
+
+
+@pytest.mark.parametrize("name", ["A1*A2", "A_1 A_2", "A1 @ A2", r"A_1 \cdot A_2", "A1A2"])
+def test_names_of_products(name: str) -> None:
+    assert is_product(name)

@@ -1,0 +1,123 @@
+"""A corpus of header spellings."""
+
+import pytest
+
+from service.grading.reading.tables.column_headers import Header, read_header
+from tests.together import together
+
+SPELLINGS = {
+    "a": [
+        "a", "A", "a_i", "a_{i}", "aᵢ", "$a_i$", "ai", "a i", "a(i)", "a_j", "a_n", "r", "r_i", "R",
+        "link length", "Link Length", "length", "link length a", "a (link length)",
+        "Link length, a_i", "length a_i", r"\mathrm{a}_i", r"\textbf{a}", "**a**",
+        "`a`", "*a*", "a:", "𝑎",
+    ],
+    "alpha": [
+        "alpha", "Alpha", "ALPHA", "α", "α_i", "α_{i}", "αᵢ", r"\alpha", r"\alpha_i", r"$\alpha_i$",
+        "alpha_i", "alpha i", "alphai", "twist", "link twist", "Link twist α", "twist angle",
+        "link twist angle", "alpha (twist)", "⍺ⱼ", "⍺", "𝛼", "𝛼ᵢ", "al",
+    ],
+    "d": [
+        "d", "D", "d_i", "d_{i}", "dᵢ", "$d_i$", "di", "offset", "link offset", "joint offset",
+        "Link Offset d", "d (offset)", "dⱼ",
+    ],
+    "theta": [
+        "theta", "Theta", "θ", "Θ", "ϑ", "θ_i", "θ_{i}", "θᵢ", r"\theta", r"\theta_i",
+        r"$\theta_{i}$", "theta_i", "thetai", "q", "q_i", "qᵢ", "qi", "joint angle",
+        "Joint angle θ", "angle", "th", "θⱼ", r"$\theta_i^*$", "theta*",
+    ],
+    "label": [
+        "i", "j", "n", "k", "#", "link", "Link", "joint", "Joint", "Link i", "joint i", "Joint #",
+        "link no.", "No.", "no", "row", "frame", "$i$", "i (link)", "joint number", "link number",
+        "index", "axis",
+    ],
+    "aside": ["type", "Joint type", "variable", "joint variable", "comment", "limits", "home"],
+}  # fmt: skip
+CASES = [(text, column) for column, texts in SPELLINGS.items() for text in texts]
+
+
+@together(("text", "column"), CASES)
+def test_spelling(text: str, column: str) -> None:
+    assert read_header(text) == Header(column)
+    assert read_header(f"  {text}\u00a0") == Header(column)
+
+
+SHIFTED = [
+    "a_{i-1}", "aᵢ₋₁", "a_{i−1}", "$a_{i-1}$", "a_i-1", "a(i-1)", "a_{i - 1}", "ai-1", "a i-1",
+    "a_{n-1}", "a_{j-1}", "r_{i-1}", "link length a_{i-1}",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("text", SHIFTED)
+def test_a_lower_index_is_seen(text: str) -> None:
+    assert read_header(text) == Header("a", shifted=True)
+
+
+@pytest.mark.parametrize("text", ["α_{i-1}", r"\alpha_{i-1}", "alphai-1", "alpha(i-1)", "α i-1"])
+def test_a_lower_index_of_alpha(text: str) -> None:
+    assert read_header(text) == Header("alpha", shifted=True)
+
+
+@pytest.mark.parametrize(
+    ("text", "column", "unit", "radians"),
+    [
+        ("theta [deg]", "theta", "deg", False),
+        ("theta (deg)", "theta", "deg", False),
+        ("θ (°)", "theta", "°", False),
+        ("θ °", "theta", "°", False),
+        ("θ°", "theta", "°", False),
+        ("θ_i (º)", "theta", "°", False),
+        ("theta_deg", "theta", "deg", False),
+        ("theta / deg", "theta", "deg", False),
+        ("theta, degrees", "theta", "degrees", False),
+        ("theta in degrees", "theta", "degrees", False),
+        ("θ in °", "theta", "°", False),
+        (r"$\theta_i$ [$^\circ$]", "theta", "°", False),
+        (r"$\theta_i\,[^{\circ}]$", "theta", "°", False),
+        (r"$\alpha_{i}[^\circ]$", "alpha", "°", False),
+        ("alpha (rad)", "alpha", "rad", True),
+        ("alpha [radians]", "alpha", "radians", True),
+        ("alpha_rad", "alpha", "rad", True),
+        ("Link twist (deg)", "alpha", "deg", False),
+        ("joint angle (°)", "theta", "°", False),
+    ],
+)
+def test_units_of_angles(text: str, column: str, unit: str, radians: bool) -> None:
+    header = read_header(text)
+    assert header == Header(column, unit)
+    assert header.angle_unit == ("radians" if radians else "degrees")
+    assert header.metres is None
+
+
+@pytest.mark.parametrize(
+    ("text", "column", "metres"),
+    [
+        ("d (m)", "d", 1.0),
+        ("d [mm]", "d", 0.001),
+        ("d in mm", "d", 0.001),
+        ("d_mm", "d", 0.001),
+        ("d / mm", "d", 0.001),
+        ("a (cm)", "a", 0.01),
+        ("a [metres]", "a", 1.0),
+        ("link length (inches)", "a", 0.0254),
+        ("a (in)", "a", 0.0254),
+        (r"$a_i$ [$\mathrm{mm}$]", "a", 0.001),
+    ],
+)
+def test_units_of_lengths(text: str, column: str, metres: float) -> None:
+    header = read_header(text)
+    assert header is not None
+    assert (header.column, header.metres, header.angle_unit) == (column, metres, None)
+
+
+@together(
+    "text",
+    [
+        "", " ", "foo",
+        "a1", "a_1", "theta1", "θ₁", "0", "-90", "pi/2", "a alpha", "a+d", "d_{i+1}",
+        "alpha (rad/s)", "b", "l", "x", "beta", "phi", "a, d", "Länge", "i [m]", "a" * 100, "cos",
+        "q1*", "=", "a=", "90deg", "\x00", "\ud800",
+    ],
+)  # fmt: skip
+def test_what_is_no_header(text: str) -> None:
+    assert read_header(text) is None

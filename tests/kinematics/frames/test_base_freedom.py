@@ -1,0 +1,53 @@
+"""The freedom of a free base lasts as long as the axes lie on one line."""
+
+import numpy as np
+
+from service.kinematics.frames.base_freedom import BaseFreedom
+from service.kinematics.frames.candidate_rows import TargetKind
+from service.kinematics.transforms import Matrices, rot_x
+from tests.kinematics.constructions import trans
+
+SAMPLES = 2
+ROWS = np.array([[0.5, 0.0, 0.3, 0.2]])[..., None].repeat(SAMPLES, axis=-1)
+WRITTEN = np.array([0.5, 0.0, 0.8, 1.1])[:, None].repeat(SAMPLES, axis=-1)
+
+
+def at(frame: Matrices) -> Matrices:
+    return np.broadcast_to(frame, (SAMPLES, 4, 4))
+
+
+def test_a_turning_joint_leaves_a_turn_and_a_slide_along_its_axis() -> None:
+    freedom = BaseFreedom.on_first_axis(prismatic=False, samples=SAMPLES)
+    assert freedom.turn
+    assert not freedom.is_used_up
+    same_line = freedom.at_next(at(trans(0, 0, 0.4)), TargetKind.REVOLUTE, 1.0)
+    assert same_line.turn
+    assert same_line.slide is not None
+    beside = freedom.at_next(at(trans(0.4, 0, 0)), TargetKind.REVOLUTE, 1.0)
+    assert not beside.turn
+    assert beside.slide is not None  # offsets along parallel axes still add up
+    across = freedom.at_next(at(trans(0.4, 0, 0) @ rot_x(1.0)), TargetKind.REVOLUTE, 1.0)
+    assert across.is_used_up
+
+
+def test_a_sliding_joint_leaves_the_frame_anywhere() -> None:
+    freedom = BaseFreedom.on_first_axis(prismatic=True, samples=SAMPLES)
+    assert freedom.anywhere
+    turning = freedom.at_next(at(rot_x(1.0)), TargetKind.REVOLUTE, 1.0)
+    assert not turning.anywhere
+    assert turning.slide is not None
+
+
+def test_a_slide_is_used_up_by_the_written_length() -> None:
+    freedom = BaseFreedom.on_first_axis(prismatic=False, samples=SAMPLES)
+    beyond = ROWS.copy()
+    beyond[:, 2] -= 1.0
+    [(rows, distance)] = freedom.use_up(ROWS, beyond, WRITTEN)
+    np.testing.assert_allclose(rows[0, 2], WRITTEN[2])
+    np.testing.assert_allclose(distance, -0.5)
+
+
+def test_a_turn_takes_the_written_angle() -> None:
+    freedom = BaseFreedom.on_first_axis(prismatic=False, samples=SAMPLES)
+    np.testing.assert_array_equal(freedom.with_written_angle(ROWS, WRITTEN)[0, 3], WRITTEN[3])
+    np.testing.assert_array_equal(BaseFreedom().with_written_angle(ROWS, WRITTEN), ROWS)

@@ -1,0 +1,36 @@
+"""Pages of the origins that are set may read what is answered before the application."""
+
+import pytest
+
+from service.server.connections.early_cors import leave_to_read, origin_in
+
+COURSE, OTHER = "https://course.example.edu", "https://other.example.edu"
+
+
+@pytest.mark.parametrize(
+    ("origins", "origin", "allowed"),
+    [
+        ((), COURSE, None),
+        ((COURSE,), COURSE, COURSE),
+        ((COURSE,), OTHER, None),
+        ((COURSE,), "", COURSE),
+        ((COURSE, OTHER), OTHER, OTHER),
+        ((COURSE, OTHER), "", None),
+        (("*",), OTHER, "*"),
+    ],
+)
+def test_who_may_read(origins: tuple[str, ...], origin: str, allowed: str | None) -> None:
+    assert leave_to_read(origins, origin).get("Access-Control-Allow-Origin") == allowed
+
+
+@pytest.mark.parametrize(
+    ("head", "origin"),
+    [
+        (b"GET / HTTP/1.1\r\norigin:  https://a.example \r\n\r\n", "https://a.example"),
+        (b"GET / HTTP/1.1\r\nOrigin: https://a.exam", ""),
+        (b"GET / HTTP/1.1\r\nX-Origin: https://a.example\r\n", ""),
+        (b"", ""),
+    ],
+)
+def test_the_origin_is_found_in_what_has_come(head: bytes, origin: str) -> None:
+    assert origin_in(head) == origin

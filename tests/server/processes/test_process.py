@@ -1,0 +1,255 @@
+"""How a real process ends, alone and with workers, and what it does when one of them is lost."""
+
+import json
+import os
+import signal
+import socket
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, suppress
+from pathlib import Path
+
+import pytest
+
+from service.server.limits import MAX_CONNECTIONS
+from tests.attack.floods import many_costly
+from tests.guards import ANSWER
+from tests.server.raw import HEALTH, Service, answers, preview, received, service, until
+from tests.web.tutor.test_checking import COSTLY
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
+
+IMPATIENT = "tests.server.impatient"
+HALF = len(preview()) - 20
+
+
+def refuses(running: Service) -> bool:
+    try:
+        socket.create_connection(("127.0.0.1", running.port), ANSWER).close()
+    except OSError:
+        return True
+    return False
+
+
+def runs(process: int) -> bool:
+    """Whether a process runs: it may have ended, and nobody has asked for its exit code yet."""
+    try:
+        state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return False
+    return state != "Z"
+
+
+def workers(running: Service) -> set[int]:
+    """The processes whose parent is the service, without the tracker of multiprocessing."""
+    found = set()
+    for folder in Path("/proc").glob("[0-9]*"):
+        with suppress(OSError):
+            parent = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
+            if parent == running.process.pid and b"resource_tracker" not in (
+                (folder / "cmdline").read_bytes()
+            ):
+                found.add(int(folder.name))
+    return found
+
+
+def check_end(running: Service) -> None:
+    """Ask it to end while one request is half there, and others are not begun."""
+    with (
+        running.connect(preview()[:HALF]) as half,
+        running.connect(b"GET /healthz HTT") as head,
+        running.connect() as idle,
+    ):
+        # Answers on other connections say that these have been accepted.
+        for _ in range(5):
+            running.ask(HEALTH)
+        running.process.terminate()
+        until(lambda: refuses(running))
+        assert received(idle) == b""
+        assert received(head) == b""
+        half.sendall(preview()[HALF:])
+        (answer,) = answers(half)
+        assert answer.status == 200
+        assert answer.headers["connection"] == "close"
+    assert running.process.wait(ANSWER) == 0
+
+
+def test_what_is_under_way_is_finished_and_what_is_not_begun_is_hung_up_on(
+    tmp_path: Path,
+) -> None:
+    with service(tmp_path) as running:
+        check_end(running)
+
+
+def test_half_a_body_does_not_keep_it_and_is_reset(tmp_path: Path) -> None:
+    # On a busy machine, its usual patience may be over before it is asked to end.
+    with (
+        service(tmp_path, module=IMPATIENT, PATIENCE="600") as running,
+        running.connect(preview()[:HALF]) as half,
+    ):
+        running.ask(HEALTH)
+        assert running.end() == 0
+        with pytest.raises(ConnectionResetError):
+            half.recv(100)
+
+
+@pytest.mark.parametrize("options", [(), ("--workers", "2")], ids=["alone", "workers"])
+def test_a_second_signal_ends_it_at_once(tmp_path: Path, options: tuple[str, ...]) -> None:
+    with service(tmp_path, *options) as running, running.connect(preview()[:HALF]):
+        running.ask(HEALTH)
+        running.ask(HEALTH)
+        staff = workers(running)
+        running.process.send_signal(signal.SIGINT)
+        until(lambda: refuses(running))
+        assert running.process.poll() is None
+        began = time.monotonic()
+        running.process.terminate()
+        assert running.process.wait(ANSWER) == -signal.SIGTERM
+        # Without it, the half body would keep it for eight seconds.
+        assert time.monotonic() - began < 5
+        until(lambda: not any(map(runs, staff)))
+
+
+def test_answers_are_whole_when_it_ends_in_the_midst_of_them(tmp_path: Path) -> None:
+    pipelined = 200
+    with service(tmp_path, module=IMPATIENT) as running:
+        with ExitStack() as stack:
+            lines = [stack.enter_context(running.connect(preview() * pipelined)) for _ in range(20)]
+            for line in lines:
+                line.recv(1, socket.MSG_PEEK)
+            assert running.end() == 0
+            # Fails where one is cut off.
+            found = [answer.status for line in lines for answer in answers(line)]
+        assert set(found) == {200}
+        assert len(found) < 20 * pipelined
+
+
+def test_answers_that_the_end_cuts_short_are_no_failures(tmp_path: Path) -> None:
+    hanging = b"GET /hanging HTTP/1.1\r\nHost: x\r\n\r\n"
+    with service(tmp_path, module=IMPATIENT) as running:
+        with ExitStack() as stack:
+            sent = [hanging, *(many_costly(i) for i in range(4))]
+            lines = [stack.enter_context(running.connect(each)) for each in sent]
+            until(lambda: not running.ask(HEALTH)[0].status - 200)
+            assert running.end() == 0
+            assert [received(line) for line in lines].count(b"")
+        # The fixture finds a traceback in the log, if there is one.
+        assert "Exception" not in running.log
+
+
+def test_a_thread_that_works_on_does_not_keep_it(tmp_path: Path) -> None:
+    working = b"GET /working HTTP/1.1\r\nHost: x\r\n\r\n"
+    with service(tmp_path, module=IMPATIENT) as running, running.connect(working) as line:
+        running.ask(HEALTH)
+        assert running.end() == 0
+        assert received(line) == b""
+        assert "Something does not react" in running.log
+
+
+# While the process of the checks starts, and while it is at work.
+@pytest.mark.parametrize("seconds", [0.0, 4.0])
+def test_a_check_of_the_editor_does_not_keep_it(tmp_path: Path, seconds: float) -> None:
+    body = json.dumps({"id": "arm", "text": COSTLY}).encode()
+    head = b"POST /tutor/check HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: %d\r\n\r\n"
+    head %= len(body)
+    with service(tmp_path, module=IMPATIENT) as running, running.connect(head + body) as line:
+        until(lambda: len(workers(running)) == 1)
+        [check] = workers(running)
+        time.sleep(seconds)
+        assert running.end() == 0
+        assert received(line) == b""
+        until(lambda: not runs(check))
+
+
+def connections(process: int) -> int:
+    """How many sockets a process has open."""
+    files = Path(f"/proc/{process}/fd").iterdir()
+    return sum(str(file.readlink()).startswith("socket:") for file in files)
+
+
+def check_shares(running: Service, staff: set[int]) -> None:
+    """Open connections, and see that no worker has most of them."""
+    before = {worker: connections(worker) for worker in staff}
+    with ExitStack() as lines:
+        for _ in range(40):
+            lines.enter_context(running.connect(HEALTH)).recv(1)
+        more = [connections(worker) - had for worker, had in before.items()]
+    assert sum(more) == 40
+    assert min(more) >= 10
+
+
+def test_workers_share_connections_out_a_lost_one_is_replaced_and_all_end_in_good_order(
+    tmp_path: Path,
+) -> None:
+    with service(tmp_path, "--workers", "2") as running:
+        # It has said that it is running: nobody is refused any more.
+        assert not refuses(running)
+        until(lambda: running.log.count("startup complete") == 2)
+        assert running.log.count("running on") == 1
+        before = workers(running)
+        assert len(before) == 2
+        check_shares(running, before)
+        os.kill(min(before), signal.SIGKILL)
+        until(lambda: running.log.count("startup complete") == 3)
+        after = workers(running)
+        assert len(after) == 2
+        assert len(after & before) == 1
+        check_end(running)
+
+
+def test_workers_end_when_nobody_looks_after_them(tmp_path: Path) -> None:
+    with service(tmp_path, "--workers", "2") as running:
+        until(lambda: running.log.count("startup complete") == 2)
+        staff = workers(running)
+        running.process.kill()
+        running.process.wait(ANSWER)
+        until(lambda: not any(map(runs, staff)))
+
+
+@pytest.fixture(scope="session")
+def lasting(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    """A process for tests that do not end it; it writes no address into its log."""
+    folder = tmp_path_factory.mktemp("lasting")
+    with service(folder, DH_GRADER_LOG_ADDRESSES="false") as running:
+        yield running
+        assert running.end() == 0
+
+
+def test_many_open_connections_leave_room_and_little_memory(lasting: Service) -> None:
+    more = MAX_CONNECTIONS + 300
+    lasting.ask(preview())
+    before = lasting.memory()
+    with ExitStack() as lines:
+        for number in range(more):
+            head = b"POST /v1/preview HTTP/1.1\r\nHost: x\r\n"
+            lines.enter_context(lasting.connect(head))
+            if number % 100 == 0:
+                (answer,) = lasting.ask(HEALTH)
+                assert answer.status == 200
+        (answer,) = lasting.ask(preview())
+        assert answer.status == 200
+        assert lasting.memory() - before < 100
+
+
+def test_addresses_can_be_left_out_of_the_log(lasting: Service) -> None:
+    (well,) = lasting.ask(b"GET /healthz?name=Ada HTTP/1.1\r\nHost: x\r\n\r\n")
+    (nonsense,) = lasting.ask(b"NONSENSE\r\n\r\n")
+    expected = [
+        f'INFO:     - - "GET /healthz HTTP/1.1" 200 OK [{well.headers["x-request-id"]}]',
+        f'INFO:     - - "- - HTTP/1.1" 400 Bad Request [{nonsense.json()["request_id"]}]',
+    ]
+    # A line may come later than its answer.
+    until(lambda: lasting.log.count(nonsense.json()["request_id"]) > 0)
+    requests = [line for line in lasting.log.splitlines() if "HTTP/1.1" in line]
+    assert requests[-2:] == expected
+    assert "127.0.0.1" not in "".join(requests)
+    assert "Ada" not in lasting.log
+
+
+def test_a_port_that_is_taken_is_a_reason(lasting: Service, tmp_path: Path) -> None:
+    with (
+        pytest.raises(AssertionError, match=r"(?i)address already in use"),
+        service(tmp_path, "--port", str(lasting.port), "--workers", "2"),
+    ):
+        pass

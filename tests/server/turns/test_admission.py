@@ -1,0 +1,426 @@
+"""Requests are let through in turn by client, and nobody's queue is endless."""
+
+import asyncio
+import itertools
+import json
+import time
+from collections.abc import Callable, Coroutine
+from typing import Any
+
+import pytest
+from starlette.requests import ClientDisconnect, Request
+
+from service.api import turns
+from service.api.turns import CLIENT, COURSE_SITE, ONE_STUDENT, give_way
+from service.server.turns import admission
+from service.server.turns.admission import OF_ALL, OF_ONE, FairAdmission, Metered
+from service.submissions.strict_json import MAX_BODY_SIZE
+from service.time_slices import SLICE
+
+Messages = list[dict[str, Any]]
+
+
+class Client:
+    """One connection that sends one request, and what it got."""
+
+    def __init__(
+        self, address: str, port: int = 1, body: bytes = b"{}", path: str = "/v1/preview"
+    ) -> None:
+        self.scope = {
+            "type": "http", "method": "POST", "path": path, "headers": [], "query_string": b"",
+            "client": (address, port),
+        }  # fmt: skip
+        self._body: list[bytes] = [body[i : i + 65536] for i in range(0, len(body), 65536)]
+        self._sent = list(self._body)
+        self.gone = asyncio.Event()
+        self.answer: Messages = []
+
+    def reset(self) -> None:
+        """Send the same request again."""
+        self._body = list(self._sent)
+
+    async def receive(self) -> dict[str, Any]:
+        if self._body:
+            part = self._body.pop(0)
+            return {"type": "http.request", "body": part, "more_body": bool(self._body)}
+        await self.gone.wait()
+        return {"type": "http.disconnect"}
+
+    async def send(self, message: Any) -> None:
+        self.answer.append(message)
+
+    @property
+    def status(self) -> int | None:
+        return self.answer[0]["status"] if self.answer else None
+
+
+class Application:
+    """Notes whose request it answers, with its body, and keeps the process busy meanwhile."""
+
+    def __init__(self, work: Callable[[Any], None] = lambda _: None) -> None:
+        self.served: list[str] = []
+        self.bodies: list[bytes] = []
+        self._work = work
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        body, more = b"", True
+        while more:
+            message = await receive()
+            if message["type"] == "http.disconnect":
+                return
+            body += message["body"]
+            more = message["more_body"]
+        self.bodies.append(body)
+        client = scope["client"][0]
+        self.served.append(client)
+        self._work(scope)
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+        await send({"type": "http.response.body", "body": b""})
+
+
+def busy(seconds: float) -> None:
+    """Take so much processor time."""
+    end = time.thread_time() + seconds
+    while time.thread_time() < end:
+        pass
+
+
+def run(story: Coroutine[Any, Any, None]) -> None:
+    asyncio.run(story)
+
+
+def begin(app: FairAdmission, *clients: Client) -> list["asyncio.Task[None]"]:
+    return [
+        asyncio.create_task(app(client.scope, client.receive, client.send)) for client in clients
+    ]
+
+
+async def passes(number: int) -> None:
+    for _ in range(number):
+        await asyncio.sleep(0)
+
+
+@pytest.fixture
+def alike(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let all requests take the same time: a slice each."""
+    clock = itertools.count()
+    monkeypatch.setattr(admission, "thread_time", lambda: next(clock) * 1.01 * SLICE)
+
+
+@pytest.mark.usefixtures("alike")
+def test_a_client_that_comes_after_many_connections_of_another_is_served_soon() -> None:
+    async def story() -> None:
+        inner = Application()
+        app = FairAdmission(inner)
+        tasks = begin(app, *(Client("attacker", port) for port in range(16)), Client("honest"))
+        await asyncio.gather(*tasks)
+        assert inner.served[:3] == ["attacker", "attacker", "honest"]
+        assert len(inner.served) == 17
+
+    run(story())
+
+
+@pytest.mark.usefixtures("alike")
+def test_learners_take_turns_and_a_course_site_has_a_turn_for_each_request() -> None:
+    async def story() -> None:
+        inner = Application()
+        app = FairAdmission(inner)
+        students = [Client("10.0.0.1", port) for port in range(8)]
+        for each in students:
+            each.scope[CLIENT] = turns.Client("a learner", ONE_STUDENT)
+        site = [Client("10.0.0.2", port) for port in range(8)]
+        for each in site:
+            each.scope[CLIENT] = turns.Client("a key that may record", COURSE_SITE)
+        for _ in range(20):
+            tasks = begin(app, *students, *site)
+            await asyncio.gather(*tasks)
+            for each in (*students, *site):
+                each.reset()
+        # The learner pays for eight connections as for one, the site for each of its own.
+        first = inner.served[-16:][:9]
+        assert first.count("10.0.0.2") >= 7
+
+    run(story())
+
+
+@pytest.mark.usefixtures("alike")
+def test_what_arrives_while_another_is_answered_is_heard_before_the_next_is_begun() -> None:
+    async def story() -> None:
+        inner = Application()
+        app = FairAdmission(inner)
+        waiting = begin(app, *(Client("attacker", port) for port in range(16)))
+        served_between = []
+        for _ in range(5):
+            # As a socket would be read, once in a pass of the loop.
+            before = len(inner.served)
+            client = Client("honest")
+            await asyncio.gather(*begin(app, client))
+            served_between.append(inner.served[before:].index("honest"))
+        # The attacker has eight shares, and one of its requests was begun already.
+        assert max(served_between) <= 9
+        await asyncio.gather(*waiting)
+
+    run(story())
+
+
+class ManyGradings(Application):
+    """Gives way after each of the gradings that an attacker's request asks for."""
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        if scope["client"][0] == "attacker":
+            for _ in range(10):
+                self.served.append("part")
+                busy(0.02)
+                await give_way(Request(scope))
+        await super().__call__(scope, receive, send)
+
+
+def test_a_request_of_many_gradings_waits_after_each_for_many_small_ones() -> None:
+    async def story() -> None:
+        inner = ManyGradings()
+        app = FairAdmission(inner)
+        tasks = begin(app, *(Client("attacker", port) for port in range(4)))
+        await passes(3)
+        tasks += begin(app, *(Client("honest", port) for port in range(100)))
+        await asyncio.gather(*tasks)
+        # Each of the four has a step at its arrival; then all small ones come.
+        first = inner.served.index("honest")
+        assert first <= 4
+        assert inner.served[first : first + 108].count("honest") >= 95
+        assert inner.served.count("part") == 40
+        assert inner.served.count("attacker") == 4
+
+    run(story())
+
+
+def test_a_request_of_many_gradings_is_given_up_with_its_client() -> None:
+    async def story() -> None:
+        inner = ManyGradings()
+        app = FairAdmission(inner)
+        client = Client("attacker")
+        tasks = begin(app, client)
+        await passes(1)
+        client.gone.set()
+        [error] = await asyncio.gather(*tasks, return_exceptions=True)
+        assert isinstance(error, ClientDisconnect)
+        assert inner.served == ["part"]
+
+    run(story())
+
+
+@pytest.mark.usefixtures("alike")
+def test_beyond_its_queue_a_client_is_told_to_come_again() -> None:
+    async def story() -> None:
+        inner = Application()
+        app = FairAdmission(inner)
+        many = [Client("many", port) for port in range(OF_ONE[0] + 11)]
+        other = Client("other")
+        await asyncio.gather(*begin(app, *many, other))
+        statuses = [client.status for client in many]
+        # One is begun at once, and so many may wait.
+        assert statuses.count(200) == OF_ONE[0] + 1
+        assert statuses.count(429) == 10
+        assert other.status == 200
+        refused = many[statuses.index(429)].answer
+        headers = dict(refused[0]["headers"])
+        assert headers[b"content-type"] == b"application/problem+json"
+        assert 1 <= int(headers[b"retry-after"]) <= 30
+        assert json.loads(refused[1]["body"])["status"] == 429
+
+    run(story())
+
+
+@pytest.mark.parametrize(
+    ("gradings", "each", "seconds"), [(1, 0.003, 2), (10, 0.003, 11), (20, 0.015, 30)]
+)
+def test_whoever_waits_for_more_work_is_told_to_come_again_later(
+    monkeypatch: pytest.MonkeyPatch, gradings: int, each: float, seconds: int
+) -> None:
+    """A grading takes ``each`` seconds, and 512 requests wait."""
+    now = 0.0
+    monkeypatch.setattr(admission, "thread_time", lambda: now)
+
+    async def app(scope: Any, _receive: Any, send: Any) -> None:
+        nonlocal now
+        for i in range(gradings):
+            if i:
+                await give_way(Request(scope))
+            now += each
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+
+    async def story() -> None:
+        fair = FairAdmission(app)
+        for port in range(10):
+            await asyncio.gather(*begin(fair, Client("many", port)))
+        await passes(3)
+        many = [Client("many", port) for port in range(OF_ONE[0] + 11)]
+        await asyncio.gather(*begin(fair, *many))
+        refused = [client.answer[0]["headers"] for client in many if client.status == 429]
+        assert {int(dict(headers)[b"retry-after"]) for headers in refused} == {seconds}
+
+    run(story())
+
+
+@pytest.mark.usefixtures("alike")
+@pytest.mark.parametrize("size", [0, 1])
+def test_the_bytes_that_wait_are_bounded_as_well(
+    monkeypatch: pytest.MonkeyPatch, size: int
+) -> None:
+    monkeypatch.setattr(admission, "OF_ONE", (1000, 3000))
+
+    async def story() -> None:
+        app = FairAdmission(Application())
+        clients = [Client("a", port, b" " * (1000 + size)) for port in range(4)]
+        await asyncio.gather(*begin(app, *clients))
+        assert [client.status for client in clients].count(429) == size
+
+    run(story())
+
+
+@pytest.mark.usefixtures("alike")
+def test_beyond_the_queue_of_all_the_service_is_busy() -> None:
+    async def story() -> None:
+        app = FairAdmission(Application())
+        clients = [Client(f"10.0.0.{i}") for i in range(OF_ALL[0] + 2)]
+        await asyncio.gather(*begin(app, *clients))
+        statuses = [client.status for client in clients]
+        assert (statuses.count(200), statuses.count(503)) == (OF_ALL[0] + 1, 1)
+        assert b"retry-after" in dict(clients[statuses.index(503)].answer[0]["headers"])
+
+    run(story())
+
+
+@pytest.mark.usefixtures("alike")
+def test_questions_about_health_wait_for_nobody() -> None:
+    async def story() -> None:
+        inner = Application()
+        app = FairAdmission(inner)
+        tasks = begin(app, *(Client("a", port) for port in range(5)))
+        tasks += begin(app, Client("supervisor", path="/healthz"))
+        await passes(1)
+        assert inner.served == ["a", "supervisor"]
+        await asyncio.gather(*tasks)
+
+    run(story())
+
+
+@pytest.mark.usefixtures("alike")
+def test_small_answers_leave_room_for_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(admission, "OF_ONE", (1, 10**6))
+
+    async def story() -> None:
+        inner = Application()
+        app = FairAdmission(inner)
+        many = [Client("many", port) for port in range(40)]
+        asking = [Client("many", port, path="/healthz") for port in range(40)]
+        other = [Client("other"), Client("third")]
+        tasks = begin(app, *many, *asking, *other)
+        while other[1].status is None:
+            await passes(1)
+        # Three submissions are served, one after the other; four small answers of each kind beside
+        # each: who asks for health does not wait for those who are refused.
+        for clients in (many, asking):
+            answered = sum(client.status is not None for client in clients)
+            assert 2 * 4 <= answered <= 5 * 4
+        await asyncio.gather(*tasks)
+        assert [client.status for client in many].count(429) == 38
+        assert {client.status for client in asking} == {200}
+
+    run(story())
+
+
+@pytest.mark.usefixtures("alike")
+def test_whoever_has_gone_is_not_served() -> None:
+    async def story() -> None:
+        inner = Application()
+        app = FairAdmission(inner)
+        gone = Client("gone")
+        gone.gone.set()
+        await asyncio.gather(*begin(app, Client("a"), Client("b"), gone))
+        assert inner.served == ["a", "b"]
+
+    run(story())
+
+
+@pytest.mark.usefixtures("alike")
+def test_a_cancelled_request_does_not_stop_the_others() -> None:
+    async def story() -> None:
+        inner = Application()
+        app = FairAdmission(inner)
+        tasks = begin(app, *(Client(name) for name in "abc"))
+        await passes(1)
+        tasks[1].cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+        assert inner.served == ["a", "c"]
+
+    run(story())
+
+
+@pytest.mark.usefixtures("alike")
+def test_who_waits_at_the_end_of_the_process_is_given_up_without_an_error() -> None:
+    async def story() -> None:
+        inner = Application()
+        clients = [Client(name) for name in "abc"]
+        tasks = begin(FairAdmission(inner), *clients)
+        await passes(1)
+        clients[1].gone.set()
+        tasks[1].cancel()
+        assert await asyncio.gather(*tasks, return_exceptions=True) == [None, None, None]
+        assert inner.served == ["a", "c"]
+
+    run(story())
+
+
+@pytest.mark.parametrize("size", [0, 2, 65537, MAX_BODY_SIZE, MAX_BODY_SIZE + 1, 3 * 10**6])
+def test_the_application_reads_the_body_as_it_was_sent(size: int) -> None:
+    async def story() -> None:
+        inner = Application()
+        body = bytes(range(256)) * (size // 256) + b"x" * (size % 256)
+        client = Client("a", body=body)
+        client._body = client._body or [b""]
+        await asyncio.gather(*begin(FairAdmission(inner), client))
+        assert inner.bodies == [body]
+
+    run(story())
+
+
+def test_an_error_of_the_application_passes_and_the_next_is_served() -> None:
+    class Broken(Application):
+        async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+            if scope["client"][0] == "broken":
+                raise ZeroDivisionError
+            await super().__call__(scope, receive, send)
+
+    async def story() -> None:
+        inner = Broken()
+        tasks = begin(FairAdmission(inner), Client("broken"), Client("a"))
+        failed, _ = await asyncio.gather(*tasks, return_exceptions=True)
+        assert isinstance(failed, ZeroDivisionError)
+        assert inner.served == ["a"]
+
+    run(story())
+
+
+def test_only_the_time_of_a_request_s_own_steps_is_measured() -> None:
+    async def steps() -> None:
+        busy(0.02)
+        await asyncio.sleep(0)
+        busy(0.02)
+        with pytest.raises(KeyError):
+            await asyncio.wait_for(failing(), 5)
+
+    async def failing() -> None:
+        await asyncio.sleep(0.001)
+        raise KeyError
+
+    async def others() -> None:
+        busy(0.2)
+
+    async def measured() -> float:
+        metered = Metered(steps())
+        other = asyncio.ensure_future(others())
+        await metered
+        await other
+        return metered.spent
+
+    assert 0.04 <= asyncio.run(measured()) < 0.15

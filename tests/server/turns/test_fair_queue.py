@@ -1,0 +1,148 @@
+"""The order of the requests that wait."""
+
+import math
+from collections import Counter
+
+import pytest
+
+from service.api.turns import Client
+from service.server.turns.fair_queue import CREDIT, FairQueue, Ticket
+
+SHARES = 8.0
+STEP = 0.004
+
+
+def come(
+    queue: FairQueue, client: str, connection: int = 1, size: int = 1, shares: float = SHARES
+) -> Ticket:
+    """A request that has come and waits."""
+    ticket = Ticket(Client(client, shares), connection, size)
+    queue.enter(ticket)
+    queue.push(ticket)
+    return ticket
+
+
+def take(queue: FairQueue) -> Ticket:
+    ticket = queue.pop()
+    queue.begin(ticket)
+    return ticket
+
+
+def serve(queue: FairQueue, costs: dict[str, float], turns: int) -> list[str]:
+    """Serve clients that go on after each of so many steps; whose turns they were."""
+    served = []
+    for _ in range(turns):
+        ticket = take(queue)
+        served.append(ticket.client.name)
+        queue.charge(ticket, costs[ticket.client.name])
+        queue.push(ticket)
+    return served
+
+
+def test_clients_alike_come_in_turn() -> None:
+    queue = FairQueue()
+    for client in "abc":
+        come(queue, client)
+    assert "".join(serve(queue, dict.fromkeys("abc", STEP), 9)) == "abcabcabc"
+
+
+def test_clients_have_the_same_time_and_not_the_same_number_of_turns() -> None:
+    queue = FairQueue()
+    for client in "ab":
+        come(queue, client)
+    served = Counter(serve(queue, {"a": 0.010, "b": 0.001}, 1100))
+    assert served["a"] == pytest.approx(100, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("shares", "connections", "expected"),
+    [(8.0, 4, 4), (8.0, 16, 8), (1.0, 16, 1), (math.inf, 16, 16)],
+    ids=["a small class", "an address beyond its shares", "one student", "a course site"],
+)
+def test_a_client_has_a_share_for_each_connection_up_to_a_number(
+    shares: float, connections: int, expected: int
+) -> None:
+    queue = FairQueue()
+    for connection in range(1, connections + 1):
+        come(queue, "many", connection, shares=shares)
+    come(queue, "one")
+    served = Counter(serve(queue, {"many": STEP, "one": STEP}, 3000))
+    assert served["many"] / served["one"] == pytest.approx(expected, rel=0.1)
+
+
+def test_connections_that_are_not_told_apart_have_their_shares_together() -> None:
+    queue = FairQueue()
+    for _ in range(4):
+        come(queue, "behind a proxy", 0)
+    come(queue, "one")
+    served = Counter(serve(queue, {"behind a proxy": STEP, "one": STEP}, 3000))
+    assert served["behind a proxy"] / served["one"] == pytest.approx(4, rel=0.1)
+
+
+def test_a_connection_that_was_away_makes_up_for_its_credit_and_no_more() -> None:
+    queue = FairQueue()
+    away = come(queue, "away")
+    take(queue)
+    queue.charge(away, STEP)
+    queue.leave(away)
+    come(queue, "here")
+    serve(queue, {"here": STEP}, 1000)
+    come(queue, "away")
+    served = serve(queue, {"here": STEP, "away": STEP}, 100)
+    assert set(served[:20]) == {"away"}
+    first = served.index("here")
+    assert first * STEP == pytest.approx(CREDIT, rel=0.3)
+    assert Counter(served[first:])["away"] == pytest.approx((100 - first) / 2, abs=2)
+
+
+def test_no_request_waits_for_ever_for_new_connections() -> None:
+    queue = FairQueue()
+    long = come(queue, "long")
+    queue.charge(take(queue), 0.050)
+    queue.push(long)
+    for number in range(2, 1000):
+        come(queue, "crowd", number)
+        ticket = take(queue)
+        if ticket is long:
+            break
+        queue.charge(ticket, STEP)
+        queue.leave(ticket)
+    assert number < 60
+
+
+def test_requests_of_one_connection_are_served_in_order() -> None:
+    queue = FairQueue()
+    tickets = [come(queue, "a") for _ in range(3)]
+    assert [queue.pop() for _ in range(3)] == tickets
+    with pytest.raises(IndexError):
+        queue.pop()
+
+
+def test_a_request_that_is_given_up_leaves_the_others() -> None:
+    queue = FairQueue()
+    tickets = [come(queue, client) for client in "abc"]
+    queue.remove(tickets[0])
+    queue.leave(tickets[0])
+    assert [queue.pop(), queue.pop()] == tickets[1:]
+    assert (queue.length, queue.size) == (0, 0)
+
+
+def test_requests_and_bytes_are_counted_by_client() -> None:
+    queue = FairQueue()
+    tickets = [come(queue, "a", 1, 100), come(queue, "a", 2, 50), come(queue, "b", 1, 7)]
+    of = [queue.waiting(Client(name, SHARES)) for name in "abc"]
+    assert of == [(2, 150), (1, 7), (0, 0)]
+    assert (queue.length, queue.size) == (3, 157)
+    for _ in tickets:
+        queue.leave(queue.pop())
+    assert (queue.length, queue.size, queue.waiting(Client("a", SHARES))) == (0, 0, (0, 0))
+
+
+def test_accounts_of_many_clients_take_little_room() -> None:
+    queue = FairQueue()
+    for number in range(5_000):
+        ticket = come(queue, f"client {number}", number)
+        queue.charge(take(queue), 0.001)
+        queue.leave(ticket)
+    assert len(queue._accounts) <= 2_001
+    assert not queue._clients

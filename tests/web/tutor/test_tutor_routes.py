@@ -1,0 +1,229 @@
+"""A tutor's pages over the wire: for nobody else, bounded, and the same as the command line."""
+
+import asyncio
+import gzip
+import io
+import json
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from typer.testing import CliRunner
+
+from service.api.application import application
+from service.api.http.bounded_work import WAITING
+from service.api.permissions.access import Access
+from service.catalogue import Exercise, shipped_folder
+from service.cli.commands.grade import commands
+from service.web import Tutoring, web_routes
+from service.web.tutor.class_report import MAX_UPLOAD
+
+SCARA = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
+ROUTES = [
+    ("GET", "/tutor"),
+    ("GET", "/tutor/solutions/{exercise_id}"),
+    ("GET", "/tutor/solutions/{exercise_id}/frames.svg"),
+    ("GET", "/tutor/editor?exercise=scara"),
+    ("POST", "/tutor/check"),
+    ("POST", "/tutor/files"),
+    ("GET", "/tutor/class"),
+    ("GET", "/tutor/class/report"),
+    ("POST", "/tutor/class"),
+    ("GET", "/tutor/attempts"),
+    ("GET", "/tutor/attempts/0123"),
+    ("GET", "/tutor/statistics/{exercise_id}"),
+]
+RIGHT = "a\talpha\td\ttheta\na1\t0\t0\ttheta1\na2\t0\t0\ttheta2\n"
+
+
+class Tutor:
+    """Asks the application in this process, from the machine itself unless ``host`` says other."""
+
+    def __init__(self, catalogue: Mapping[str, Exercise], editor_dir: Path | None = None) -> None:
+        access = Access(solutions=None)
+        tutoring = Tutoring(access, (shipped_folder(),), editor_dir)
+        self.app = application(catalogue, access=access, pages=web_routes(catalogue, tutoring))
+
+    def ask(
+        self, method: str, path: str, host: str = "127.0.0.1:8000", **more: Any
+    ) -> httpx.Response:
+        return asyncio.run(self.asked(method, path, host, **more))
+
+    async def asked(
+        self,
+        method: str,
+        path: str,
+        host: str = "127.0.0.1:8000",
+        accept: str = "*/*",
+        **more: Any,
+    ) -> httpx.Response:
+        transport = httpx.ASGITransport(self.app)
+        address = "http://127.0.0.1:8000"
+        async with httpx.AsyncClient(transport=transport, base_url=address) as client:
+            return await client.request(
+                method, path, headers={"host": host, "accept": accept}, **more
+            )
+
+    def check(self, text: str, exercise: str = "scara") -> dict[str, Any]:
+        answer = self.ask("POST", "/tutor/check", json={"id": exercise, "text": text})
+        assert answer.status_code == 200
+        return dict(answer.json())
+
+    def grade(self, files: list[dict[str, str]], **more: Any) -> httpx.Response:
+        body = gzip.compress(json.dumps({"exercise": "planar-rr", "files": files, **more}).encode())
+        return self.ask("POST", "/tutor/class", content=body)
+
+
+@pytest.fixture
+def tutor(catalogue: Mapping[str, Exercise], tmp_path: Path) -> Tutor:
+    return Tutor(catalogue, tmp_path)
+
+
+def test_no_page_or_file_of_a_tutor_s_is_for_anybody_else(tutor: Tutor) -> None:
+    for method, path in ROUTES:
+        filled = path.replace("{exercise_id}", "scara")
+        answer = tutor.ask(method, filled, "grader.example.edu")
+        assert (answer.status_code, filled) == (403, filled)
+        assert "theta" not in answer.text
+    # A person is told of keys, not of the setting that gives solutions to everybody.
+    page = tutor.ask("GET", "/tutor", "grader.example.edu", accept="text/html")
+    assert (page.status_code, "<main" in page.text) == (403, True)
+    assert "keys create" in page.text
+    assert "DH_GRADER_SOLUTIONS=true" not in page.text
+    assert 'href="tutor"' not in tutor.ask("GET", "/", "grader.example.edu").text
+    assert 'href="tutor"' in tutor.ask("GET", "/").text
+
+
+def test_every_solution_is_drawn(tutor: Tutor, catalogue: Mapping[str, Exercise]) -> None:
+    for name in ("stanford-arm", "dh-conditions", "composite-rotations", "planar-rpr-poe"):
+        page = tutor.ask("GET", f"/tutor/solutions/{name}")
+        assert page.status_code == 200
+        assert page.headers["cache-control"] == "no-store"
+        # A formula that could not be turned to MathML would stand there as it is written.
+        assert "<code>\\" not in page.text.replace('<pre tabindex="0"><code>', "")
+        for part in catalogue[name].parts:
+            assert part.title in page.text
+    figure = tutor.ask("GET", "/tutor/solutions/scara/frames.svg")
+    assert "x<tspan" in figure.text or ">x" in figure.text
+    assert tutor.ask("GET", "/tutor/solutions/planar-rpr-poe/frames.svg").status_code == 404
+
+
+def test_a_text_is_checked_as_the_command_line_checks_a_file(tutor: Tutor) -> None:
+    good = tutor.check(SCARA)
+    assert good["findings"] == []
+    assert good["preview"]["figure"].startswith("<svg")
+    line = 1 + SCARA[: SCARA.index("points = ")].count("\n")
+    bad = tutor.check(SCARA.replace("points = ", "pionts = ", 1))
+    first = bad["findings"][0]
+    assert (first["field"], first["line"]) == ("parts[0].pionts", line)
+    assert "did you mean 'points'" in bad["findings"][0]["text"]
+    wrong = SCARA.replace('verdict = "partial"', 'verdict = "correct"')
+    assert wrong != SCARA
+    assert {each["level"] for each in tutor.check(wrong)["findings"]} >= {"failed"}
+    for text in (
+        "",
+        "=",
+        "a = " + "[" * 4_000,
+        "title = 1\nstatement = ''",
+        "\x00",
+        "a" + ".a" * 30_000,
+    ):
+        assert tutor.check(text)["findings"][0]["level"] == "unusable"
+    assert tutor.check(SCARA, "../scara")["findings"][0]["level"] == "unusable"
+
+
+def test_only_few_checks_wait(tutor: Tutor) -> None:
+    async def all_at_once() -> list[int]:
+        body = {"id": "scara", "text": SCARA}
+        asked = (tutor.asked("POST", "/tutor/check", json=body) for _ in range(WAITING + 4))
+        return sorted(each.status_code for each in await asyncio.gather(*asked))
+
+    assert asyncio.run(all_at_once()) == [200] * (WAITING + 1) + [503] * 3
+
+
+def test_a_file_is_written_only_where_the_service_is_told_to(
+    tutor: Tutor, catalogue: Mapping[str, Exercise], tmp_path: Path
+) -> None:
+    def save(text: str, before: str = "", exercise: str = "scara", by: Tutor = tutor) -> Any:
+        body = {"id": exercise, "text": text, "before": before}
+        return by.ask("POST", "/tutor/files", json=body)
+
+    file = tmp_path / "scara.toml"
+    first = save(SCARA)
+    assert (first.status_code, file.read_text(encoding="utf-8")) == (200, SCARA)
+    mark = first.json()["mark"]
+    assert f'data-mark="{mark}"' in tutor.ask("GET", "/tutor/editor?exercise=scara").text
+    changed = SCARA.replace("SCARA manipulator", "A robot", 1)
+    assert save(changed, mark).status_code == 200
+    assert file.read_text(encoding="utf-8") == changed
+    # Opened before the last change, or not at all.
+    for old in (mark, ""):
+        refused = save(SCARA, old)
+        assert (refused.status_code, "has changed" in refused.json()["detail"]) == (409, True)
+    for name in ("../scara", "/tmp/scara", "scara.toml", "Scara", ".", "a" * 61):
+        assert save(SCARA, "", name).status_code == 409
+    assert save("title = 1", "", "broken").status_code == 409
+    # A link leads nowhere else: it is replaced or refused, and what it names stays.
+    outside = tmp_path.parent / f"{tmp_path.name}-outside.toml"
+    outside.write_text("outside", encoding="utf-8")
+    (tmp_path / "linked.toml").symlink_to(outside)
+    assert save(SCARA, "", "linked").status_code == 409
+    assert outside.read_text(encoding="utf-8") == "outside"
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["linked.toml", "scara.toml"]
+    assert save(SCARA, by=Tutor(catalogue)).status_code == 409
+
+
+def test_a_class_is_graded_as_on_the_command_line(tutor: Tutor, tmp_path: Path) -> None:
+    large = " " * 300_000
+    class_files: dict[str, str] = {
+        "alice.json": json.dumps({"answers": {"table": RIGHT}}),
+        "bob/table.csv": RIGHT.replace("a2\t0", "a2\tpi/2").replace("\t", ","),
+        "carol.json": json.dumps({"answers": {"table": "<img src=x onerror=stolen(1)>"}}),
+        "dave.json": large,
+    }
+    sent = [
+        {"path": path} if text is large else {"path": path, "text": text}
+        for path, text in class_files.items()
+    ]
+    answer = tutor.grade([*sent, {"path": "eve.txt", "base64": "//4A"}])
+    assert answer.status_code == 200
+    archive = zipfile.ZipFile(io.BytesIO(answer.content))
+
+    folder = tmp_path / "class"
+    for path, text in class_files.items():
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / path).write_text(text, encoding="utf-8")
+    (folder / "eve.txt").write_bytes(b"\xff\xfe\x00")
+    output = tmp_path / "report"
+    command = [str(folder), "--exercise", "planar-rr", "--format", "html", "--output", str(output)]
+    CliRunner().invoke(commands, command)
+    written = {
+        file.relative_to(output).as_posix(): file.read_text(encoding="utf-8")
+        for file in output.rglob("*.html")
+    }
+    assert len(written) == 6
+    assert {name: archive.read(name).decode() for name in archive.namelist()} == {
+        name: text.replace(f"{folder}/", "") for name, text in written.items()
+    }
+
+
+def test_what_no_class_is_is_refused(tutor: Tutor) -> None:
+    refused = [
+        tutor.ask("POST", "/tutor/class", content=b"no gzip"),
+        tutor.ask("POST", "/tutor/class", content=gzip.compress(b" " * (MAX_UPLOAD + 1))),
+        tutor.ask("POST", "/tutor/class", content=gzip.compress(b"[" * 100_000)),
+        tutor.grade([]),
+        tutor.grade([{"path": "a.json", "text": ""}], exercise="skara"),
+        tutor.grade([{"path": "a.json", "text": ""}], part="tabel"),
+        *(
+            tutor.grade([{"path": path, "text": ""}])
+            for path in ("../a", "/etc/a", "a//b", "a/./b", "a\0", "ä" * 200, "a/..", ".hidden")
+        ),
+        tutor.grade([{"path": "a", "text": ""}, {"path": "a/b", "text": ""}]),
+        tutor.grade([{"path": f"{i}.json", "text": ""} for i in range(501)]),
+    ]
+    assert {each.status_code for each in refused} == {422}
+    assert {each.headers["content-type"] for each in refused} == {"application/problem+json"}
