@@ -3,7 +3,7 @@
 import inspect
 from collections.abc import Iterator
 from importlib import import_module
-from pkgutil import iter_modules
+from pkgutil import walk_packages
 from types import ModuleType
 from typing import Any, get_args, get_origin, get_type_hints
 
@@ -14,8 +14,8 @@ from service.grading.judging.own_frames import written_table
 from service.grading.misconception import Hypothesis
 from tests.together import together
 
-NAMES = [each.name for each in iter_modules(diagnosis.__path__)]
-FILES = [*(import_module(f"{diagnosis.__name__}.{name}") for name in NAMES), written_table]
+NAMES = [each.name for each in walk_packages(diagnosis.__path__, f"{diagnosis.__name__}.")]
+FILES = [*(import_module(name) for name in NAMES), written_table]
 
 
 def listed(file: ModuleType) -> list[Any]:
@@ -48,6 +48,9 @@ def test_every_misconception_is_listed(file: ModuleType) -> None:
     "file", [file for file in FILES if listed(file)], ids=lambda file: file.__name__
 )
 def test_every_misconception_has_its_pair(file: ModuleType) -> None:
-    name = file.__name__.rpartition(".")[2]
-    tests = import_module(f"{__package__}.test_{'whole_table' if file is written_table else name}")
+    diagnosed = (
+        f"{diagnosis.__name__}.tables.whole_table" if file is written_table else file.__name__
+    )
+    room, _, name = diagnosed.removeprefix("service.").rpartition(".")
+    tests = import_module(f"tests.{room}.test_{name}")
     assert {pair.function for pair in tests.PAIRS} >= set(listed(file))
