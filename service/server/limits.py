@@ -9,9 +9,13 @@ MAX_FRAME: Final = 64 * 1024
 MAX_URL: Final = 8 * 1024
 MAX_HEADERS: Final = 100
 
-# Seconds from the first byte of a request to its last, for an answer to be taken, and without a
-# request. 256 KiB in 30 s is 9 kB/s, which the slowest mobile line reaches.
+# Seconds from the first byte of a request to its last, for the client to take an answer, and
+# between two requests of a connection. 256 KiB in 30 s is 9 kB/s, which the slowest mobile line
+# reaches.
 PATIENCE: Final = 30.0
+# Seconds from the opening of a connection to the first byte of its first request, and from the
+# first byte of a head to its last. A head is one packet or a few.
+HEAD_PATIENCE: Final = 10.0
 # Seconds in which a client that was refused while it was still sending may read why.
 LINGER: Final = 2.0
 # What is read of it meanwhile, and thrown away.

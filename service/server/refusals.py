@@ -8,7 +8,7 @@ from starlette.datastructures import Headers
 
 from service.api.http.problems import ProblemError
 from service.api.http.request_context import HEADER, begin_request
-from service.server.limits import MAX_HEADERS, MAX_URL, PATIENCE
+from service.server.limits import HEAD_PATIENCE, MAX_HEADERS, MAX_URL, PATIENCE
 
 _CLOSE: Final = {"Connection": "close"}
 
@@ -32,7 +32,10 @@ def malformed(detail: str) -> ProblemError:
 
 def late() -> ProblemError:
     """The problem of a request that did not come in time."""
-    detail = f"A request must have come whole within {PATIENCE:.0f} seconds."
+    detail = (
+        f"The head of a request must arrive within {HEAD_PATIENCE:.0f} seconds, and the whole "
+        f"request within {PATIENCE:.0f}."
+    )
     return ProblemError(HTTPStatus.REQUEST_TIMEOUT, detail, headers=_CLOSE)
 
 

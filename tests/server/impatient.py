@@ -1,7 +1,7 @@
 """`python -m tests.server.impatient`: the service with little patience, so that tests need none.
 
 `GET /hanging` there never comes to an answer, nor does `GET /working`, in a thread. The variable
-``PATIENCE`` lets it wait longer for the rest of a request; at its end it stays impatient.
+``PATIENCE`` lets it wait longer for all but heads; at its end it stays impatient.
 """
 
 import asyncio
@@ -20,6 +20,7 @@ from service.server.processes import process
 from service.settings import Settings
 
 PATIENCE = 1.0
+HEAD_PATIENCE = PATIENCE / 2
 
 
 async def _hanging() -> None:
@@ -40,6 +41,7 @@ def _with_hanging(settings: Settings, host: str) -> FastAPI:
 if __name__ == "__main__":
     for module, name, seconds in (
         (protocol, "PATIENCE", float(os.environ.get("PATIENCE", PATIENCE))),
+        (protocol, "HEAD_PATIENCE", HEAD_PATIENCE),
         (protocol, "LINGER", 0.3),
         (crowd, "SWEEP", 0.05),
         (process, "GRACE", PATIENCE / 2),

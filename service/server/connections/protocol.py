@@ -16,7 +16,6 @@ import httptools
 from starlette.datastructures import Headers
 from starlette.types import Receive, Scope, Send
 from uvicorn.config import Config
-from uvicorn.protocols.http.flow_control import FlowControl
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol, RequestResponseCycle
 from uvicorn.server import ServerState
 
@@ -24,10 +23,18 @@ from service.access.client_key import client_key
 from service.api.http.problems import ProblemError
 from service.api.http.request_context import end_request
 from service.server.connections.early_cors import origin_in
+from service.server.connections.flow import LingeringTransport, Valve
 from service.server.connections.framing import Framing
 from service.server.connections.guarded_state import GuardedState
 from service.server.connections.open_connections import Crowd
-from service.server.limits import HEALTH, LINGER, MAX_DISCARDED, MAX_UNREAD, PATIENCE
+from service.server.limits import (
+    HEAD_PATIENCE,
+    HEALTH,
+    LINGER,
+    MAX_DISCARDED,
+    MAX_UNREAD,
+    PATIENCE,
+)
 from service.server.refusals import late, malformed, too_busy
 from service.submissions.strict_json import MAX_BODY_SIZE
 
@@ -40,43 +47,12 @@ _LONG_LENGTH: Final = re.compile(rb"\r\ncontent-length:[ \t]*[0-9]{20}", re.IGNO
 _AT_ONCE: Final = struct.pack("hh" if sys.platform == "win32" else "ii", 1, 0)
 
 
-class _Wire:
-    """A transport that, when it is to be closed, lets the client read the last answer first."""
-
-    def __init__(self, transport: asyncio.Transport, finish: Any) -> None:
-        self._transport = transport
-        self.close = finish
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._transport, name)
-
-
-class _Valve(FlowControl):
-    """Flow control under which an answer that is at work cannot have the next request read."""
-
-    shut = False
-
-    def resume_reading(self) -> None:
-        """Read on, unless the next request has to wait."""
-        if not self.shut:
-            super().resume_reading()
-
-    def hold(self) -> None:
-        """Read nothing until ``release``."""
-        self.shut = True
-        self.pause_reading()
-
-    def release(self) -> None:
-        """Read on."""
-        self.shut = False
-        self.resume_reading()
-
-
 class GuardedProtocol(HttpToolsProtocol):
     """One connection."""
 
     server_state: GuardedState
-    flow: _Valve
+    flow: Valve
+    waiting_since: float | None
 
     def __init__(
         self,
@@ -97,8 +73,7 @@ class GuardedProtocol(HttpToolsProtocol):
         self.url = b""
         self.address = ""
         self.unfinished = 0
-        self.deadline = self.loop.time() + PATIENCE
-        self.waiting_since: float | None = self.loop.time()
+        self._wait(HEAD_PATIENCE)
 
     @property
     def crowd(self) -> Crowd:
@@ -110,8 +85,8 @@ class GuardedProtocol(HttpToolsProtocol):
         super().connection_made(transport)
         self._raw = transport
         transport.set_write_buffer_limits(high=MAX_UNREAD)
-        self.flow = _Valve(transport)
-        self.transport = _Wire(transport, self.finish)  # type: ignore[assignment]
+        self.flow = Valve(transport)
+        self.transport = LingeringTransport(transport, self.finish)  # type: ignore[assignment]
         self.address = client_key(self.client[0]) if self.client else ""
         if not self.crowd.enter(self, self.loop):
             self.server_state.note_refusal("none")
@@ -137,7 +112,7 @@ class GuardedProtocol(HttpToolsProtocol):
             return
         # Empty lines before a request do not begin it.
         if not self._framing.begun and self.waiting_since is not None and data.strip(b"\r\n"):
-            self._wait()
+            self._wait(HEAD_PATIENCE)
         self._framing.receive(data)
         self._advance()
 
@@ -173,17 +148,8 @@ class GuardedProtocol(HttpToolsProtocol):
     def _parse(self, piece: bytes) -> None:
         framing = self._framing
         head = framing.in_head
-        # The parser also takes RTSP and ICE for what may be asked for.
-        if head and not piece.partition(b"\r\n")[0].endswith((b" HTTP/1.0", b" HTTP/1.1")):
-            raise malformed("The request line does not end with HTTP/1.1.")
         if head:
-            self._origin = origin_in(piece)
-            hosts = len(_HOST.findall(piece))
-            # RFC 9112, 3.2.
-            if hosts > 1 or not (hosts or piece.partition(b"\r\n")[0].endswith(b"0")):
-                raise malformed("A request names its host once, in a header Host.")
-            if _LONG_LENGTH.search(piece):
-                raise malformed("The Content-Length has more than 19 digits.")
+            self._check_head(piece)
         try:
             self.parser.feed_data(_UPGRADE.sub(b"\r\nignored-", piece) if head else piece)
         except (httptools.HttpParserError, httptools.HttpParserUpgrade) as error:
@@ -194,8 +160,24 @@ class GuardedProtocol(HttpToolsProtocol):
             raise malformed("The end of the request is not clear.")
         if framing.whole and not self._finishing:
             self._arrived()
-        elif self.cycle.response_complete and framing.content > MAX_BODY_SIZE:
+        elif head and self.waiting_since is not None:
+            self.deadline = self.waiting_since + PATIENCE
+        if not framing.whole and self.cycle.response_complete and framing.content > MAX_BODY_SIZE:
             self.finish()
+
+    def _check_head(self, head: bytes) -> None:
+        """Refuse a head that the parser would accept or fail on. Raises ProblemError."""
+        line = head.partition(b"\r\n")[0]
+        # The parser also accepts RTSP and ICE.
+        if not line.endswith((b" HTTP/1.0", b" HTTP/1.1")):
+            raise malformed("The request line does not end with HTTP/1.1.")
+        self._origin = origin_in(head)
+        hosts = len(_HOST.findall(head))
+        # RFC 9112, 3.2.
+        if hosts > 1 or not (hosts or line.endswith(b"0")):
+            raise malformed("A request names its host once, in a header Host.")
+        if _LONG_LENGTH.search(head):
+            raise malformed("The Content-Length has more than 19 digits.")
 
     def _length(self) -> int | None:
         """How long the body is by the head, which the parser has found right."""
@@ -218,16 +200,16 @@ class GuardedProtocol(HttpToolsProtocol):
             self.waiting_since = None
             self.deadline = float("inf")
 
-    def _wait(self) -> None:
-        """From now on, this process waits for the client."""
+    def _wait(self, patience: float) -> None:
+        """Wait for the client from now on, for so many seconds at most."""
         self.waiting_since = self.loop.time()
-        self.deadline = self.waiting_since + PATIENCE
+        self.deadline = self.waiting_since + patience
 
     def _go_on(self) -> None:
         """Turn to the next request of this connection."""
         self._complete = False
         self._framing.start_next()
-        self._wait()
+        self._wait(HEAD_PATIENCE if self._framing.begun else PATIENCE)
         if self._stopping or self._ended:
             self.finish()
             return
@@ -279,7 +261,7 @@ class GuardedProtocol(HttpToolsProtocol):
         super().pause_writing()
         self._unread = self._raw.get_write_buffer_size()
         if self.waiting_since is None:
-            self._wait()
+            self._wait(PATIENCE)
         self._note_held()
 
     def resume_writing(self) -> None:

@@ -4,10 +4,11 @@ import contextlib
 import socket
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
-from tests.server.impatient import PATIENCE
+from tests.server.impatient import HEAD_PATIENCE, PATIENCE
 from tests.server.raw import HEALTH, HOST, TEXT, Service, answers, preview, received, service, until
 from tests.server.watching.test_metrics import asked, value
 
@@ -199,12 +200,35 @@ def test_a_body_that_drips_is_given_up_all_the_same(impatient: Service) -> None:
     assert time.monotonic() - began >= PATIENCE * 0.9
 
 
-@pytest.mark.parametrize("sent", [b"", HEALTH], ids=["nothing", "an answered request"])
-def test_an_idle_connection_is_closed_without_a_word(impatient: Service, sent: bytes) -> None:
+@pytest.mark.parametrize(
+    ("sent", "patience"),
+    [(b"", HEAD_PATIENCE), (HEALTH, PATIENCE)],
+    ids=["nothing", "an answered request"],
+)
+def test_an_idle_connection_is_closed_without_a_word(
+    impatient: Service, sent: bytes, patience: float
+) -> None:
     with impatient.connect(sent) as connection:
         seconds, said = seconds_until_closed(connection)
-    assert seconds >= PATIENCE * 0.9
+    assert seconds >= patience * 0.9
     assert said.count(b"HTTP/1.1") == (1 if sent else 0)
+
+
+def test_a_head_has_less_time_than_a_body(tmp_path: Path) -> None:
+    head = b"GET /healthz HTTP/1.1\r\n"
+    with (
+        service(tmp_path, module="tests.server.impatient", PATIENCE="600") as running,
+        running.connect(preview()[:-5]) as body,
+        running.connect(b"") as silent,
+        running.connect(head) as first_head,
+        running.connect(HEALTH + head) as second_head,
+    ):
+        assert received(silent) == b""
+        assert b"HTTP/1.1 408 " in received(first_head)
+        assert b"HTTP/1.1 408 " in received(second_head)
+        body.settimeout(0.1)
+        with pytest.raises(TimeoutError):
+            body.recv(100)
 
 
 def test_empty_lines_keep_no_connection(impatient: Service) -> None:

@@ -1,0 +1,38 @@
+"""Flow of bytes: when a connection reads, and how it closes."""
+
+import asyncio
+from typing import Any
+
+from uvicorn.protocols.http.flow_control import FlowControl
+
+
+class LingeringTransport:
+    """A transport whose ``close`` lets the client read the last answer first."""
+
+    def __init__(self, transport: asyncio.Transport, finish: Any) -> None:
+        self._transport = transport
+        self.close = finish
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._transport, name)
+
+
+class Valve(FlowControl):
+    """Flow control that uvicorn cannot reopen while the next request has to wait."""
+
+    shut = False
+
+    def resume_reading(self) -> None:
+        """Read on, unless the next request has to wait."""
+        if not self.shut:
+            super().resume_reading()
+
+    def hold(self) -> None:
+        """Read nothing until ``release``."""
+        self.shut = True
+        self.pause_reading()
+
+    def release(self) -> None:
+        """Read on."""
+        self.shut = False
+        self.resume_reading()

@@ -1,0 +1,126 @@
+"""The server stands on parts of uvicorn that no contract protects: each is named here and checked.
+
+If one changes in a new version, this test names it, before a client meets it.
+"""
+
+import ast
+import asyncio
+import inspect
+import textwrap
+from collections.abc import Iterator
+from functools import cache
+from typing import Any
+
+import uvicorn
+from uvicorn.protocols.http.flow_control import FlowControl
+from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol, RequestResponseCycle
+from uvicorn.server import ServerState
+
+from service.server.connections.flow import Valve
+from service.server.connections.guarded_state import GuardedState
+from service.server.connections.protocol import GuardedProtocol
+from service.server.processes.process import Server
+from tests.together import together
+
+# Of each class of uvicorn: its methods with their parameters, and the attributes of its instances.
+METHODS: dict[type, dict[str, list[str]]] = {
+    HttpToolsProtocol: {
+        "__init__": ["self", "config", "server_state", "app_state", "_loop"],
+        "connection_made": ["self", "transport"],
+        "connection_lost": ["self", "exc"],
+        "on_headers_complete": ["self"],
+        "on_message_complete": ["self"],
+        "on_response_complete": ["self"],
+        "pause_writing": ["self"],
+        "resume_writing": ["self"],
+        "shutdown": ["self"],
+    },
+    FlowControl: {
+        "__init__": ["self", "transport"],
+        "pause_reading": ["self"],
+        "resume_reading": ["self"],
+    },
+    uvicorn.Server: {
+        "__init__": ["self", "config"],
+        "capture_signals": ["self"],
+        "handle_exit": ["self", "sig", "frame"],
+        "on_tick": ["self", "counter"],
+        "startup": ["self", "sockets"],
+        "shutdown": ["self", "sockets"],
+    },
+}
+ATTRIBUTES: dict[type, set[str]] = {
+    HttpToolsProtocol: {
+        "access_log", "access_logger", "app", "client", "config", "cycle", "flow", "headers",
+        "loop", "parser", "scope", "server_state", "transport", "url",
+    },
+    FlowControl: {"write_paused"},
+    uvicorn.Server: {"config", "lifespan", "servers", "server_state", "should_exit"},
+    ServerState: {"connections", "tasks", "total_requests"},
+    RequestResponseCycle: {
+        "disconnected", "keep_alive", "message_event", "response_complete", "response_started",
+    },
+}  # fmt: skip
+
+
+def tree_of(of: type) -> ast.AST:
+    """The syntax tree of a class."""
+    return ast.parse(textwrap.dedent(inspect.getsource(of)))
+
+
+def set_on_self(of: type) -> set[str]:
+    """The attributes that a class gives its instances, or names in its body."""
+    found = set()
+    for node in ast.walk(tree_of(of)):
+        match node:
+            case ast.AnnAssign(target=ast.Name(id=name)):
+                found.add(name)
+            case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Store()):
+                found.add(name)
+            case _:
+                pass
+    return found
+
+
+def read_from(of: type, *owners: str) -> Iterator[str]:
+    """The names that a class reads from one of ``owners``: ``self.name``, ``self.cycle.name``."""
+    for node in ast.walk(tree_of(of)):
+        if isinstance(node, ast.Attribute) and ast.unparse(node.value) in owners:
+            yield node.attr
+
+
+@cache
+def own_names(of: type) -> set[str]:
+    """What a class of this project defines itself."""
+    return set(vars(of)) | (set_on_self(of) - ATTRIBUTES[of.__mro__[1]])
+
+
+@together("of", METHODS)
+def test_the_methods_are_there_with_their_parameters(of: type) -> None:
+    for name, parameters in METHODS[of].items():
+        assert list(inspect.signature(getattr(of, name)).parameters) == parameters, name
+
+
+@together("of", ATTRIBUTES)
+def test_the_attributes_are_there(of: type) -> None:
+    assert ATTRIBUTES[of] - set_on_self(of) == set()
+
+
+@together("of", [GuardedProtocol, Valve, Server])
+def test_nothing_else_of_uvicorn_is_used(of: type) -> None:
+    base = of.__mro__[1]
+    named = METHODS[base].keys() | ATTRIBUTES[base] | own_names(of)
+    assert set(read_from(of, "self", "super()")) - named == set()
+
+
+def test_nothing_else_of_a_cycle_or_of_the_state_is_used() -> None:
+    used = set(read_from(GuardedProtocol, "self.cycle", "cycle"))
+    assert used == ATTRIBUTES[RequestResponseCycle]
+    for of in (GuardedProtocol, Server):
+        used = set(read_from(of, "self.server_state"))
+        assert used <= ATTRIBUTES[ServerState] | set(vars(GuardedState)) | set_on_self(GuardedState)
+
+
+def test_a_cycle_s_event_wakes_the_application() -> None:
+    annotation: Any = inspect.signature(RequestResponseCycle.__init__).parameters["message_event"]
+    assert annotation.annotation in (asyncio.Event, "asyncio.Event")
