@@ -25,7 +25,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test thorough browser screenshots coverage lint format bench fuzz attack load worst campaign policies prints slips durability attempts clients wheel image lock clean
+.PHONY: help install run test thorough browser screenshots coverage lint format bench fuzz attack probe load worst campaign policies prints slips durability attempts clients wheel image lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
@@ -79,6 +79,9 @@ attack: $(dev) ## attack a real process; look for misread formulas; watch the me
 	$(python) -m tests.attack.misreadings
 	$(python) -m tests.attack.memory --count "$(COUNT)"
 	$(python) -m tests.attack.memory --count 10000 --http
+
+probe: $(dev) ## count the seconds until this server, and others, close seven slow clients (network)
+	$(python) -m tests.server.probe
 
 load: $(dev) ## 200 clients for SECONDS= (60), graded and recorded, on SQLite and on two replicas over PostgreSQL
 	$(python) -m tests.load --seconds "$(SECONDS)"
