@@ -209,7 +209,8 @@ class GuardedProtocol(HttpToolsProtocol):
         """Turn to the next request of this connection."""
         self._complete = False
         self._framing.start_next()
-        self._wait(HEAD_PATIENCE if self._framing.begun else PATIENCE)
+        head_has_begun = self._framing.begun and not self.flow.write_paused
+        self._wait(HEAD_PATIENCE if head_has_begun else PATIENCE)
         if self._stopping or self._ended:
             self.finish()
             return
