@@ -25,7 +25,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test thorough browser screenshots coverage lint format bench fuzz attack probe load worst campaign policies prints slips durability attempts clients wheel image lock clean
+.PHONY: help install run test thorough browser screenshots coverage lint format bench fuzz attack probe load worst campaign rows policies prints slips durability attempts clients wheel image lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
@@ -94,6 +94,10 @@ worst: $(dev) ## search for the costliest request for MINUTES= (10), and say whe
 
 campaign: $(dev) ## grade tables in random frames, TABLES= of each robot and convention (SEED=)
 	$(python) -m tests.frame_choice --tables "$(TABLES)" --seed "$(SEED)"
+
+rows: $(dev) ## grade tables with one wrong row; leave rows and cells of wrong tables empty (SEED=)
+	$(python) -m tests.frame_choice.one_row --tables 5000 --seed "$(SEED)"
+	$(python) -m tests.frame_choice.blanking --tries 20000 --seed "$(SEED)"
 
 policies: $(dev) ## grade tables of ROBOTS= unseen robots under each policy, 20 draws each (SEED=)
 	$(python) -m tests.frame_choice.by_policy --robots "$(ROBOTS)" --seed "$(SEED)"

@@ -51,12 +51,19 @@ class _UnreachableError(Exception):
 
 
 def reassignment(
-    robot: Robot, policy: Policy, convention: str, rng: np.random.Generator
+    robot: Robot,
+    policy: Policy,
+    convention: str,
+    rng: np.random.Generator,
+    boldness: float | None = None,
 ) -> tuple[Table, int]:
-    """A random valid table, and how many draws could not be written down before it came out."""
+    """A random valid table, and how many draws could not be written down before it came out.
+
+    ``boldness`` is how often it departs from the reference's frames, drawn where it is None.
+    """
     for failed in range(200):
         try:
-            return _Reassignment(robot, policy, convention, rng).table(), failed
+            return _Reassignment(robot, policy, convention, rng, boldness).table(), failed
         except (NotExpressibleError, _UnreachableError):
             continue
     raise RuntimeError(f"no table of {robot.name} can be drawn")
@@ -64,10 +71,15 @@ def reassignment(
 
 class _Reassignment:
     def __init__(
-        self, robot: Robot, policy: Policy, convention: str, rng: np.random.Generator
+        self,
+        robot: Robot,
+        policy: Policy,
+        convention: str,
+        rng: np.random.Generator,
+        boldness: float | None,
     ) -> None:
         self.robot, self.policy, self.convention, self.rng = robot, policy, convention, rng
-        self.boldness = rng.choice(BOLDNESS)
+        self.boldness = rng.choice(BOLDNESS) if boldness is None else boldness
         self.letters = {name: rng.uniform(*robot.range(name), K) for name in robot.lengths}
         self.roots: list[Term] = []
         self.arcs: list[Term] = []

@@ -1,0 +1,40 @@
+"""The robots of the shipped exercises that ask for a table, in the form of these tests."""
+
+import re
+from functools import cache
+
+from service.catalogue import Exercise
+from tests.frame_choice.robots import Robot, TextRow
+from tests.shipped import shipped_exercises
+
+_DEGREES = re.compile(r"(\d+(?:\.\d+)?)\s*deg")
+
+
+@cache
+def shipped_robots() -> tuple[Robot, ...]:
+    """The robots, each once: several exercises may ask for the same one."""
+    found: dict[tuple[str, tuple[TextRow, ...]], Robot] = {}
+    for exercise in shipped_exercises().values():
+        if any(part.kind == "dh_table" for part in exercise.parts):
+            robot = _robot(exercise)
+            found.setdefault((robot.structure + robot.convention, robot.rows), robot)
+    return tuple(found.values())
+
+
+def _robot(exercise: Exercise) -> Robot:
+    robot = exercise.robot
+    rows = []
+    for row in robot.tables[robot.convention].rows:
+        a, alpha, d, theta = (_DEGREES.sub(r"(\1*pi/180)", cell.source) for cell in row)
+        rows.append((a, alpha, d, theta))
+    lengths = [each for each in exercise.variables if each.joint is None]
+    return Robot(
+        exercise.id,
+        robot.structure,
+        robot.convention.value,
+        tuple(joint.variable for joint in robot.joints),
+        tuple(rows),
+        tuple(each.name for each in lengths),
+        robot.joints[0].index,
+        {each.name: (each.low, each.high) for each in lengths},
+    )
