@@ -160,7 +160,8 @@ def _graded(
     if read is None:
         return _Graded(part, unjudged_report(part, Verdict.MISSING), None)
     judged = kind.judge(part, read, grading)
-    if judged.stands_still:
+    # Missing cells alone do not say that no joint moves.
+    if judged.stands_still and judged.is_wrong:
         messages = grading.messages((STANDS_STILL,))
         # Who let no joint move has chosen no frames.
         others = (each for each in judged.feedback if each.code != OWN_FRAME_CHOICE)

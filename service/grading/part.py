@@ -1,5 +1,6 @@
 """An answer kind: how answers of it are read and judged. One file of ``kinds`` holds each."""
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache, lru_cache
@@ -138,16 +139,16 @@ class Content:
     are. ``groups`` numbers the group of each cell: a wrong cell costs no more than its group has.
     With ``besides`` each group is worth a little besides its cells. With ``equal`` all groups are
     worth the same, however many cells they have. ``most`` is the number of cells that
-    count, where a student's own choices may have added others. ``moving`` are the cells that hold a
-    joint variable in the lazy answer: to leave one empty is to say that the joint stands still.
+    count, where a student's own choices may have added others. With ``empty_is_wrong`` an empty
+    cell costs what a wrong one does, so that nobody gains by leaving a cell empty.
     """
 
     known: tuple[tuple[bool, ...], ...]
     groups: tuple[tuple[int, ...], ...]
-    moving: tuple[tuple[bool, ...], ...] | None = None
     besides: bool = False
     equal: bool = False
     most: int | None = None
+    empty_is_wrong: bool = False
 
     @property
     def count(self) -> int:
@@ -164,7 +165,8 @@ class Judged:
     slip of the whole answer costs, where one explains all its wrong cells; or all but those that
     are wrong in ``beside``, the same answer without that slip. ``stands_still`` says
     that no joint moves an answer that must move. ``at_most`` is the same answer judged
-    without what must not help: it earns no more than that. ``chain`` gives the answer as a chain,
+    without what must not help: it earns no more than that. ``lost`` are the units of content that
+    are lost at most, whatever cells are blamed. ``chain`` gives the answer as a chain,
     if it is one; it is asked only where another part follows this one.
     """
 
@@ -176,6 +178,7 @@ class Judged:
     beside: "Judged | None" = None
     stands_still: bool = False
     at_most: "Judged | None" = None
+    lost: float = math.inf
     chain: Callable[[], StudentChain | None] = _no_chain
 
     @property

@@ -35,10 +35,9 @@ def check(slip: Slip, exercise: Exercise) -> None:
 
     label, column = slip.robot.labels[slip.row], COLUMNS[slip.column]
     assert not_correct(report) == {(label, column): slip.verdict}, slip
-    wrong = slip.verdict is Verdict.INCORRECT or is_known(slip.robot, slip.row, slip.column)
-    # Who leaves out the joint variable says that the joint stands still.
-    variable = slip.robot.rows[slip.row][slip.column].endswith("*")
-    wrong = wrong or (variable and slip.verdict is Verdict.MISSING)
+    # An empty cell costs what a wrong one does, an unreadable one only what it is worth.
+    wrong = slip.verdict is not Verdict.UNREADABLE
+    wrong = wrong or is_known(slip.robot, slip.row, slip.column)
     expected = points(slip.robot, report.max_points, [slip.row] * wrong, [slip.row] * (not wrong))
     assert report.verdict is Verdict.PARTIAL, slip
     assert [row.points for row in report.rows] == about(expected), slip

@@ -33,17 +33,11 @@ def known_cells(
     return np.asarray(error > SAME_CONTENT * np.asarray(scale))
 
 
-def of_rows(
-    known: KnownCells, most: int | None = None, moving: KnownCells | None = None
-) -> Content:
-    """The content of rows ``(rows, cells)`` that are worth something each: tables and screws.
-
-    ``moving`` are the cells that hold a joint variable in the lazy answer.
-    """
+def of_rows(known: KnownCells, most: int | None = None, *, empty_is_wrong: bool = False) -> Content:
+    """The content of rows ``(rows, cells)`` that are worth something each: tables and screws."""
     rows = _rows(known)
     groups = tuple((i,) * len(row) for i, row in enumerate(rows))
-    holds = None if moving is None else _rows(moving)
-    return Content(rows, groups, besides=True, most=most, moving=holds)
+    return Content(rows, groups, besides=True, most=most, empty_is_wrong=empty_is_wrong)
 
 
 def of_one_row(known: KnownCells) -> Content:

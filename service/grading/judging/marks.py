@@ -3,6 +3,7 @@
 ``docs/marks.md`` explains the rules to students and tutors, with an example.
 """
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -105,7 +106,14 @@ def shares_of(judged: Judged, marking: Marking) -> Shares:
         return _of_right(judged.content, marking)
     verdicts = [[cell.verdict for cell in row.cells] for row in judged.rows]
     shares, slip_cost = _SHARES[marking](judged.content, verdicts)
-    total = sum(shares.earned) - slip_cost * judged.slips
+    total = sum(shares.earned)
+    if marking == "content" and math.isfinite(judged.lost):
+        # Another reading of the answer may lose less than the likeliest one, whose cells are wrong.
+        # For each row that is lost as a whole, it counts BESIDES; the row may be worth less.
+        rows = round(judged.lost / BESIDES) % round(1 / BESIDES)
+        lost = judged.lost - rows * (BESIDES - _besides(judged.content))
+        total = max(total, 1 - slip_cost * lost)
+    total -= slip_cost * judged.slips
     if judged.whole_cost is not None and marking != "whole":
         most = 1.0 if judged.beside is None else sum(shares_of(judged.beside, marking).earned)
         total = max(total, most - judged.whole_cost)
@@ -151,7 +159,7 @@ class _Group:
     """The worth of a group's cells in each row, the wrong ones, and the rows with unread ones.
 
     A cell that was not read costs itself: a unit where one has to know something for it. The others
-    of a row cost a fifth together; but a unit where the joint variable was left out.
+    of a row cost a fifth together. An empty cell of a table costs what a wrong one does.
     """
 
     units: dict[int, float]
@@ -180,25 +188,34 @@ class _Group:
 
 def _groups_of(content: Content, verdicts: _Verdicts) -> list[_Group]:
     groups: dict[int, _Group] = {}
-    owed = content.known if content.moving is None else content.moving
-    rows = zip(content.known, owed, content.groups, verdicts, strict=True)
+    rows = zip(content.known, content.groups, verdicts, strict=True)
     for i, cells in enumerate(rows):
-        for known, is_owed, number, verdict in zip(*cells, strict=True):
+        for known, number, verdict in zip(*cells, strict=True):
             group = groups.setdefault(number, _Group({}, {}, set()))
             group.units[i] = group.units.get(i, 0.0) + known
             group.wrong.setdefault(i, 0)
-            unknown = known and verdict is not Verdict.CORRECT
-            if verdict is Verdict.INCORRECT or unknown or (is_owed and verdict is Verdict.MISSING):
+            if verdict is Verdict.CORRECT:
+                continue
+            is_wrong = verdict is Verdict.INCORRECT or (
+                content.empty_is_wrong and verdict is Verdict.MISSING
+            )
+            if known or is_wrong:
                 group.wrong[i] += 1
-            elif verdict is not Verdict.CORRECT:
+            else:
                 group.unread.add(i)
     if content.besides:
-        count = min(content.count, content.most or content.count)
-        besides = min(BESIDES, MOST_BESIDES * count / len(groups)) or BESIDES
+        besides = _besides(content)
         for group in groups.values():
             for row in group.units:
                 group.units[row] += besides / len(group.units)
     return list(groups.values())
+
+
+def _besides(content: Content) -> float:
+    """The worth of a group besides its cells that one has to know something for."""
+    groups = len({number for row in content.groups for number in row})
+    count = min(content.count, content.most or content.count)
+    return min(BESIDES, MOST_BESIDES * count / groups) or BESIDES
 
 
 def _by_cells(_content: Content, verdicts: _Verdicts) -> tuple[Shares, float]:

@@ -34,9 +34,10 @@ from service.grading.numerics.tolerances import (
 )
 from service.grading.part import Grading
 from service.grading.reading.tables.table import IS_ANGLE, StudentRow, values_of
+from service.grading.report import Verdict
 from service.kinematics.chain import COLUMNS, Table
 from service.kinematics.dh import Convention
-from service.kinematics.frames.frame_choice import NO_SUCH_CELL, WRONG_CELL, departure
+from service.kinematics.frames.frame_choice import NO_SUCH_CELL, ROW_COSTS, WRONG_CELL, departure
 from service.kinematics.transforms import Matrices, Numbers
 
 
@@ -61,7 +62,8 @@ class Judgement:
     ``matches`` is the Match of each cell, ``(rows, 4)``; a missing row matches nowhere. ``roles``
     are those of the handed-in rows, if the frames are the student's; ``departures`` is the cost of
     the frames, infinite where nobody can say which were intended. ``extra`` are the rows that stand
-    for nothing; ``reached`` says that the rows lead to the given tool frame.
+    for nothing; ``reached`` says that the rows lead to the given tool frame. ``lost`` are the
+    units that the wrong cells lose, in the frames in which they lose the fewest.
     """
 
     rows: tuple[JudgedRow, ...]
@@ -71,6 +73,7 @@ class Judgement:
     extra: tuple[int, ...] = ()
     findings: tuple[Finding, ...] = ()
     reached: bool = True
+    lost: float = np.inf
 
     @property
     def slips(self) -> int:
@@ -94,6 +97,16 @@ class Judgement:
             ]
         )
 
+    @cached_property
+    def empty(self) -> int:
+        """How many cells of the rows handed in are empty."""
+        return sum(
+            entry.verdict is Verdict.MISSING
+            for judged in self.rows
+            if judged.row is not None
+            for entry in judged.row.entries
+        )
+
     @property
     def wrong_as_read(self) -> int:
         """How many cells are not right, but for those that were not read."""
@@ -115,9 +128,10 @@ def judged_table(
             return judgement
     judgement = _judged_by_nearest(part, rows, convention, grading)
     # If most of a table is wrong, nobody can say which frames were intended; to judge it by the
-    # nearest table would reward cells that any number fits.
-    wrong = judgement.wrong_as_read
-    if wrong and wrong > np.count_nonzero(~judgement.unread) / 2:
+    # nearest table would reward cells that any number fits. An empty cell counts as a wrong one, so
+    # that nothing is gained by it.
+    wrong, empty = judgement.wrong_as_read, judgement.empty
+    if wrong and wrong + empty > (np.count_nonzero(~judgement.unread) + empty) / 2:
         return replace(_judged_by_reference(rows, reference, grading), departures=np.inf)
     return judgement
 
@@ -175,7 +189,8 @@ def _judged_by_nearest(
     judgement = _judged_by(nearest, roles, convention, grading)
     if not all(np.isfinite(row.values).all() for row in rows):
         return _judged_as_read(part, rows, judgement, convention, grading)
-    if nearest.cost - WRONG_CELL * judgement.wrong < NO_SUCH_CELL - WRONG_CELL / 2:
+    of_rows = ROW_COSTS[np.count_nonzero(judgement.matches < Match.ROUNDED, axis=1)].sum()
+    if nearest.cost - of_rows < NO_SUCH_CELL - WRONG_CELL / 2:
         return judgement
     # Nothing can be said of frames that do not lead to the tool.
     return replace(judgement, findings=(_UNREACHED,), reached=bool(judgement.wrong))
@@ -235,12 +250,19 @@ def _judged_by(
         cell_matches = np.full((len(judged), len(COLUMNS)), int(Match.EXACT))
     else:
         cell_matches = _matches_of(judged, grading)
+    findings = remarks_on(nearest.frames, convention, grading.exercise)
+    handed_in = [row.row is not None for row in judged]
+    if not all(handed_in) and (cell_matches[handed_in] < Match.ROUNDED).any():
+        # Beside a missing row, a wrong one may imply any frames.
+        findings = ()
     return Judgement(
         judged,
         cell_matches,
         roles,
         departures=0.0 if right else departures_of(nearest.frames, grading),
-        findings=remarks_on(nearest.frames, convention, grading.exercise),
+        findings=findings,
+        # The search allows for what rounding leaves, and may have found nothing wrong.
+        lost=nearest.lost or np.inf,
     )
 
 

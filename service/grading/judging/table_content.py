@@ -9,27 +9,22 @@ import numpy as np
 from service.catalogue import Exercise, Joint
 from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading.judging.content import KnownCells, known_cells, of_rows
-from service.grading.judging.own_frames.best_roles import roles_in
 from service.grading.judging.own_frames.nearest.nearest_table import nearest_for_roles
 from service.grading.judging.own_frames.reference import reference_values
 from service.grading.judging.own_frames.row_roles import (
     Role,
     freedom_of,
     joint_variables,
-    variable_column,
 )
 from service.grading.judging.table import Judgement, column_scales
 from service.grading.numerics.samples import SAMPLES, draw
 from service.grading.part import Content, Grading
 from service.grading.reading.entry import Reader
 from service.grading.reading.tables.table import (
-    COMPUTED,
     IS_ANGLE,
-    StudentRow,
-    StudentTable,
     computed_row,
 )
-from service.kinematics.chain import COLUMNS, Table
+from service.kinematics.chain import Table
 from service.kinematics.dh import Convention
 
 
@@ -39,12 +34,15 @@ def table_content(
     """The cells that differ from a lazy table's: 0, and the bare joint variable in its place."""
     exercise = grading.exercise
     task = _Task(exercise.version, part.id, convention, part, exercise)
+    # Unreadable cells alone do not make a unit dearer.
+    is_spoiled = part.frames == "free" and bool(judgement.wrong_as_read or judgement.empty)
     if not judgement.roles:
-        return _of_reference(task)
+        content = _of_reference(task)
+        return replace(content, most=_fewest(task)) if is_spoiled else content
     joints = [judged.joint for judged in judgement.rows]
     expected = np.array([judged.expected for judged in judgement.rows])
     known = _differs_from_lazy(expected, joints, grading)
-    return of_rows(known, _fewest(task), _moving(joints)) if judgement.wrong else of_rows(known)
+    return of_rows(known, _fewest(task) if is_spoiled else None, empty_is_wrong=True)
 
 
 def _differs_from_lazy(
@@ -75,13 +73,7 @@ def _of_reference(task: _Task) -> Content:
     grading = _own_grading(task.exercise)
     table = reference_values(task.exercise.robot.tables[task.convention], grading.samples)
     joints = _joints_of_rows(task)
-    return of_rows(_differs_from_lazy(table, joints, grading), moving=_moving(joints))
-
-
-def _moving(joints: Sequence[Joint | None]) -> KnownCells:
-    """The cells ``(rows, 4)`` of the joint variables."""
-    columns = [None if joint is None else variable_column(joint) for joint in joints]
-    return np.array([[j == column for j in range(len(COLUMNS))] for column in columns])
+    return of_rows(_differs_from_lazy(table, joints, grading), empty_is_wrong=True)
 
 
 def _own_grading(exercise: Exercise) -> Grading:
@@ -110,22 +102,3 @@ def _fewest(task: _Task) -> int:
     roles = tuple(Role(computed_row(row), joint) for row, joint in zip(lazy, joints, strict=True))
     nearest = nearest_for_roles(roles, task.convention, freedom_of(task.part), grading)
     return int(np.count_nonzero(_differs_from_lazy(nearest.expected, joints, grading)))
-
-
-def with_lazy_cells(answer: StudentTable, convention: Convention, grading: Grading) -> StudentTable:
-    """The table with the lazy entry in each cell that has no value."""
-    roles = roles_in(answer.rows, convention, grading, in_order=True)
-    lazy = joint_variables([role.joint for role in roles], grading.samples)[: len(answer.rows)]
-    unread = np.asarray(np.isnan(answer.values).any(axis=-1))
-    values = np.where(unread[..., None], lazy, answer.values)
-    rows = tuple(
-        StudentRow(
-            tuple(
-                COMPUTED if is_unread else entry
-                for entry, is_unread in zip(row.entries, unread[i].tolist(), strict=True)
-            ),
-            values[i],
-        )
-        for i, row in enumerate(answer.rows)
-    )
-    return replace(answer, rows=rows, values=values)

@@ -13,6 +13,7 @@ from service.grading.diagnosis.tables.table_explained import explained, freedom_
 from service.grading.feedback import Finding
 from service.grading.follow_through import stands_still
 from service.grading.judging.convention import judged_in_convention
+from service.grading.judging.marks import shares_of
 from service.grading.judging.own_frames.best_roles import (
     roles_in,
     rows_of_mechanism,
@@ -28,7 +29,8 @@ from service.grading.judging.report_rows import (
 )
 from service.grading.judging.row_places import row_places
 from service.grading.judging.table import JudgedRow, Judgement
-from service.grading.judging.table_content import table_content, with_lazy_cells
+from service.grading.judging.table_content import table_content
+from service.grading.judging.table_filled import as_still, with_lazy_cells, with_wrong_cells
 from service.grading.numerics.comparison import Match
 from service.grading.numerics.samples import Samples
 from service.grading.part import Grading, Judged, StudentChain
@@ -53,8 +55,8 @@ _QUANTITIES = tuple(QUANTITIES.values())
 _EXTRA_ROW = "extra_row"
 # The work of finding a freedom that the joints have lost, as the budget counts it.
 FREEDOM_WORK = 8.0
-# The work of judging a wrong table once: with given frames, with free ones (and more for each row),
-# and with a free base or tool or free directions too.
+# The work of judging a wrong table once: with given frames, with free ones (more for each row), and
+# with a free base or tool or free directions too.
 GIVEN_WORK, FREE_WORK, FREE_ROW_WORK, ALL_FREE_WORK = 18.0, 20.0, 4.0, 60.0
 # With so many wrong cells two misconceptions at once are looked for.
 WRONG_THROUGHOUT = 3
@@ -168,6 +170,7 @@ def _with_slip(
         feedback=(*grading.messages((intended.finding,), places), *without.feedback),
         whole_cost=COST,
         beside=without,
+        lost=judged.lost,
         chain=judged.chain,
     )
 
@@ -177,7 +180,7 @@ def _judged_as_read(part: DhTableSpec, answer: StudentTable, grading: Grading) -
 
     A wrong table earns no more than it would without the rows too many, for the points belong to
     the rows of the mechanism; and no more than with lazy entries in the cells that were not read,
-    for what they would have to be is not known.
+    for what they would have to be is not known, or with wrong ones in those that are empty.
     """
     convention, first, findings = judged_in_convention(part, answer, grading)
     judged = _judged(part, answer, convention, first, findings, grading)
@@ -190,9 +193,15 @@ def _judged_as_read(part: DhTableSpec, answer: StudentTable, grading: Grading) -
     unread = np.isnan(answer.values).any(axis=-1)
     # Where nothing was read, nothing is earned anyway.
     if unread.any() and not unread.all():
-        filled = with_lazy_cells(fixed, convention, grading)
         in_silence = replace(grading, explains=False)
-        return replace(judged, at_most=_judged_as_read(part, filled, in_silence))
+        filled = [with_lazy_cells(fixed, convention, grading)]
+        # Beside an empty cell, the search must not find more than beside a wrong one.
+        if judged.is_wrong and (wrong := with_wrong_cells(fixed, grading)):
+            grading.reader.budget.charge_search(_search_work(part, wrong, grading))
+            filled.append(wrong)
+        bounds = [_judged_as_read(part, table, in_silence) for table in filled]
+        at_most = min(bounds, key=lambda bound: sum(shares_of(bound, part.marking).earned))
+        return replace(judged, at_most=at_most)
     return judged
 
 
@@ -283,7 +292,8 @@ def _judged(
         (*messages, *missing, *extra, *row_messages),
         slips=judgement.slips,
         whole_cost=_cost_of(found) if found else None,
-        stands_still=judgement.wrong > 0 and stands_still(answer.values, _QUANTITIES, grading),
+        stands_still=judgement.wrong > 0 and stands_still(as_still(answer), _QUANTITIES, grading),
+        lost=first.lost,
         chain=lambda: _chain(answer, first, convention),
     )
 

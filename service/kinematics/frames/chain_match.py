@@ -65,12 +65,14 @@ class ChainMatch:
     """A valid table, and how its frames lie to the reference's.
 
     ``rows`` ``(rows, 4, L)`` is what each row should be; ``relative_poses`` ``(rows, L, 4, 4)`` are
-    those at each target; ``cost`` is how far the written table is from this one.
+    those at each target; ``cost`` is how far the written table is from this one, ``lost`` the units
+    of the marks that it loses (``frame_choice``).
     """
 
     rows: Numbers
     relative_poses: Matrices
     cost: float
+    lost: float = 0.0
 
     @property
     def joint_signs(self) -> list[int]:

@@ -2,9 +2,10 @@
 
 Denavit-Hartenberg tables are not unique (``chain_match`` says when two describe one mechanism). So
 the search goes from the base to the tool row by row, and at each row compares what was written with
-every value that it could have had under the choices of frames made so far. A wrong cell costs 1. A
-frame other than the reference's costs a little, so that an uncompensated shift is blamed where it
-was made and not where it surfaces. Only the cheapest hypotheses are kept (a beam search).
+every value that it could have had under the choices of frames made so far. A wrong cell costs 1,
+each further one in the same row of the table less: a row that is wrong altogether is blamed on
+itself. A frame other than the reference's costs a little, so that an uncompensated shift is blamed
+where it was made and not where it surfaces. Only the cheapest hypotheses are kept (a beam search).
 
 Shapes: H hypotheses, N ways to continue them, L samples; a row is ``(4, L)`` in the column order
 a, α, d, θ; angles in radians. A relative pose is the pose of the writer's frame as seen from the
@@ -39,6 +40,15 @@ MAX_COST_BEHIND = 2.5
 # What a hypothesis costs. A cell that the table has no room for cannot be blamed on a slip, so that
 # a hypothesis which needs it is a last resort.
 WRONG_CELL = 1.0
+# The cost of 0 to 4 wrong cells in one row of the table: less than in several rows.
+ROW_COSTS = WRONG_CELL * np.array([0.0, 1.0, 1.9, 2.7, 3.4])
+# SPARING hypotheses are kept because they lose few marks: a row loses 1 for each wrong cell, but
+# for several cells at most BESIDES and 1 for each cell that is not 0.
+BESIDES = 0.2
+NOT_ZERO = 1e-9
+SPARING = 4
+# If two of them lose the same, the cheaper one is kept.
+SAME_LOSS = 1e-3
 NO_SUCH_CELL = 3.0
 UNREACHABLE = 3.0
 TURNED_OVER = 0.010
@@ -51,11 +61,48 @@ _Path = tuple[tuple[Numbers, Matrices], ...]
 
 @dataclass(frozen=True, slots=True)
 class _Beam:
-    """H hypotheses: relative poses ``(H, L, 4, 4)``, costs ``(H,)`` and the paths to them."""
+    """H hypotheses: relative poses ``(H, L, 4, 4)``, costs ``(H,)`` and the paths to them.
+
+    ``lost`` ``(H,)`` are the units of the marks that they lose. ``begun`` counts
+    the cells of a row of the table that is not yet complete.
+    """
 
     pose: Matrices
     cost: Numbers
+    lost: Numbers
     paths: list[_Path]
+    begun: "_RowCounts"
+
+
+@dataclass(frozen=True, slots=True)
+class _RowCounts:
+    """How many cells ``(N,)`` of a row of the table are wrong, were not read, and are not 0."""
+
+    wrong: NDArray[np.int_]
+    unread: NDArray[np.int_]
+    known: NDArray[np.int_]
+
+    @classmethod
+    def none(cls, count: int) -> "_RowCounts":
+        zeros = np.zeros(count, np.int_)
+        return cls(zeros, zeros, zeros)
+
+    @property
+    def cost(self) -> Numbers:
+        return np.asarray(ROW_COSTS[self.wrong])
+
+    @property
+    def lost(self) -> Numbers:
+        count = self.wrong + self.unread
+        return np.where(count > 1, np.minimum(BESIDES + self.known, count), count)
+
+    def at(self, which: NDArray[np.int_]) -> "_RowCounts":
+        return _RowCounts(self.wrong[which], self.unread[which], self.known[which])
+
+    def __add__(self, other: "_RowCounts") -> "_RowCounts":
+        return _RowCounts(
+            self.wrong + other.wrong, self.unread + other.unread, self.known + other.known
+        )
 
 
 def nearest_table(
@@ -66,8 +113,11 @@ def nearest_table(
     base_given: bool = True,
     directions_given: bool = True,
     start: Matrices | None = None,
+    z_ends_rows: bool = False,
 ) -> ChainMatch:
     """The valid table nearest to the written ``rows``, the i-th of which leads to the i-th target.
+
+    ``z_ends_rows`` says that a row of the table has its X before its Z.
 
     ``base_given`` says that it is known where frame 0 lies: at ``start`` ``(L, 4, 4)`` in the
     reference's, or there. ``directions_given`` says that each joint's positive sense is known, so
@@ -76,18 +126,19 @@ def nearest_table(
     samples = rows[0].written.shape[-1]
     if base_given:
         pose = identity((samples,)) if start is None else start
-        beam, freedom = _Beam(pose[None], np.zeros(1), [()]), BaseFreedom()
+        none = np.zeros(1)
+        beam, freedom = _Beam(pose[None], none, none, [()], _RowCounts.none(1)), BaseFreedom()
         remaining = list(zip(rows, targets, strict=True))
     else:
         beam, freedom = _from_free_base(rows[0], targets[0])
         remaining = list(zip(rows[1:], targets[1:], strict=True))
     for row, target in remaining:
-        beam = _next_beam(beam, row, target, length_scale, directions_given, freedom)
+        beam = _next_beam(beam, row, target, length_scale, directions_given, freedom, z_ends_rows)
         if target.reference is not None and target.rebases and not freedom.is_used_up:
             freedom = freedom.at_next(target.reference, target.kind, length_scale)
     best = int(np.argmin(beam.cost))
     valid_rows, poses = map(np.array, zip(*beam.paths[best], strict=True))
-    return ChainMatch(valid_rows, poses, float(beam.cost[best]))
+    return ChainMatch(valid_rows, poses, float(beam.cost[best]), float(beam.lost.min()))
 
 
 def _from_free_base(first: RowConstants, target: Target) -> tuple[_Beam, BaseFreedom]:
@@ -95,7 +146,8 @@ def _from_free_base(first: RowConstants, target: Target) -> tuple[_Beam, BaseFre
     samples = first.written.shape[-1]
     poses = np.stack([identity((samples,)), rot_x(np.full(samples, np.pi))])
     row = np.nan_to_num(first.written)
-    beam = _Beam(poses, np.array([0.0, TURNED_OVER]), [((row, pose),) for pose in poses])
+    paths: list[_Path] = [((row, pose),) for pose in poses]
+    beam = _Beam(poses, np.array([0.0, TURNED_OVER]), np.zeros(2), paths, _RowCounts.none(2))
     return beam, BaseFreedom.on_first_axis(target.kind is TargetKind.PRISMATIC, samples)
 
 
@@ -106,6 +158,7 @@ def _next_beam(
     length_scale: float,
     directions_given: bool,
     freedom: BaseFreedom,
+    z_ends_rows: bool,
 ) -> _Beam:
     """The cheapest hypotheses one row further on."""
     parents, rows, distance, unreachable = _continuations(beam, row, target, length_scale, freedom)
@@ -114,11 +167,24 @@ def _next_beam(
     if row.variable is not None and directions_given:
         wrong[:, row.variable] |= row.joint_sign * joint_signs_of(beam.pose)[parents] < 0
     wrong |= row.wrong_regardless
-    cost = beam.cost[parents] + WRONG_CELL * (wrong & row.is_gradable).sum(axis=1)
-    cost += NO_SUCH_CELL * (wrong & row.absent).sum(axis=1) + UNREACHABLE * unreachable
-    kept = np.argsort(cost, kind="stable")[:MAX_CONTINUATIONS]
-    kept = kept[cost[kept] <= cost[kept[0]] + MAX_COST_BEHIND]
-    parents, expected, cost = parents[kept], expected[kept], cost[kept]
+    of_x, of_z = _counts(wrong, expected, row, length_scale)
+    before = beam.begun.at(parents)
+    if z_ends_rows:
+        rows_done = [(before + of_z, 1), (before, -1), (of_x, 1)]
+        begun = of_x
+    else:
+        rows_done = [(of_z + of_x, 1)]
+        begun = _RowCounts.none(len(parents))
+    cost = beam.cost[parents] + sum(sign * each.cost for each, sign in rows_done)
+    lost = beam.lost[parents] + sum(sign * each.lost for each, sign in rows_done)
+    last_resort = NO_SUCH_CELL * (wrong & row.absent).sum(axis=1) + UNREACHABLE * unreachable
+    cost, lost = cost + last_resort, lost + last_resort
+    order = np.argsort(cost, kind="stable")[:MAX_CONTINUATIONS]
+    order = order[cost[order] <= cost[order[0]] + MAX_COST_BEHIND]
+    by_loss = np.argsort(lost + SAME_LOSS * cost, kind="stable")[: 2 * SPARING]
+    kept = _with_others(order, by_loss)
+    parents, expected, begun = parents[kept], expected[kept], begun.at(kept)
+    cost, lost = cost[kept], lost[kept]
     start = _slid(beam.pose[parents], freedom, distance[kept])
     pose = start @ standard_link(*rows[kept].swapaxes(0, 1))
     if target.reference is not None:
@@ -128,9 +194,31 @@ def _next_beam(
             if freedom.anywhere:
                 pose[..., :3, 3] = 0.0
         cost = cost + departure(relative, length_scale)
-    kept = _distinct(pose, cost, length_scale)
+    sparing = _distinct(pose, lost + SAME_LOSS * cost, length_scale)[:SPARING]
+    kept = _with_others(_distinct(pose, cost, length_scale), sparing)
     paths = [(*beam.paths[parents[i]], (expected[i], pose[i])) for i in kept]
-    return _Beam(pose[kept], cost[kept], paths)
+    return _Beam(pose[kept], cost[kept], lost[kept], paths, begun.at(kept))
+
+
+def _with_others(chosen: NDArray[np.int_], others: NDArray[np.int_]) -> NDArray[np.int_]:
+    """Return the chosen numbers, then the others that are not among them."""
+    is_new = (others[:, None] != chosen).all(axis=1)
+    return np.concatenate([chosen, others[is_new]])
+
+
+def _counts(
+    wrong: NDArray[np.bool_], expected: Numbers, row: RowConstants, length_scale: float
+) -> tuple[_RowCounts, _RowCounts]:
+    """Return the counts of the X and of the Z of each of N rows."""
+    of_first = expected[..., 0] / np.array([length_scale, 1.0, length_scale, 1.0])
+    of_first[:, [ALPHA, THETA]] = np.sin(of_first[:, [ALPHA, THETA]] / 2)
+    # A constant beside a wrong joint variable does not count.
+    known = (np.abs(of_first) > NOT_ZERO) & ~row.wrong_regardless
+    unread = np.broadcast_to(~(row.is_gradable | row.absent), wrong.shape)
+    counts = [wrong & row.is_gradable, unread, known]
+    halves = [each.reshape(-1, 2, 2).sum(axis=2) for each in counts]
+    of_x, of_z = (_RowCounts(*(half[:, part] for half in halves)) for part in (0, 1))
+    return of_x, of_z
 
 
 def _continuations(

@@ -1,17 +1,18 @@
-"""The valid table that a handed-in one is, or that it differs from in one cell or two.
+"""The valid table that a handed-in one is, or that it differs from in one cell, two, or one row.
 
 Where base, tool and directions are given, a table is valid if and only if its pose is the
 reference's at all joint values, and every cell moves as its own joint does and not otherwise. So no
-search is needed: the right value of a cell follows from all the others.
+search is needed: the right value of a cell, or of a whole row, follows from all the others.
 """
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Container, Iterable, Sequence
+from dataclasses import dataclass, replace
 from itertools import chain
 
 import numpy as np
 
 from service.grading.judging.own_frames.nearest.slip_likelihood import slip_penalty
+from service.grading.judging.own_frames.nearest.units_lost import units_lost
 from service.grading.judging.own_frames.reference import reference_frames
 from service.grading.judging.own_frames.row_roles import Role, handed_in_values, variables_of
 from service.grading.numerics.comparison import difference
@@ -30,6 +31,7 @@ from service.kinematics.repairs.cell_repairs import (
     repaired_values,
     two_factor_repairs,
 )
+from service.kinematics.repairs.row_repairs import one_row_repairs, repaired_row
 from service.kinematics.tolerances import SAME_POSE
 from service.kinematics.transforms import Matrices, Numbers, inverse
 
@@ -38,6 +40,11 @@ from service.kinematics.transforms import Matrices, Numbers, inverse
 SUBSET = 3
 SUBSET_SAMPLES = np.r_[:SUBSET, HALF : HALF + SUBSET]
 MAX_CELLS = 2
+# How much less two wrong cells of one row cost than two of several rows, if the frames are the
+# reference's own.
+IN_ONE_ROW = 0.3
+# The cost of a repair in unread cells alone: the table may be right.
+UNREAD = WRONG_CELL / 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,12 +53,15 @@ class NearestTable:
 
     ``frames`` ``(joints, samples, 4, 4)`` are its frames on the joint axes as seen from the
     reference's. ``cost`` is that of ``frame_choice``: below 1 the handed-in table is valid.
+    ``lost`` are the units of the marks that the wrong cells lose, compared with the valid table for
+    which these are the fewest, which need not be this one; infinite if unknown.
     """
 
     roles: tuple[Role, ...]
     expected: Table
     frames: Matrices
     cost: float
+    lost: float = np.inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,21 +97,24 @@ class _Case:
 def nearest_by_few_cells(
     roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> NearestTable | None:
-    """The table as written, or the valid one that differs from it in one cell or else in two.
+    """The table as written, or the valid one that differs from it in one cell, or in two or a row.
 
     Of several the one that takes the likeliest slip; None if there is none. Every role must have a
     row.
     """
     case = _case(roles, convention, grading)
-    if len(case.wrong) > MAX_CELLS:
+    if len(case.wrong) > MAX_CELLS and len({row for row, _ in case.wrong}) > 1:
         return None
     if not case.wrong:
         reached = frames(case.table, convention)
         if np.abs(_in_unit(reached[-1] - case.reference[-1], case.unit)).max() < SAME_POSE:
             on_axes = case.from_reference(reached[:, None, SUBSET_SAMPLES])
             return NearestTable(roles, case.table, on_axes[:, 0], 0.0)
-    repairs = _repairs(case)
-    return _likeliest(repairs, case) if repairs else None
+    repairs, dearer = _repairs(case)
+    nearest = _likeliest(repairs, case) if repairs else None
+    if nearest is None:
+        return None
+    return replace(nearest, lost=min(_lost(repair, case) for repair in [*repairs, *dearer]))
 
 
 def frames_from_reference(
@@ -138,23 +151,30 @@ def _case(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> 
     return _Case(roles, table, variables, wrong, convention, grading)
 
 
-def _repairs(case: _Case) -> list[CellRepair]:
-    """The repairs of the table by one cell; if there are none, those by two."""
+def _repairs(case: _Case) -> tuple[list[CellRepair], list[CellRepair]]:
+    """The repairs of the table by one cell; if there are none, those by two or by one row.
+
+    And others, which change more cells but may lose fewer marks.
+    """
     factors = factors_of(case.table[..., SUBSET_SAMPLES], case.convention, case.unit)
     pose = _in_unit(case.reference[-1, SUBSET_SAMPLES], case.unit)
     by_factor = one_factor_repairs(factors, pose)
-    by_one_cell = _admissible(by_factor, 1, case)
+    by_one_cell = _admissible(by_factor, [1], case)
+    by_row = _admissible(one_row_repairs(factors, pose, case.wrong), range(1, 5), case)
     if by_one_cell:
-        return by_one_cell
-    return _admissible(chain(by_factor, two_factor_repairs(factors, pose)), MAX_CELLS, case)
+        return by_one_cell, by_row
+    by_two_cells = _admissible(chain(by_factor, two_factor_repairs(factors, pose)), [2], case)
+    return [*by_two_cells, *(each for each in by_row if len(each.cells) > MAX_CELLS)], []
 
 
-def _admissible(repairs: Iterable[CellRepair], count: int, case: _Case) -> list[CellRepair]:
-    """The repairs of so many cells after which all cells move with the joints as they should.
+def _admissible(
+    repairs: Iterable[CellRepair], counts: Container[int], case: _Case
+) -> list[CellRepair]:
+    """Return the repairs of ``counts`` cells that leave every cell depending rightly on the joints.
 
     Their lengths are in the table's unit.
     """
-    of_count = (_in_table_unit(repair, case) for repair in repairs if len(repair.cells) == count)
+    of_count = (_in_table_unit(repair, case) for repair in repairs if len(repair.cells) in counts)
     return [
         repair
         for repair in of_count
@@ -162,23 +182,28 @@ def _admissible(repairs: Iterable[CellRepair], count: int, case: _Case) -> list[
     ]
 
 
+def _in_one_row(repair: CellRepair) -> bool:
+    return len({row for row, _ in repair.cells}) == 1
+
+
 def _likeliest(repairs: Sequence[CellRepair], case: _Case) -> NearestTable | None:
     """The table repaired, by the repair that takes the likeliest slip.
 
-    Frames near the reference's come first, and the search ends where the frames alone cost more
-    than the best repair so far.
+    It takes few cells: errors in one row cost less than as many in several. Then frames near the
+    reference's come first, and the search ends where the frames alone cost more than the best
+    repair so far.
     """
     tables = np.repeat(case.table[:, :, None, SUBSET_SAMPLES], len(repairs), axis=2)
     for k, repair in enumerate(repairs):
         _fill(tables[:, :, k], repair)
     on_axes = case.from_reference(frames(tables, case.convention))
     departures = departure(on_axes.reshape(-1, *on_axes.shape[2:]), case.unit)
-    departures = departures.reshape(on_axes.shape[:2]).sum(axis=0)
+    costs = departures.reshape(on_axes.shape[:2]).sum(axis=0)
+    costs += [_base_cost(*each, case) for each in zip(repairs, costs.tolist(), strict=True)]
     factors = factors_of(case.table, case.convention, case.unit)
     best = None
-    for k in np.argsort(departures, kind="stable").tolist():
-        cells = repairs[k].cells
-        cost = WRONG_CELL * len(cells) + float(departures[k])
+    for k in np.argsort(costs, kind="stable").tolist():
+        cells, cost = repairs[k].cells, float(costs[k])
         if best is not None and cost >= best.cost:
             break
         table = _repaired(cells, factors, case)
@@ -189,6 +214,28 @@ def _likeliest(repairs: Sequence[CellRepair], case: _Case) -> NearestTable | Non
         if best is None or cost < best.cost:
             best = NearestTable(case.roles, table, on_axes[:, k], cost)
     return best
+
+
+def _lost(repair: CellRepair, case: _Case) -> float:
+    """Return the units of the marks that the cells of a repair lose."""
+    if len(repair.cells) == 1:
+        return WRONG_CELL
+    repaired = case.table[..., SUBSET_SAMPLES].copy()
+    _fill(repaired, repair)
+    wrong = np.zeros(repaired.shape[:2], np.bool_)
+    wrong[tuple(np.array(repair.cells).T)] = True
+    return units_lost(repaired, case.variables[..., SUBSET_SAMPLES], wrong, case.unit)
+
+
+def _base_cost(repair: CellRepair, departures: float, case: _Case) -> float:
+    """Return the cost of the wrong cells, without that of the ``departures`` of the frames."""
+    rows = [role.row for role in case.roles]
+    if all((row := rows[i]) and not row.entries[c].readable for i, c in repair.cells):
+        return UNREAD
+    if len(repair.cells) == 1:
+        return WRONG_CELL
+    is_preferred = not departures and _in_one_row(repair)
+    return WRONG_CELL * len(repair.cells) - IN_ONE_ROW * is_preferred
 
 
 def _penalty(cell: CellIndex, repaired: Table, case: _Case) -> float:
@@ -207,7 +254,12 @@ def _constant(values: Numbers, cell: CellIndex, case: _Case) -> Numbers:
 
 def _repaired(cells: Sequence[CellIndex], factors: Factors, case: _Case) -> Table | None:
     """The table with these cells repaired, ``(rows, 4, SAMPLES)``; None where that fails."""
-    values = repaired_values(factors, _in_unit(case.reference[-1], case.unit), cells)
+    pose = _in_unit(case.reference[-1], case.unit)
+    if len(cells) <= MAX_CELLS:
+        values = repaired_values(factors, pose, cells)
+    else:
+        values = repaired_row(factors, pose, cells[0][0])
+        values = None if values is None else values[[column for _, column in cells]]
     if values is None:
         return None
     repair = _in_table_unit(CellRepair(tuple(cells), values), case)

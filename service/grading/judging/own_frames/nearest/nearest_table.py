@@ -55,6 +55,9 @@ from service.kinematics.frames.reversed_chain import (
 )
 from service.kinematics.tolerances import PARALLEL
 
+# If a table loses more in all frames, the intended frames are unknown.
+MOST_LOST = 2 * WRONG_CELL
+
 
 def nearest_for_roles(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
@@ -117,15 +120,22 @@ def _link_by_link(
     match = _as_written(rows, targets, roles, mechanism, freedom, exercise.length_scale)
     if match is None and freedom != FrameFreedom() and all(role.row for role in roles):
         match = one_cell_match(rows, targets, roles, convention, freedom, grading)
-    if match is None:
-        match = _searched(rows, targets, roles, mechanism, freedom, exercise.length_scale)
+    # A wrong cell may imply frames in which it is alone; in others its whole row may lose less.
+    if match is None or match.cost > WRONG_CELL:
+        z_ends_rows = convention is Convention.MODIFIED
+        searched = _searched(
+            rows, targets, roles, mechanism, freedom, exercise.length_scale, z_ends_rows
+        )
+        lost = searched.lost if match is None else min(match.lost, searched.lost)
+        match = replace(match or searched, lost=lost)
     # What each cell should be: the constants and the joint variables.
     expected = np.tile(as_table(match.rows, convention), 2)
     for (i, column), joint in joint_cells(roles).items():
         sign = (freedom.directions and rows[i + 1].joint_sign) or match.joint_signs[i]
         expected[i, column] += sign * samples.values[joint.variable]
     frames = frames_on_axes(match.relative_poses, match.rows, roles, convention, mechanism)
-    return NearestTable(roles, expected, frames, match.cost)
+    lost = match.lost if match.lost <= MOST_LOST else np.inf
+    return NearestTable(roles, expected, frames, match.cost, lost)
 
 
 def _as_written(
@@ -155,6 +165,7 @@ def _searched(
     mechanism: Mechanism,
     freedom: FrameFreedom,
     scale: float,
+    z_ends_rows: bool,
 ) -> ChainMatch:
     """The nearest valid table by a search: from the base, or from the tool if that alone is given.
 
@@ -164,6 +175,8 @@ def _searched(
     search = partial(
         search_nearest_table, length_scale=scale, directions_given=not freedom.directions
     )
+    # From the tool, the two halves of a row come in the opposite order.
+    search = partial(search, z_ends_rows=z_ends_rows != (freedom.base and not freedom.tool))
     if not freedom.base:
         return search(rows, targets)
     if freedom.tool:

@@ -8,7 +8,7 @@ repaired are then tested at once.
 """
 
 from collections.abc import Iterator, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import accumulate, compress, product
 
 import numpy as np
@@ -173,6 +173,10 @@ def one_cell_match(
     if found.repairs:
         attempts = {(repair.attempt, repair.cell) for repair in found.repairs}
         found = _repaired(case, list(_repairs(case, case.table.shape[-1], attempts)))
+    if case.wrong:
+        # A constant beside a wrong joint variable is no choice of frames: 0 comes first.
+        without = _repaired(case, [replace(r, value=0 * r.value) for r in found.repairs])
+        found = without if without.repairs else found
     return _likeliest(found, case, grading) if found.repairs else None
 
 
@@ -194,7 +198,7 @@ def _likeliest(found: _Repaired, case: _Case, grading: Grading) -> ChainMatch:
         if repair.cell in of_variables and not unchanged[k]:
             costs[k] = np.inf
     best = int(np.argmin(costs))
-    return ChainMatch(found.links[best], found.poses[:, best], float(costs[best]))
+    return ChainMatch(found.links[best], found.poses[:, best], float(costs[best]), WRONG_CELL)
 
 
 def _repaired(case: _Case, repairs: Sequence[_Repair]) -> _Repaired:

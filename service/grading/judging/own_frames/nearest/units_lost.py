@@ -1,0 +1,29 @@
+"""The units of the marks that wrong cells lose, as a first estimate (``judging.marks``)."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.grading.judging.marks import BESIDES
+from service.grading.numerics.comparison import difference
+from service.grading.numerics.tolerances import SAME_CONTENT
+from service.grading.reading.tables.table import IS_ANGLE
+from service.kinematics.chain import Table
+
+
+def units_lost(
+    expected: Table, variables: Table, wrong: NDArray[np.bool_], length_scale: float
+) -> float:
+    """Return what the ``wrong`` cells ``(rows, 4)`` lose.
+
+    Each loses a unit, but several in a row no more than the row is worth. A single one in a row of
+    zeros loses a unit, too: it may be the sign of a joint variable, and a student who knows no axis
+    must not lose little.
+
+    ``expected`` and ``variables`` are ``(rows, 4, samples)``, the right table and the joint
+    variable alone in each cell.
+    """
+    either = np.array([expected - variables, expected + variables])
+    error = np.abs(difference(either, np.zeros(1), IS_ANGLE[:, None])).max(axis=-1).min(axis=0)
+    known = error > SAME_CONTENT * np.where(IS_ANGLE, 1.0, length_scale)
+    worth, count = BESIDES + known.sum(axis=1), wrong.sum(axis=1)
+    return float(np.where(count > 1, np.minimum(worth, count), count).sum())

@@ -1,0 +1,64 @@
+"""A table with other entries in its empty or unreadable cells."""
+
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from service.grading.judging.content import KnownCells
+from service.grading.judging.own_frames.best_roles import roles_in
+from service.grading.judging.own_frames.row_roles import joint_variables
+from service.grading.judging.table import column_scales
+from service.grading.numerics.samples import SAMPLES
+from service.grading.part import Grading
+from service.grading.reading.tables.table import COMPUTED, StudentRow, StudentTable
+from service.grading.report import Verdict
+from service.kinematics.chain import Table
+from service.kinematics.dh import Convention
+
+# The fractional parts of its multiples are no angles or lengths of a robot.
+OUT_OF_PLACE: Final = 0.3819660112501051
+
+
+def with_lazy_cells(answer: StudentTable, convention: Convention, grading: Grading) -> StudentTable:
+    """The table with the lazy entry in each cell that has no value."""
+    roles = roles_in(answer.rows, convention, grading, in_order=True)
+    lazy = joint_variables([role.joint for role in roles], grading.samples)[: len(answer.rows)]
+    return _filled(answer, np.asarray(np.isnan(answer.values).any(axis=-1)), lazy)
+
+
+def with_wrong_cells(answer: StudentTable, grading: Grading) -> StudentTable | None:
+    """The table with a wrong number in each empty cell; None if there is none."""
+    empty = _empty_cells(answer)
+    if not empty.any():
+        return None
+    numbers = (OUT_OF_PLACE * np.arange(1, empty.size + 1)) % 1 + OUT_OF_PLACE
+    numbers = numbers.reshape(empty.shape) * column_scales(grading)
+    return _filled(answer, empty, np.repeat(numbers[..., None], SAMPLES, axis=-1))
+
+
+def as_still(answer: StudentTable) -> Table:
+    """The numbers of the table, 0 in the empty cells: a joint whose cell is empty does not move."""
+    return np.where(_empty_cells(answer)[..., None], 0.0, answer.values)
+
+
+def _empty_cells(answer: StudentTable) -> KnownCells:
+    return np.array(
+        [[entry.verdict is Verdict.MISSING for entry in row.entries] for row in answer.rows]
+    )
+
+
+def _filled(answer: StudentTable, unread: KnownCells, numbers: Table) -> StudentTable:
+    """The table with these numbers ``(rows, 4, SAMPLES)`` in the ``unread`` cells."""
+    values = np.where(unread[..., None], numbers, answer.values)
+    rows = tuple(
+        StudentRow(
+            tuple(
+                COMPUTED if is_unread else entry
+                for entry, is_unread in zip(row.entries, unread[i].tolist(), strict=True)
+            ),
+            values[i],
+        )
+        for i, row in enumerate(answer.rows)
+    )
+    return replace(answer, rows=rows, values=values)

@@ -1,0 +1,63 @@
+"""Other values of one row of a table that make its pose right.
+
+The pose is a product of link transforms. If one row alone is wrong, it has to be A = P⁻¹ T S⁻¹,
+where P is the product before it, S the product after it and T the true pose. If A is a link
+transform, its four numbers are the right row.
+
+Shapes: L samples; a pose is ``(L, 4, 4)``; angles in radians. Lengths should be measured in a unit
+that suits the robot, so that one tolerance serves them and angles.
+"""
+
+from collections.abc import Set
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.kinematics.chain import ALPHA, THETA
+from service.kinematics.dh_row import dh1_residual, dh2_residual, row
+from service.kinematics.factors import CellIndex, Factors
+from service.kinematics.repairs.cell_repairs import CellRepair
+from service.kinematics.tolerances import SAME_POSE
+from service.kinematics.transforms import Matrices, Numbers, inverse
+
+
+def one_row_repairs(
+    factors: Factors, pose: Matrices, wrong: Set[CellIndex] = frozenset()
+) -> list[CellRepair]:
+    """The repairs of one row each: the cells of the row that have to be changed.
+
+    The ``wrong`` cells are always among them.
+    """
+    needed = factors.inverse_before[:-1:2] @ pose @ factors.inverse_after[2::2]
+    found = []
+    for i in np.flatnonzero(_misfit(needed, factors).max(axis=-1) < SAME_POSE).tolist():
+        values = row(needed[i], factors.convention)
+        written = np.array([factors.sizes[factors.position((i, column))] for column in range(4)])
+        changed = _changed(values, written)
+        cells = [c for c in range(4) if changed[c] or (i, c) in wrong]
+        if cells:
+            found.append(CellRepair(tuple((i, column) for column in cells), values[cells]))
+    return found
+
+
+def repaired_row(factors: Factors, pose: Matrices, number: int) -> Numbers | None:
+    """Return the row ``(4, L)`` that makes the pose right; None if there is none."""
+    before, after = factors.before[2 * number], factors.after[2 * number + 2]
+    needed = inverse(before) @ pose @ inverse(after)
+    if _misfit(needed, factors).max() >= SAME_POSE:
+        return None
+    return row(needed, factors.convention)
+
+
+def _misfit(needed: Matrices, factors: Factors) -> Numbers:
+    """Return how far transforms ``(..., L, 4, 4)`` are from link transforms: ``(..., L)``."""
+    tilt = np.abs(dh1_residual(needed, factors.convention))
+    return np.maximum(tilt, np.abs(dh2_residual(needed, factors.convention)))
+
+
+def _changed(values: Numbers, written: Numbers) -> NDArray[np.bool_]:
+    """Return the columns ``(4,)`` in which two rows ``(4, L)`` differ."""
+    error = values - written
+    for column in (ALPHA, THETA):
+        error[column] -= 2 * np.pi * np.round(error[column] / (2 * np.pi))
+    return np.asarray(np.abs(error).max(axis=-1) >= SAME_POSE)
