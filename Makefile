@@ -96,8 +96,8 @@ campaign: $(dev) ## grade tables in random frames, TABLES= of each robot and con
 	$(python) -m tests.frame_choice --tables "$(TABLES)" --seed "$(SEED)"
 
 rows: $(dev) ## grade tables with one wrong row; leave rows and cells of wrong tables empty (SEED=)
-	$(python) -m tests.frame_choice.one_row --tables 5000 --seed "$(SEED)"
-	$(python) -m tests.frame_choice.blanking --tries 20000 --seed "$(SEED)"
+	$(python) -m tests.frame_choice.rows.one_row --tables 5000 --seed "$(SEED)"
+	$(python) -m tests.frame_choice.rows.blanking --tries 20000 --seed "$(SEED)"
 
 policies: $(dev) ## grade tables of ROBOTS= unseen robots under each policy, 20 draws each (SEED=)
 	$(python) -m tests.frame_choice.by_policy --robots "$(ROBOTS)" --seed "$(SEED)"

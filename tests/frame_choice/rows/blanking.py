@@ -1,4 +1,4 @@
-"""``python -m tests.frame_choice.blanking --tries 20000``: no cell is better left empty.
+"""``python -m tests.frame_choice.rows.blanking --tries 20000``: no cell is better left empty.
 
 In wrong tables of all sorts, under each policy, a row or a cell is emptied: that should never raise
 the points. It still does in a few tables: the search misses a better reading of some tables with
@@ -19,10 +19,10 @@ import numpy as np
 from service.grading import PartReport, Verdict
 from tests.frame_choice import misconceptions
 from tests.frame_choice.generator import reassignment
-from tests.frame_choice.one_row import UNSEEN, all_robots
 from tests.frame_choice.robots import POLICIES, Policy, Robot, conventions, exercise
-from tests.frame_choice.shipped_robots import shipped_robots
-from tests.frame_choice.student_rows import Texts, wrong_row
+from tests.frame_choice.rows.one_row import UNSEEN, all_robots
+from tests.frame_choice.rows.shipped_robots import shipped_robots
+from tests.frame_choice.rows.student_rows import Texts, wrong_row
 from tests.frame_choice.trials import grade_rows
 
 # The share of tries that may gain; the aim is none.
@@ -191,7 +191,7 @@ def _task(task: tuple[Sequence[int], int, int, int]) -> Found:
 
 def main() -> int:
     """Run and print; 1 if too many empty places earned more."""
-    parser = argparse.ArgumentParser(prog="python -m tests.frame_choice.blanking")
+    parser = argparse.ArgumentParser(prog="python -m tests.frame_choice.rows.blanking")
     parser.add_argument("--tries", type=int, default=20_000)
     parser.add_argument("--unseen", type=int, default=UNSEEN, help="random robots")
     parser.add_argument("--seed", type=int, default=1)

@@ -1,4 +1,4 @@
-"""``python -m tests.frame_choice.one_row --tables 5000``: tables with one wrong row.
+"""``python -m tests.frame_choice.rows.one_row --tables 5000``: tables with one wrong row.
 
 One row of a valid table is wrong in one to four cells, as students write them. The right cells of
 the other rows must stay right, and no frames may be praised that only the wrong row implies. That
@@ -23,8 +23,8 @@ from tests.frame_choice.generator import reassignment
 from tests.frame_choice.oracle import is_equivalent
 from tests.frame_choice.repairs import Place, can_repair
 from tests.frame_choice.robots import COLUMNS, GIVEN, Policy, Robot, conventions, exercise
-from tests.frame_choice.shipped_robots import shipped_robots
-from tests.frame_choice.student_rows import Texts, wrong_row
+from tests.frame_choice.rows.shipped_robots import shipped_robots
+from tests.frame_choice.rows.student_rows import Texts, wrong_row
 from tests.frame_choice.trials import grade_rows
 from tests.frame_choice.unseen import random_robot
 
@@ -200,7 +200,7 @@ def lines(found: Found) -> list[str]:
 
 def main() -> int:
     """Run and print; 1 if a figure does not hold."""
-    parser = argparse.ArgumentParser(prog="python -m tests.frame_choice.one_row")
+    parser = argparse.ArgumentParser(prog="python -m tests.frame_choice.rows.one_row")
     parser.add_argument("--tables", type=int, default=5000)
     parser.add_argument("--unseen", type=int, default=UNSEEN, help="random robots")
     parser.add_argument("--seed", type=int, default=1)

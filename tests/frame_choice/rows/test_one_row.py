@@ -5,9 +5,9 @@ from collections.abc import Mapping
 import pytest
 
 from service.catalogue import Exercise
-from tests.frame_choice.one_row import Found, all_robots, lines, praises, run, total
 from tests.frame_choice.robots import GIVEN, Robot, exercise
-from tests.frame_choice.shipped_robots import shipped_robots
+from tests.frame_choice.rows.one_row import Found, all_robots, lines, praises, run, total
+from tests.frame_choice.rows.shipped_robots import shipped_robots
 from tests.frame_choice.trials import grade_rows
 from tests.grading.support.submitting import graded_table, not_correct
 

@@ -2,10 +2,10 @@
 
 import pytest
 
-from tests.frame_choice.blanking import run
 from tests.frame_choice.robots import GIVEN, POLICIES, Policy, Robot, exercise
-from tests.frame_choice.shipped_robots import shipped_robots
-from tests.frame_choice.student_rows import Texts
+from tests.frame_choice.rows.blanking import run
+from tests.frame_choice.rows.shipped_robots import shipped_robots
+from tests.frame_choice.rows.student_rows import Texts
 from tests.frame_choice.trials import grade_rows
 
 EACH = 22
