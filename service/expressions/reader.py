@@ -2,6 +2,7 @@
 
 import math
 import re
+from bisect import bisect_left
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from typing import Any, Final, Literal, NamedTuple
@@ -29,10 +30,10 @@ from service.time_slices import checkpoint
 
 AngleUnit = Literal["radians", "degrees"]
 
-_REMEMBERED: Final = 8192
-# Texts longer than this are remembered apart, for their programs take much more memory.
-_LONG: Final = 500
-_REMEMBERED_LONG: Final = 64
+# The numbers of texts that are remembered: of up to 40 characters, of up to 160, 640, and of more.
+# A character may take 100 bytes of memory, so the texts of each group take about 16 MB at most.
+_LENGTHS: Final = (40, 160, 640)
+_REMEMBERED: Final = (4096, 1024, 256, 64)
 # The grading asks for a tree soon after reading, if at all.
 _TREES: Final = 128
 _SETS_OF_SYMBOLS: Final = 1024
@@ -180,7 +181,7 @@ def read(
     degrees = angle_unit == "degrees"
     # In radians an angle is read as any number is, and is remembered as one.
     options = (vocabulary, degrees and quantity == "angle", degrees)
-    remembered = _remembered if len(text) <= _LONG else _remembered_long
+    remembered = _remembered[bisect_left(_LENGTHS, len(text))]
     result = remembered(text, *options, _ATTEMPTS if repairs else 0)
     if isinstance(result, ExpressionError):
         raise result.again()
@@ -202,8 +203,7 @@ def _explained(text: str, error: UnreadableError, vocabulary: Vocabulary) -> Exp
     return explain(Failure(text, vocabulary, error, lambda _: None))
 
 
-@lru_cache(maxsize=_REMEMBERED)
-def _remembered(
+def _read(
     text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool, attempts: int
 ) -> Expression | ExpressionError:
     # An error is kept without its traceback, which would hold every frame of the parse.
@@ -214,7 +214,7 @@ def _remembered(
     return result
 
 
-_remembered_long = lru_cache(maxsize=_REMEMBERED_LONG)(_remembered.__wrapped__)
+_remembered: Final = [lru_cache(maxsize=number)(_read) for number in _REMEMBERED]
 
 
 class _Reading:

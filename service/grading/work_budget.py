@@ -113,7 +113,6 @@ class WorkBudget:
 
     def charge_reading(self, symbols: int) -> bool:
         """Count a text that is to be read; whether it may be."""
-        checkpoint()
         self.symbols -= symbols
         return self.symbols >= 0
 

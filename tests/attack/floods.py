@@ -109,11 +109,18 @@ def many_costly(number: int) -> bytes:
     return request("/v1/grade", _written({"submissions": submissions}))
 
 
+# The fields of which the texts are no texts of students.
+_NAMES: Final = ("exercise", "part", "angle_unit", "quantity", "structure", "figure")
+
+
 def _spelled(value: Any, number: int) -> Any:
     """The body with other spaces behind each text, so that none was read before."""
     match value:
         case dict():
-            return {key: _spelled(each, number) for key, each in value.items()}
+            return {
+                key: each if key in _NAMES else _spelled(each, number)
+                for key, each in value.items()
+            }
         case list():
             return [_spelled(each, number) for each in value]
         case str() if len(value) > 1 and "\n" not in value:
@@ -134,13 +141,9 @@ KINDS: Final = {
 def of_kind(kind: str) -> Callable[[int], bytes]:
     """The bodies of one of the kinds; no two are alike."""
     path, known = KINDS[kind]
-    body: dict[str, Any] = {**known.body}
-    # The names of exercises and parts are no texts of students.
-    names = ("exercise", "part", "angle_unit")
-    fixed: dict[str, Any] = {name: body.pop(name) for name in names if name in body}
 
     def numbered(number: int) -> bytes:
-        return request(path, _written({**fixed, **_spelled(body, number)}))
+        return request(path, _written(_spelled({**known.body}, number)))
 
     return numbered
 

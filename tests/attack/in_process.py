@@ -81,11 +81,12 @@ def caches() -> Iterator[Callable[[], None]]:
     known = set()
     for name, module in sorted(sys.modules.items()):
         if name.startswith("service."):
-            for value in vars(module).values():
-                clear = getattr(value, "cache_clear", None)
-                if clear is not None and id(value) not in known:
-                    known.add(id(value))
-                    yield clear
+            for found in vars(module).values():
+                for value in found if isinstance(found, list) else [found]:
+                    clear = getattr(value, "cache_clear", None)
+                    if clear is not None and id(value) not in known:
+                        known.add(id(value))
+                        yield clear
 
 
 def grade_path(exercise: Exercise) -> str:

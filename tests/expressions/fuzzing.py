@@ -198,7 +198,8 @@ class Outcome(NamedTuple):
 
 def outcome(text: str, *, degrees: bool = False) -> Outcome:
     """Read `text` afresh, evaluate and print it. Raises AssertionError for a bad answer."""
-    reader._remembered.cache_clear()
+    for remembered in reader._remembered:
+        remembered.cache_clear()
     reader._parsed.cache_clear()
     words.split.cache_clear()
     return next_outcome(text, degrees=degrees)

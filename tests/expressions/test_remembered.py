@@ -108,7 +108,8 @@ def test_what_others_left_in_the_memo_changes_no_value() -> None:
 def test_threads_that_read_the_same_texts_agree() -> None:
     texts = [f"{text} + 0*{number}" for number, text in enumerate(READABLE[:60])]
     expected = [None if (each := _readable(text)) is None else str(each.text()) for text in texts]
-    reader._remembered.cache_clear()
+    for remembered in reader._remembered:
+        remembered.cache_clear()
     reader._parsed.cache_clear()
     together = threading.Barrier(4)
     found: list[list[str | None]] = []

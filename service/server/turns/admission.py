@@ -186,7 +186,6 @@ class FairAdmission:
                 raise
             if body.is_unwanted():
                 raise ClientDisconnect
-        self._queue.begin(ticket)
 
     async def _small_turn(self, lane: _Lane) -> None:
         """Wait if too many small answers are asked for at once."""

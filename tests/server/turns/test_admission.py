@@ -183,9 +183,9 @@ def test_a_request_of_many_gradings_waits_after_each_for_many_small_ones() -> No
         await passes(3)
         tasks += begin(app, *(Client("honest", port) for port in range(100)))
         await asyncio.gather(*tasks)
-        # Each of the four has a step at its arrival; then all small ones come.
+        # Each of the four has a step at its arrival, and one has another; then all small ones come.
         first = inner.served.index("honest")
-        assert first <= 4
+        assert first <= 5
         assert inner.served[first : first + 108].count("honest") >= 95
         assert inner.served.count("part") == 40
         assert inner.served.count("attacker") == 4

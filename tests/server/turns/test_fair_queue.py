@@ -22,17 +22,11 @@ def come(
     return ticket
 
 
-def take(queue: FairQueue) -> Ticket:
-    ticket = queue.pop()
-    queue.begin(ticket)
-    return ticket
-
-
 def serve(queue: FairQueue, costs: dict[str, float], turns: int) -> list[str]:
     """Serve clients that go on after each of so many steps; whose turns they were."""
     served = []
     for _ in range(turns):
-        ticket = take(queue)
+        ticket = queue.pop()
         served.append(ticket.client.name)
         queue.charge(ticket, costs[ticket.client.name])
         queue.push(ticket)
@@ -82,7 +76,7 @@ def test_connections_that_are_not_told_apart_have_their_shares_together() -> Non
 def test_a_connection_that_was_away_makes_up_for_its_credit_and_no_more() -> None:
     queue = FairQueue()
     away = come(queue, "away")
-    take(queue)
+    queue.pop()
     queue.charge(away, STEP)
     queue.leave(away)
     come(queue, "here")
@@ -95,14 +89,53 @@ def test_a_connection_that_was_away_makes_up_for_its_credit_and_no_more() -> Non
     assert Counter(served[first:])["away"] == pytest.approx((100 - first) / 2, abs=2)
 
 
+def test_ordinary_requests_run_in_the_order_in_which_they_came() -> None:
+    queue = FairQueue()
+    served = []
+    for _ in range(4):
+        left = dict.fromkeys("abc", 3)
+        order = ""
+        tickets = []
+        for client in left:
+            tickets.append(come(queue, client))
+            # Time passes between two of them.
+            queue._now += 0.001
+        while queue.length:
+            ticket = queue.pop()
+            order += ticket.client.name
+            queue.charge(ticket, STEP)
+            left[ticket.client.name] -= 1
+            if left[ticket.client.name]:
+                queue.push(ticket)
+        for ticket in tickets:
+            queue.leave(ticket)
+        served.append(order)
+    # A connection has no such allowance for its first request.
+    assert served[0] != "aaabbbccc"
+    assert served[-1] == "aaabbbccc"
+
+
+def test_costly_requests_one_after_the_other_give_way_after_each_step() -> None:
+    queue = FairQueue()
+    for _ in range(3):
+        come(queue, "costly")
+        ticket = queue.pop()
+        queue.charge(ticket, 15 * STEP)
+        queue.leave(ticket)
+    come(queue, "costly")
+    come(queue, "other")
+    served = serve(queue, {"costly": STEP, "other": STEP}, 20)
+    assert 8 <= served.count("other") <= 12
+
+
 def test_no_request_waits_for_ever_for_new_connections() -> None:
     queue = FairQueue()
     long = come(queue, "long")
-    queue.charge(take(queue), 0.050)
+    queue.charge(queue.pop(), 0.050)
     queue.push(long)
     for number in range(2, 1000):
         come(queue, "crowd", number)
-        ticket = take(queue)
+        ticket = queue.pop()
         if ticket is long:
             break
         queue.charge(ticket, STEP)
@@ -114,7 +147,7 @@ def test_requests_of_one_connection_are_served_in_order() -> None:
     queue = FairQueue()
     tickets = [come(queue, "a") for _ in range(3)]
     assert [queue.pop() for _ in range(3)] == tickets
-    with pytest.raises(IndexError):
+    with pytest.raises(ValueError, match="empty"):
         queue.pop()
 
 
@@ -142,7 +175,7 @@ def test_accounts_of_many_clients_take_little_room() -> None:
     queue = FairQueue()
     for number in range(5_000):
         ticket = come(queue, f"client {number}", number)
-        queue.charge(take(queue), 0.001)
+        queue.charge(queue.pop(), 0.001)
         queue.leave(ticket)
     assert len(queue._accounts) <= 2_001
     assert not queue._clients
