@@ -12,7 +12,7 @@ BESIDE = {each.text for each in VENDORED} | {
     "LICENSE",
     "NOTICE",
     "service/api/swagger_ui/NOTICE",
-    "service/web/static/three-0.185.1.README.md",
+    "service/web/static/vendor/three-0.185.1.README.md",
     "tests/docs/notice.py",
 }
 

@@ -1,7 +1,7 @@
 // What the pages of recorded attempts share: words for numbers and moments, and what stands where there is nothing.
 
-import { h, number, points, visible } from "./dom.js";
-import { address, refusal } from "./tutor_service.js";
+import { h, number, points, visible } from "../../shared/dom.js";
+import { address, refusal } from "../tutor_service.js";
 
 const MOMENT = new Intl.DateTimeFormat("en-GB", { dateStyle: "medium", timeStyle: "short" });
 const DAY = new Intl.DateTimeFormat("en-GB", { dateStyle: "medium", timeZone: "UTC" });

@@ -1,8 +1,8 @@
 // The stage of the 3D view: a camera that goes around, and what is drawn. Nothing is drawn again before
 // something has changed.
 
-import { Color, DirectionalLight, HemisphereLight, MOUSE, PerspectiveCamera, Scene, SRGBColorSpace, Vector2, Vector3, WebGLRenderer } from "./three-0.185.1.module.min.js";
-import { OrbitControls } from "./three-0.185.1.orbit-controls.js";
+import { Color, DirectionalLight, HemisphereLight, MOUSE, PerspectiveCamera, Scene, SRGBColorSpace, Vector2, Vector3, WebGLRenderer } from "../vendor/three-0.185.1.module.min.js";
+import { OrbitControls } from "../vendor/three-0.185.1.orbit-controls.js";
 import { column } from "./motion.js";
 import { paletteOf } from "./palette.js";
 import { ChainShape, FramesShape, MechanismShape } from "./robot_shapes.js";

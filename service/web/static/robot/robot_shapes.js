@@ -1,7 +1,7 @@
 // The two things that the 3D view shows: the mechanism of an exercise, drawn as in its figure, and the
 // chain that a table builds. Both are moved by pictures of `motion.js`.
 
-import { Group, Vector3 } from "./three-0.185.1.module.min.js";
+import { Group, Vector3 } from "../vendor/three-0.185.1.module.min.js";
 import { column, dot } from "./motion.js";
 import { lay, layRods, vector } from "./shapes.js";
 

@@ -1,7 +1,7 @@
 // Where the robot is shown: a 3D view with buttons and keys for whoever has no mouse, or, in a browser
 // without WebGL, a drawing by the service.
 
-import { h } from "./dom.js";
+import { h } from "../shared/dom.js";
 
 const TURN = Math.PI / 12;
 const NEARER = 1.25;

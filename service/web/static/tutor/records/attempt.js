@@ -1,9 +1,9 @@
 // One recorded attempt: what was handed in, its report and those before it, and the points of a tutor.
 
-import { h, number, points, visible } from "./dom.js";
+import { h, number, points, visible } from "../../shared/dom.js";
 import { RecordedReport } from "./recorded_report.js";
 import { byId, earned, failed, learnerName, moment, percent, tell } from "./records.js";
-import { address, get, send } from "./tutor_service.js";
+import { address, get, send } from "../tutor_service.js";
 
 const id = byId("main").dataset.attempt;
 const path = `v1/attempts/${encodeURIComponent(id)}`;

@@ -1,7 +1,7 @@
 // The report on a class: files of the browser's machine, graded by the service and shown in a frame.
 
-import { h, visible } from "./dom.js";
-import { documentOf } from "./markup.js";
+import { h, visible } from "../shared/dom.js";
+import { documentOf } from "../shared/markup.js";
 import { post, refusal } from "./tutor_service.js";
 import { entries, textOf } from "./zip.js";
 

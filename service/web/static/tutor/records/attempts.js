@@ -1,8 +1,8 @@
 // The list of recorded attempts: filters, pages, and all of a learner deleted.
 
-import { h } from "./dom.js";
+import { h } from "../../shared/dom.js";
 import { byId, count, earned, failed, learnerName, moment, nothing, query, showExports, span, table, tell } from "./records.js";
-import { address, get, send } from "./tutor_service.js";
+import { address, get, send } from "../tutor_service.js";
 
 const FIELDS = ["exercise", "learner", "since", "until", "counted"];
 const form = byId("filters");

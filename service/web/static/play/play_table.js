@@ -1,9 +1,9 @@
 // The table of free play: rows that come and go, each of a joint that turns or slides, or of none.
 
-import { Cell } from "./cell.js";
-import { h } from "./dom.js";
-import { target, undoKey } from "./keyboard.js";
-import { blockOf, placedFrom } from "./pasted_block.js";
+import { Cell } from "../shared/cell.js";
+import { h } from "../shared/dom.js";
+import { target, undoKey } from "../shared/keyboard.js";
+import { blockOf, placedFrom } from "../shared/pasted_block.js";
 
 const COLUMNS = ["a", "alpha", "d", "theta"];
 const SPOKEN = { a: "a, link length", alpha: "alpha, link twist", d: "d, link offset", theta: "theta, joint angle" };

@@ -1,7 +1,7 @@
 // The editor of exercise files: the checks of the command line as the author types.
 
-import { h, message, visible } from "./dom.js";
-import { html } from "./markup.js";
+import { h, message, visible } from "../shared/dom.js";
+import { html } from "../shared/markup.js";
 import { post, refusal } from "./tutor_service.js";
 
 // After so many milliseconds without a key the text is checked.

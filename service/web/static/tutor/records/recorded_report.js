@@ -1,13 +1,13 @@
 // A recorded submission with its report, drawn as the student saw it; nothing in it can be changed.
 
-import { h, points, visible } from "./dom.js";
+import { h, points, visible } from "../../shared/dom.js";
 import { cellsOf } from "./answer_cells.js";
-import { item } from "./messages.js";
-import { PartView } from "./part_view.js";
-import { Previewer } from "./previewer.js";
-import { send } from "./tutor_service.js";
+import { item } from "../../student/messages.js";
+import { PartView } from "../../student/part_view.js";
+import { Previewer } from "../../student/previewer.js";
+import { send } from "../tutor_service.js";
 
-const SHEETS = ["./tokens.css", "./element.css", "./recorded.css"].map((name) => new URL(name, import.meta.url).href);
+const SHEETS = ["../../shared/tokens.css", "../../student/element.css", "./recorded.css"].map((name) => new URL(name, import.meta.url).href);
 
 /** A part whose cells are read and not written. */
 class RecordedPart extends PartView {

@@ -1,6 +1,6 @@
 // The names of symbols as they are printed: theta1 is θ with the index 1.
 
-import { h } from "./dom.js";
+import { h } from "../shared/dom.js";
 
 const GREEK = { alpha: "α", beta: "β", gamma: "γ", theta: "θ", phi: "φ", psi: "ψ" };
 

@@ -1,7 +1,7 @@
 // The view of a robot that moves, 3D where the browser can: what is asked of the service, and when. The
 // picture stands in `stage.js`, all around it in `view_panels.js`; it draws what the service computes.
 
-import { h, message } from "./dom.js";
+import { h, message } from "../shared/dom.js";
 import { column, pictureOf, Sweep } from "./motion.js";
 import { Stage } from "./stage.js";
 import { FrameSwitches, JointSliders, PoseNumbers, SymbolFields } from "./view_panels.js";

@@ -1,12 +1,12 @@
 // The attempts at an exercise in counts: parts, rows and cells, slips by count and day, identical wrong answers.
 
-import { h, message, visible } from "./dom.js";
+import { h, message, visible } from "../../shared/dom.js";
 import { daysCharts } from "./days_chart.js";
-import { layoutOf } from "./kinds.js";
-import { cellName } from "./messages.js";
+import { layoutOf } from "../../student/kinds.js";
+import { cellName } from "../../student/messages.js";
 import { byId, count, failed, learnerName, nothing, percent, query, showExports, span, table, tell } from "./records.js";
 import { regradeForm } from "./regrade.js";
-import { address, get } from "./tutor_service.js";
+import { address, get } from "../tutor_service.js";
 
 const exercise = byId("main").dataset.exercise;
 const state = byId("state");

@@ -1,16 +1,16 @@
 // <dh-play>: any table of any robot, with its 3D view, its pose, and its equivalent in the other convention.
 
-import { h, visible } from "./dom.js";
-import { History } from "./history.js";
-import { mathml, matrix } from "./markup.js";
+import { h, visible } from "../shared/dom.js";
+import { History } from "../shared/history.js";
+import { mathml, matrix } from "../shared/markup.js";
 import { freshCells, jointNumbers, MOST_JOINTS, MOST_ROWS, PlayTable, rowsOf } from "./play_table.js";
-import { RobotView } from "./robot_view.js";
+import { RobotView } from "../robot/robot_view.js";
 import { ROBOTS } from "./robots.js";
-import { Service } from "./service.js";
-import { packed, unpacked } from "./storage.js";
+import { Service } from "../shared/service.js";
+import { packed, unpacked } from "../shared/storage.js";
 
-const TOKENS = new URL("./tokens.css", import.meta.url).href;
-const STYLE = new URL("./element.css", import.meta.url).href;
+const TOKENS = new URL("../shared/tokens.css", import.meta.url).href;
+const STYLE = new URL("../student/element.css", import.meta.url).href;
 const PLAY_STYLE = new URL("./play.css", import.meta.url).href;
 const HOME = new URL("../", import.meta.url).href;
 const NAME = "#robot=";

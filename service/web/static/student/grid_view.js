@@ -1,7 +1,7 @@
 // The grids of a part as tables: heads, rows of cells, and below each row the messages on it.
 
-import { h, points } from "./dom.js";
-import { Cell, SIGNS } from "./cell.js";
+import { h, points } from "../shared/dom.js";
+import { Cell, SIGNS } from "../shared/cell.js";
 
 /** The rows of a layout, in order, with their cells; `elements` are the tables. */
 export function gridsOf(layout, part, owner, idPrefix) {

@@ -1,7 +1,7 @@
 // The messages of a report, as items of a list.
 
-import { h, message, visible } from "./dom.js";
-import { SIGNS } from "./cell.js";
+import { h, message, visible } from "../shared/dom.js";
+import { SIGNS } from "../shared/cell.js";
 
 const NAMES = { alpha: "α", theta: "θ" };
 const YOURS = "yours";

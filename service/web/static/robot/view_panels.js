@@ -1,6 +1,6 @@
 // What stands around the picture of a robot: sliders, numbers of symbols, which frames are shown, points.
 
-import { h, visible } from "./dom.js";
+import { h, visible } from "../shared/dom.js";
 import { column } from "./motion.js";
 import { symbolName } from "./names.js";
 

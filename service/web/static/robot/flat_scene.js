@@ -1,6 +1,6 @@
 // The robot in a browser without WebGL: a drawing by the service, at the joint values as they are.
 
-import { h } from "./dom.js";
+import { h } from "../shared/dom.js";
 import { isDark } from "./palette.js";
 
 export class FlatScene {

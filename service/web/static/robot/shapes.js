@@ -4,7 +4,7 @@
 import {
   BoxGeometry, Color, ConeGeometry, CylinderGeometry, Group, InstancedMesh, MeshBasicMaterial, MeshLambertMaterial,
   Object3D, SphereGeometry, Vector3,
-} from "./three-0.185.1.module.min.js";
+} from "../vendor/three-0.185.1.module.min.js";
 import { Labels } from "./labels.js";
 
 const UP = new Vector3(0, 1, 0);

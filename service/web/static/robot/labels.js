@@ -3,7 +3,7 @@
 
 import {
   CanvasTexture, InstancedBufferAttribute, InstancedBufferGeometry, Mesh, Object3D, PlaneGeometry, ShaderMaterial, Vector2,
-} from "./three-0.185.1.module.min.js";
+} from "../vendor/three-0.185.1.module.min.js";
 
 // Pixels of a text in that picture, and the share of it that letters fill.
 const LINE = 48;

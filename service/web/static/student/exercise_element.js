@@ -6,15 +6,15 @@
 // belongs to the service's own page: the element takes answers from the address. The event `graded`
 // (bubbling, composed) has the report as its detail.
 
-import { h, points, visible } from "./dom.js";
-import { History } from "./history.js";
-import { html } from "./markup.js";
+import { h, points, visible } from "../shared/dom.js";
+import { History } from "../shared/history.js";
+import { html } from "../shared/markup.js";
 import { PartView } from "./part_view.js";
 import { Previewer } from "./previewer.js";
-import { Service } from "./service.js";
-import { Store, answersIn, fragment } from "./storage.js";
+import { Service } from "../shared/service.js";
+import { Store, answersIn, fragment } from "../shared/storage.js";
 
-const TOKENS = new URL("./tokens.css", import.meta.url).href;
+const TOKENS = new URL("../shared/tokens.css", import.meta.url).href;
 const STYLE = new URL("./element.css", import.meta.url).href;
 const HOME = new URL("../", import.meta.url).href;
 const SAVED_AFTER = 250;
@@ -187,7 +187,7 @@ export class DhExercise extends HTMLElement {
     const turn = this.#loading;
     this.opener.setAttribute("aria-busy", "true");
     try {
-      const { RobotView } = await import("./robot_view.js");
+      const { RobotView } = await import("../robot/robot_view.js");
       if (turn === this.#loading && !this.view) this.#openView(new RobotView(this.#viewHost()));
     } catch {
       this.announce((this.saved.textContent = "The 3D view could not be loaded"));

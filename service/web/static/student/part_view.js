@@ -1,12 +1,12 @@
 // One part of an exercise: its prompt, its cells, the bar that says how the cell is read, its report.
 
-import { h, points, visible, message } from "./dom.js";
+import { h, points, visible, message } from "../shared/dom.js";
 import { gridsOf } from "./grid_view.js";
 import { layoutOf } from "./kinds.js";
-import { html, mathml } from "./markup.js";
+import { html, mathml } from "../shared/markup.js";
 import { cellName, item } from "./messages.js";
-import { blockOf, placedFrom } from "./pasted_block.js";
-import { target, undoKey } from "./keyboard.js";
+import { blockOf, placedFrom } from "../shared/pasted_block.js";
+import { target, undoKey } from "../shared/keyboard.js";
 
 // A text with one of these may hold several cells; the service says whether it does.
 const BETWEEN_CELLS = /[\n\t;|&,[]|\\\\/;

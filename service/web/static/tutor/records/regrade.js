@@ -1,8 +1,8 @@
 // The regrade of an exercise: first who would change and why, then the same for good.
 
-import { h, message, number, points } from "./dom.js";
+import { h, message, number, points } from "../../shared/dom.js";
 import { count, failed, learnerName, table, tell } from "./records.js";
-import { address, pause, sendPatiently } from "./tutor_service.js";
+import { address, pause, sendPatiently } from "../tutor_service.js";
 
 // So many changes are shown one by one.
 const MOST_SHOWN = 200;
