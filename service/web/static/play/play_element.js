@@ -52,9 +52,23 @@ export class DhPlay extends HTMLElement {
 
   #build() {
     const option = (text, value = text) => h("option", { value }, text);
-    this.robot = h("select", { "aria-label": "Start from a robot", onchange: () => this.#chosen() }, option("Start from …", ""), ...Object.keys(ROBOTS).map((name) => option(name)));
-    this.convention = h("select", { "aria-label": "Convention", onchange: () => this.#conventionChosen() }, ...Object.entries(LETTERS).map(([value, text]) => option(text, value)));
-    this.unit = h("select", { "aria-label": "Plain numbers in angles are", onchange: () => this.#edited() }, option("radians"), option("degrees"));
+    this.robot = h(
+      "select",
+      { "aria-label": "Start from a robot", onchange: () => this.#chosen() },
+      option("Start from …", ""),
+      ...Object.keys(ROBOTS).map((name) => option(name)),
+    );
+    this.convention = h(
+      "select",
+      { "aria-label": "Convention", onchange: () => this.#conventionChosen() },
+      ...Object.entries(LETTERS).map(([value, text]) => option(text, value)),
+    );
+    this.unit = h(
+      "select",
+      { "aria-label": "Plain numbers in angles are", onchange: () => this.#edited() },
+      option("radians"),
+      option("degrees"),
+    );
     this.said = h("p", { class: "quiet saved" });
     this.add = h("button", { type: "button", class: "quiet-button", onclick: () => this.#addRow() }, "Add a row");
     const share = h("button", { type: "button", class: "quiet-button", onclick: () => this.#share() }, "Copy link");
@@ -63,14 +77,27 @@ export class DhPlay extends HTMLElement {
     this.formula = h("div", { class: "scroll formula", tabindex: 0, role: "group", "aria-label": "Pose as formulas" });
     this.converted = h("div", { class: "scroll" });
     this.convertedTitle = h("h2", {});
-    this.latex = h("button", { type: "button", class: "quiet-button", onclick: () => this.#copy(this.poseLatex, "LaTeX of the pose copied") }, "Copy LaTeX");
-    this.use = h("button", { type: "button", class: "quiet-button", onclick: () => this.#useConverted() }, "Use this table");
+    this.latex = h("button", {
+      type: "button",
+      class: "quiet-button",
+      onclick: () => this.#copy(this.poseLatex, "LaTeX of the pose copied"),
+    }, "Copy LaTeX");
+    this.use = h(
+      "button",
+      { type: "button", class: "quiet-button", onclick: () => this.#useConverted() },
+      "Use this table",
+    );
     const card = (title, ...children) => h("section", { class: "card part" }, h("header", {}, ...title), ...children);
     this.main.append(
       h(
         "section",
         { class: "about", tabindex: 0, "aria-labelledby": "title" },
-        h("header", {}, h("h1", { id: "title" }, "Free play"), h("p", { class: "quiet" }, "Write any DH table, see the robot that it builds, and move it.")),
+        h(
+          "header",
+          {},
+          h("h1", { id: "title" }, "Free play"),
+          h("p", { class: "quiet" }, "Write any DH table, see the robot that it builds, and move it."),
+        ),
         this.view.element,
       ),
       h(
@@ -79,9 +106,18 @@ export class DhPlay extends HTMLElement {
         h("div", { class: "tools" }, this.robot, this.said, share),
         card(
           [h("h2", {}, "Table"), this.freedoms],
-          h("div", { class: "tools" }, this.convention, h("label", { class: "unit" }, h("span", { "aria-hidden": "true" }, "Plain angles in "), this.unit)),
+          h(
+            "div",
+            { class: "tools" },
+            this.convention,
+            h("label", { class: "unit" }, h("span", { "aria-hidden": "true" }, "Plain angles in "), this.unit),
+          ),
           h("div", { class: "grids" }, this.table.element),
-          h("p", { class: "reading" }, "Joint i turns by theta_i or slides by d_i. Other letters (a1, alpha1, d1, theta1, l1 …) stand for numbers that you choose below the view. Paste a whole table into one cell, or a block of cells."),
+          h(
+            "p",
+            { class: "reading" },
+            "Joint i turns by theta_i or slides by d_i. Other letters (a1, alpha1, d1, theta1, l1 …) stand for numbers that you choose below the view. Paste a whole table into one cell, or a block of cells.",
+          ),
           h("div", { class: "tools" }, this.add),
         ),
         card([h("h2", {}, "Pose of the last frame"), this.latex], this.pose, this.formula),
@@ -112,7 +148,9 @@ export class DhPlay extends HTMLElement {
     this.rows = rows;
     this.table.show({ rows, convention });
     this.add.disabled = rows.length >= MOST_ROWS;
-    this.convertedTitle.textContent = `The same in the ${convention === "standard" ? "modified (proximal)" : "standard (distal)"} convention`;
+    this.convertedTitle.textContent = `The same in the ${
+      convention === "standard" ? "modified (proximal)" : "standard (distal)"
+    } convention`;
     this.view.refit();
     this.changed();
   }
@@ -120,7 +158,10 @@ export class DhPlay extends HTMLElement {
   #body() {
     const structure = this.rows.map(({ kind }) => kind).filter((kind) => kind !== "F").join("");
     if (!structure) return null;
-    return { table: { rows: this.table.texts, convention: this.convention.value, structure, formulas: true }, angle_unit: this.unit.value };
+    return {
+      table: { rows: this.table.texts, convention: this.convention.value, structure, formulas: true },
+      angle_unit: this.unit.value,
+    };
   }
 
   changed() {
@@ -143,7 +184,12 @@ export class DhPlay extends HTMLElement {
   #place([i, j]) {
     const key = `${i} ${j}`;
     this.places ??= new Map();
-    if (!this.places.has(key)) this.places.set(key, { put: (state) => this.#show(state), focus: () => this.table.rows[Math.min(i, this.rows.length - 1)].cells[j].input.focus() });
+    if (!this.places.has(key)) {
+      this.places.set(key, {
+        put: (state) => this.#show(state),
+        focus: () => this.table.rows[Math.min(i, this.rows.length - 1)].cells[j].input.focus(),
+      });
+    }
     return this.places.get(key);
   }
 
@@ -216,9 +262,16 @@ export class DhPlay extends HTMLElement {
 
   async pasted(text) {
     try {
-      const table = { rows: text, structure: "R".repeat(MOST_JOINTS), formulas: true, convention: this.convention.value };
+      const table = {
+        rows: text,
+        structure: "R".repeat(MOST_JOINTS),
+        formulas: true,
+        convention: this.convention.value,
+      };
       const { table: read } = await this.service.frames({ table, angle_unit: this.unit.value });
-      if (read.error || !read.formulas?.cells.length) return this.#say(`Not read as a table: ${read.error?.message ?? "it has no rows"}`);
+      if (read.error || !read.formulas?.cells.length) {
+        return this.#say(`Not read as a table: ${read.error?.message ?? "it has no rows"}`);
+      }
       this.view.forget();
       this.#change({ ...this.state, rows: rowsOf(read.formulas.cells.map((row) => row.map((cell) => cell.text))) });
       return this.#say("The pasted table is filled in; Ctrl+Z takes it back");
@@ -235,10 +288,14 @@ export class DhPlay extends HTMLElement {
     this.use.disabled = this.latex.disabled = isKept;
     if (isKept) return;
     const { degrees_of_freedom: freedoms, formulas } = table;
-    this.freedoms.textContent = freedoms === undefined ? "" : `${freedoms} degree${freedoms === 1 ? "" : "s"} of freedom`;
+    this.freedoms.textContent = freedoms === undefined
+      ? ""
+      : `${freedoms} degree${freedoms === 1 ? "" : "s"} of freedom`;
     const { pose, converted } = formulas ?? {};
     this.formula.hidden = !pose;
-    this.formula.replaceChildren(pose ? h("div", { class: "bracketed" }, matrix(pose.map((row) => row.map((entry) => entry.mathml)))) : "");
+    this.formula.replaceChildren(
+      pose ? h("div", { class: "bracketed" }, matrix(pose.map((row) => row.map((entry) => entry.mathml)))) : "",
+    );
     this.poseFormulas = pose;
     this.convertedRows = converted;
     this.converted.closest(".card").hidden = !converted;
@@ -253,13 +310,16 @@ export class DhPlay extends HTMLElement {
     if (!this.entries) {
       this.entries = Array.from({ length: 16 }, () => h("span", { role: "cell" }));
       const row = (i) => h("span", { role: "row", class: "row" }, ...this.entries.slice(4 * i, 4 * i + 4));
-      this.pose.replaceChildren(h("div", { class: "bracketed numeric", role: "table", "aria-label": "Pose" }, ...[0, 1, 2, 3].map(row)));
+      this.pose.replaceChildren(
+        h("div", { class: "bracketed numeric", role: "table", "aria-label": "Pose" }, ...[0, 1, 2, 3].map(row)),
+      );
     }
     frame.flat().forEach((value, i) => (this.entries[i].textContent = decimal(value)));
   }
 
   get poseLatex() {
-    const rows = this.poseFormulas?.map((row) => row.map((entry) => entry.latex)) ?? this.frame.map((row) => row.map(decimal));
+    const rows = this.poseFormulas?.map((row) => row.map((entry) => entry.latex)) ??
+      this.frame.map((row) => row.map(decimal));
     return `\\begin{bmatrix}\n${rows.map((row) => row.join(" & ")).join(" \\\\\n")}\n\\end{bmatrix}`;
   }
 
@@ -274,7 +334,11 @@ export class DhPlay extends HTMLElement {
   }
 
   #share() {
-    return this.#copy(this.service.address("play") + NAME + packed(this.state), "Link copied: it holds the table", true);
+    return this.#copy(
+      this.service.address("play") + NAME + packed(this.state),
+      "Link copied: it holds the table",
+      true,
+    );
   }
 
   async #copy(text, told, isLink = false) {
@@ -314,26 +378,39 @@ function renumbered(before, after, removed = null) {
   return after.map((row, i) => {
     const number = jointNumbers(after)[i];
     if (!old[i] || !number || old[i] === number) return row;
-    return { ...row, cells: row.cells.map((text) => text.replace(new RegExp(`^(theta|d|q)_?${old[i]}$`), `$1${number}`)) };
+    return {
+      ...row,
+      cells: row.cells.map((text) => text.replace(new RegExp(`^(theta|d|q)_?${old[i]}$`), `$1${number}`)),
+    };
   });
 }
 
 function convertedTable(rows, convention) {
   const index = convention === "standard" ? "i−1" : "i";
-  const heads = [["a", index], ["α", index], ["d", "i"], ["θ", "i"]].map(([letter, sub]) => h("th", { scope: "col" }, h("i", {}, letter), h("sub", {}, sub)));
+  const heads = [["a", index], ["α", index], ["d", "i"], ["θ", "i"]].map(([letter, sub]) =>
+    h("th", { scope: "col" }, h("i", {}, letter), h("sub", {}, sub))
+  );
   const body = rows.map(({ label, cells }) => {
     const shown = cells.map((cell) => h("td", { class: "said" }, mathml(cell.mathml) ?? visible(cell.text)));
     return h("tr", {}, h("th", { scope: "row" }, label), ...shown);
   });
   const caption = h("caption", { class: "aloud" }, "The table in the other convention");
-  return h("table", {}, caption, h("thead", {}, h("tr", {}, h("th", { scope: "col" }, h("span", { class: "aloud" }, "row")), ...heads)), h("tbody", {}, ...body));
+  return h(
+    "table",
+    {},
+    caption,
+    h("thead", {}, h("tr", {}, h("th", { scope: "col" }, h("span", { class: "aloud" }, "row")), ...heads)),
+    h("tbody", {}, ...body),
+  );
 }
 
 /** A robot of the right shape, whatever was stored or linked; null otherwise. */
 function checked(value) {
   const { convention, unit, rows } = value ?? {};
   if (!Array.isArray(rows) || !rows.length || rows.length > MOST_ROWS) return null;
-  const isRow = ({ kind, cells }) => ["R", "P", "F"].includes(kind) && Array.isArray(cells) && cells.length === 4 && cells.every((cell) => typeof cell === "string");
+  const isRow = ({ kind, cells }) =>
+    ["R", "P", "F"].includes(kind) && Array.isArray(cells) && cells.length === 4 &&
+    cells.every((cell) => typeof cell === "string");
   if (!rows.every((row) => row && isRow(row)) || jointNumbers(rows).filter(Boolean).length > MOST_JOINTS) return null;
   return {
     convention: convention === "modified" ? "modified" : "standard",

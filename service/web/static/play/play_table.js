@@ -35,7 +35,11 @@ export class PlayTable {
     this.head = h("tr");
     this.body = h("tbody");
     const caption = h("caption", { class: "aloud" }, "Denavit-Hartenberg table");
-    this.element = h("div", { class: "scroll" }, h("table", { class: "table" }, caption, h("thead", {}, this.head), this.body));
+    this.element = h(
+      "div",
+      { class: "scroll" },
+      h("table", { class: "table" }, caption, h("thead", {}, this.head), this.body),
+    );
   }
 
   /** Draw all rows anew. */
@@ -55,17 +59,41 @@ export class PlayTable {
 
   #row({ kind, cells }, i, joints) {
     const number = i + 1;
-    const options = Object.entries(KINDS).map(([value, text]) => h("option", { value, selected: value === kind, title: text }, KINDS_SHORT[value]));
-    if (kind === "F" && joints >= MOST_JOINTS) for (const option of options.slice(0, 2)) option.disabled = true;
-    const choice = h("select", { "aria-label": `Joint of row ${number}: R turns, P slides, – none`, onchange: (event) => this.host.kindChanged(i, event.target.value) }, ...options);
+    const options = Object.entries(KINDS).map(([value, text]) =>
+      h("option", { value, selected: value === kind, title: text }, KINDS_SHORT[value])
+    );
+    if (kind === "F" && joints >= MOST_JOINTS) { for (const option of options.slice(0, 2)) option.disabled = true; }
+    const choice = h("select", {
+      "aria-label": `Joint of row ${number}: R turns, P slides, – none`,
+      onchange: (event) => this.host.kindChanged(i, event.target.value),
+    }, ...options);
     const made = COLUMNS.map((label, j) => {
-      const cell = new Cell({ id: `play-${i}-${j}`, place: [i, j], label, spoken: `${SPOKEN[label]}, row ${number}` }, this);
+      const cell = new Cell(
+        { id: `play-${i}-${j}`, place: [i, j], label, spoken: `${SPOKEN[label]}, row ${number}` },
+        this,
+      );
       cell.input.value = cells[j];
       return cell;
     });
-    const remove = h("button", { type: "button", class: "quiet-button remove", "aria-label": `Remove row ${number}`, title: "Remove row", onclick: () => this.host.removed(i) }, "×");
+    const remove = h("button", {
+      type: "button",
+      class: "quiet-button remove",
+      "aria-label": `Remove row ${number}`,
+      title: "Remove row",
+      onclick: () => this.host.removed(i),
+    }, "×");
     const head = h("th", { scope: "row" }, String(number));
-    return { cells: made, element: h("tr", {}, head, h("td", { class: "kind" }, choice), ...made.map((cell) => cell.element), h("td", { class: "kind" }, remove)) };
+    return {
+      cells: made,
+      element: h(
+        "tr",
+        {},
+        head,
+        h("td", { class: "kind" }, choice),
+        ...made.map((cell) => cell.element),
+        h("td", { class: "kind" }, remove),
+      ),
+    };
   }
 
   get texts() {
@@ -81,7 +109,7 @@ export class PlayTable {
         const formula = formulas?.cells[i]?.[j];
         if (error) cell.understood(cell.text.trim() ? { error } : null);
         else cell.understood(formula?.text ? formula : null);
-      }),
+      })
     );
   }
 

@@ -2,7 +2,14 @@
 // from one picture that holds each text once.
 
 import {
-  CanvasTexture, InstancedBufferAttribute, InstancedBufferGeometry, Mesh, Object3D, PlaneGeometry, ShaderMaterial, Vector2,
+  CanvasTexture,
+  InstancedBufferAttribute,
+  InstancedBufferGeometry,
+  Mesh,
+  Object3D,
+  PlaneGeometry,
+  ShaderMaterial,
+  Vector2,
 } from "../vendor/three-0.185.1.module.min.js";
 
 // Pixels of a text in that picture, and the share of it that letters fill.
@@ -82,7 +89,13 @@ export class Labels {
     // Otherwise the halo would be mixed with the black of what is transparent.
     texts.premultiplyAlpha = true;
     const uniforms = { texts: { value: texts }, stage: { value: this.stage } };
-    const drawn = { vertexShader: VERTEX, fragmentShader: FRAGMENT, depthTest: false, transparent: true, premultipliedAlpha: true };
+    const drawn = {
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      depthTest: false,
+      transparent: true,
+      premultipliedAlpha: true,
+    };
     const material = new ShaderMaterial({ uniforms, ...drawn });
     const mesh = new Mesh(geometry, material);
     mesh.frustumCulled = false;
@@ -100,7 +113,13 @@ export class Labels {
     canvas.width = Math.max(...widths);
     canvas.height = LINE * texts.length;
     context = canvas.getContext("2d");
-    Object.assign(context, { font: FONT, textAlign: "center", textBaseline: "middle", lineJoin: "round", lineWidth: HALO });
+    Object.assign(context, {
+      font: FONT,
+      textAlign: "center",
+      textBaseline: "middle",
+      lineJoin: "round",
+      lineWidth: HALO,
+    });
     context.strokeStyle = this.palette.paper;
     texts.forEach((each, i) => {
       const colour = this.palette[each.colour];

@@ -32,7 +32,10 @@ export class Sweep {
   async load(arrived) {
     const step = (this.high - this.low) / (PICTURES - 1);
     for (let turn = 0; turn < REQUESTS; turn++) {
-      const amounts = Array.from({ length: PICTURES - (turn ? 1 : 0) }, (_, i) => this.low + (i + turn / REQUESTS) * step);
+      const amounts = Array.from(
+        { length: PICTURES - (turn ? 1 : 0) },
+        (_, i) => this.low + (i + turn / REQUESTS) * step,
+      );
       const answer = await this.request(amounts.map((amount) => this.values.with(this.index, amount)));
       const shots = amounts.map((amount, i) => ({ amount, picture: pictureOf(answer, i) }));
       this.#shots = [...this.#shots, ...shots].sort((one, other) => one.amount - other.amount);
@@ -58,7 +61,8 @@ export function between(from, to, share) {
   const one = from.mechanism;
   const other = to.mechanism;
   return {
-    frames: from.frames && to.frames && from.frames.slice(0, to.frames.length).map((frame, i) => frameBetween(frame, to.frames[i], point)),
+    frames: from.frames && to.frames &&
+      from.frames.slice(0, to.frames.length).map((frame, i) => frameBetween(frame, to.frames[i], point)),
     mechanism: one && {
       centres: points(one.centres, other.centres),
       axes: one.axes.map((axis, i) => direction(axis, other.axes[i])),

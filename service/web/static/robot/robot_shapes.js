@@ -89,7 +89,9 @@ export class ChainShape {
     this.convention = convention;
     this.group = new Group();
     this.lines = Array.from({ length: count - 1 }, () => shapes.rods(3, solid ? "rod" : "chain", !solid));
-    this.joints = solid ? kinds.slice(0, count - 1).map((kind) => kind && new JointShape(shapes, kind === "P", size)) : [];
+    this.joints = solid
+      ? kinds.slice(0, count - 1).map((kind) => kind && new JointShape(shapes, kind === "P", size))
+      : [];
     this.radius = (solid ? ROD : 0.007) * size;
     this.group.add(...this.lines, ...this.joints.filter(Boolean).map((joint) => joint.group));
     if (solid) this.group.add(ground(shapes, size, new Vector3(0, 0, 0), new Vector3(0, 0, 1)));

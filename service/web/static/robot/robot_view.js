@@ -37,7 +37,11 @@ export class RobotView {
     this.frames = new FrameSwitches(() => this.#draw());
     this.robot = this.#switch("Robot", true);
     this.beside = this.#switch("Side by side", false, () => this.stage.reset());
-    this.home = h("button", { type: "button", class: "quiet-button", onclick: () => this.goHome() }, "Home configuration");
+    this.home = h(
+      "button",
+      { type: "button", class: "quiet-button", onclick: () => this.goHome() },
+      "Home configuration",
+    );
     this.over = h("div", { class: "switches" }, this.robot.label, this.beside.label);
     this.element = h(
       "section",
@@ -232,7 +236,9 @@ export class RobotView {
     sweep.others = others;
     this.#sweep = sweep;
     // A picture at the very place where the slider was left is better than one from the sweep.
-    sweep.load(() => sweep === this.#sweep && this.#dragging && this.#follow()).catch(() => sweep === this.#sweep && (this.#sweep = null));
+    sweep.load(() => sweep === this.#sweep && this.#dragging && this.#follow()).catch(() =>
+      sweep === this.#sweep && (this.#sweep = null)
+    );
   }
 
   dragged(i, value) {
@@ -281,7 +287,11 @@ export class RobotView {
     const reason = table?.error?.message ?? (cell && `${place}${cell.error.message}`);
     const lost = table?.lost_freedoms.map((each) => each.message) ?? [];
     const isKept = this.stage.element.classList.contains("stale");
-    const ends = reason && isKept ? " The picture is the one of before." : reason && table.frames[0]?.length ? " The frames end before it." : "";
+    const ends = reason && isKept
+      ? " The picture is the one of before."
+      : reason && table.frames[0]?.length
+      ? " The frames end before it."
+      : "";
     this.told.replaceChildren(...message([reason && reason + ends, ...lost].filter(Boolean).join(" ")));
     this.told.hidden = !this.told.textContent;
   }
@@ -302,6 +312,8 @@ function withoutFormulas({ table, ...body }) {
 /** A size for the parts of a chain without a mechanism. */
 function sizeOf(frames) {
   const origins = frames.map((frame) => column(frame, 3));
-  const spans = [0, 1, 2].map((i) => Math.max(0, ...origins.map((each) => each[i])) - Math.min(0, ...origins.map((each) => each[i])));
+  const spans = [0, 1, 2].map((i) =>
+    Math.max(0, ...origins.map((each) => each[i])) - Math.min(0, ...origins.map((each) => each[i]))
+  );
   return 0.9 * Math.hypot(...spans) || 1;
 }

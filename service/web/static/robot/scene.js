@@ -1,7 +1,18 @@
 // The stage of the 3D view: a camera that goes around, and what is drawn. Nothing is drawn again before
 // something has changed.
 
-import { Color, DirectionalLight, HemisphereLight, MOUSE, PerspectiveCamera, Scene, SRGBColorSpace, Vector2, Vector3, WebGLRenderer } from "../vendor/three-0.185.1.module.min.js";
+import {
+  Color,
+  DirectionalLight,
+  HemisphereLight,
+  MOUSE,
+  PerspectiveCamera,
+  Scene,
+  SRGBColorSpace,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from "../vendor/three-0.185.1.module.min.js";
 import { OrbitControls } from "../vendor/three-0.185.1.orbit-controls.js";
 import { column } from "./motion.js";
 import { paletteOf } from "./palette.js";
@@ -71,7 +82,10 @@ export class RobotScene {
     const { kinds, rowKinds, size, convention, solid } = this.#subject;
     const { frames, mechanism } = this.#picture;
     this.palette = paletteOf(this.stage);
-    const [below, above] = (this.shapes = [new Shapes(this.palette, this.solids, this.size), new Shapes(this.palette, this.over, this.size)]);
+    const [below, above] = (this.shapes = [
+      new Shapes(this.palette, this.solids, this.size),
+      new Shapes(this.palette, this.over, this.size),
+    ]);
     this.mechanism = mechanism && new MechanismShape(below, kinds, size, mechanism);
     const count = frames?.length ?? 0;
     this.chain = count > 1 ? new ChainShape(solid ? below : above, rowKinds, convention, size, count, solid) : null;
@@ -117,7 +131,9 @@ export class RobotScene {
     this.towards = new Vector3(Math.cos(height) * Math.cos(turn), Math.cos(height) * Math.sin(turn), Math.sin(height));
     const across = new Vector3(-Math.sin(turn), Math.cos(turn), 0);
     const { mechanism, frames } = this.#picture;
-    const robot = mechanism ? [mechanism.base, mechanism.tool, ...mechanism.centres, ...mechanism.links.flat()].map(vector) : [];
+    const robot = mechanism
+      ? [mechanism.base, mechanism.tool, ...mechanism.centres, ...mechanism.links.flat()].map(vector)
+      : [];
     const chain = (frames ?? []).map((frame) => vector(column(frame, 3)));
     const widths = [...robot, ...chain].map((point) => point.dot(across));
     const width = Math.max(...widths, 0) - Math.min(...widths, 0);

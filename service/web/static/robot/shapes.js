@@ -2,8 +2,17 @@
 // a place in the scene; all parts of one shape are drawn at once, which is what pictures cost most.
 
 import {
-  BoxGeometry, Color, ConeGeometry, CylinderGeometry, Group, InstancedMesh, MeshBasicMaterial, MeshLambertMaterial,
-  Object3D, SphereGeometry, Vector3,
+  BoxGeometry,
+  Color,
+  ConeGeometry,
+  CylinderGeometry,
+  Group,
+  InstancedMesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  Object3D,
+  SphereGeometry,
+  Vector3,
 } from "../vendor/three-0.185.1.module.min.js";
 import { Labels } from "./labels.js";
 

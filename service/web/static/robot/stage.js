@@ -43,7 +43,9 @@ export class Stage {
       this.#scene = new RobotScene(this.room, drawnBy === "software");
       this.#controls();
     } catch {
-      const reason = drawnBy ? "The 3D view could not be loaded." : "This browser has no WebGL, which the 3D view needs.";
+      const reason = drawnBy
+        ? "The 3D view could not be loaded."
+        : "This browser has no WebGL, which the 3D view needs.";
       await this.#openFlat(reason);
     }
   }
@@ -77,9 +79,13 @@ export class Stage {
     const { canvas } = this.#scene;
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "img");
-    canvas.setAttribute("aria-label", "The robot in 3D. Arrow keys go around it, plus and minus zoom, 0 shows all of it.");
+    canvas.setAttribute(
+      "aria-label",
+      "The robot in 3D. Arrow keys go around it, plus and minus zoom, 0 shows all of it.",
+    );
     canvas.addEventListener("keydown", (event) => this.#pressed(event));
-    const button = (text, name, act) => h("button", { type: "button", title: name, "aria-label": name, onclick: act }, text);
+    const button = (text, name, act) =>
+      h("button", { type: "button", title: name, "aria-label": name, onclick: act }, text);
     const turn = (right, up) => () => this.#scene.turn(right * TURN, up * TURN);
     this.element.append(
       h(

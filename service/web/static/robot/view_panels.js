@@ -40,7 +40,13 @@ export class JointSliders {
       onpointerdown: prepare,
       onfocus: prepare,
     });
-    return h("div", { class: "slider" }, h("span", { class: "name", "aria-hidden": "true" }, symbolName(variable)), field, h("output", {}));
+    return h(
+      "div",
+      { class: "slider" },
+      h("span", { class: "name", "aria-hidden": "true" }, symbolName(variable)),
+      field,
+      h("output", {}),
+    );
   }
 
   /** Show the value of a joint. */
@@ -61,7 +67,12 @@ export class SymbolFields {
     this.chosen = chosen;
     this.descriptions = descriptions;
     this.fields = h("div", { class: "lengths" });
-    this.element = h("details", { class: "symbols-more", hidden: true }, h("summary", {}, "Lengths and other symbols"), this.fields);
+    this.element = h(
+      "details",
+      { class: "symbols-more", hidden: true },
+      h("summary", {}, "Lengths and other symbols"),
+      this.fields,
+    );
   }
 
   show(symbols) {
@@ -78,9 +89,21 @@ export class SymbolFields {
 
   #field(name) {
     const described = this.descriptions[name] && visible(this.descriptions[name]);
-    const changed = ({ target: { valueAsNumber: value } }) => Number.isFinite(value) && Math.abs(value) <= LARGEST && this.chosen(name, value);
-    const field = h("input", { type: "number", step: 0.05, name, oninput: changed, "aria-label": described ? `${name}: ${described}` : name });
-    return h("label", { title: described ?? null }, h("span", { class: "name", "aria-hidden": "true" }, symbolName(name)), field);
+    const changed = ({ target: { valueAsNumber: value } }) =>
+      Number.isFinite(value) && Math.abs(value) <= LARGEST && this.chosen(name, value);
+    const field = h("input", {
+      type: "number",
+      step: 0.05,
+      name,
+      oninput: changed,
+      "aria-label": described ? `${name}: ${described}` : name,
+    });
+    return h(
+      "label",
+      { title: described ?? null },
+      h("span", { class: "name", "aria-hidden": "true" }, symbolName(name)),
+      field,
+    );
   }
 }
 
@@ -105,10 +128,20 @@ export class FrameSwitches {
     if (this.element.children.length === (count ? count + 1 : 0)) return;
     const toggle = (i, on) => (on ? this.#hidden.delete(i) : this.#hidden.add(i), this.changed());
     const boxes = Array.from({ length: count }, (_, i) => {
-      const box = h("input", { type: "checkbox", checked: this.isShown(i), "aria-label": `Show frame ${i}`, onchange: (event) => toggle(i, event.target.checked) });
+      const box = h("input", {
+        type: "checkbox",
+        checked: this.isShown(i),
+        "aria-label": `Show frame ${i}`,
+        onchange: (event) => toggle(i, event.target.checked),
+      });
       return h("label", {}, box, ` {${i}}`);
     });
-    const legend = h("span", { class: "legend" }, "Frames ", ...["x", "y", "z"].map((axis) => h("i", { class: axis }, axis)));
+    const legend = h(
+      "span",
+      { class: "legend" },
+      "Frames ",
+      ...["x", "y", "z"].map((axis) => h("i", { class: axis }, axis)),
+    );
     this.element.replaceChildren(...(count ? [legend, ...boxes] : []));
   }
 }
@@ -123,7 +156,9 @@ export class PoseNumbers {
     const lines = [];
     if (mechanism) lines.push(["Tool of the robot", mechanism.tool]);
     if (frames?.length > 1) lines.push([`Origin of your frame {${frames.length - 1}}`, column(frames.at(-1), 3)]);
-    if (this.element.children.length !== lines.length) this.element.replaceChildren(...lines.map(() => h("p", {}, h("span"), h("code"))));
+    if (this.element.children.length !== lines.length) {
+      this.element.replaceChildren(...lines.map(() => h("p", {}, h("span"), h("code"))));
+    }
     lines.forEach(([name, point], i) => {
       const [label, value] = this.element.children[i].children;
       label.textContent = name;

@@ -112,7 +112,9 @@ export class Cell {
     if (verdict) this.element.dataset.verdict = verdict;
     else delete this.element.dataset.verdict;
     this.sign.replaceChildren(
-      ...(verdict ? [h("span", { "aria-hidden": "true" }, SIGNS[verdict]), h("span", { class: "aloud" }, verdict)] : []),
+      ...(verdict
+        ? [h("span", { "aria-hidden": "true" }, SIGNS[verdict]), h("span", { class: "aloud" }, verdict)]
+        : []),
     );
     this.input.setAttribute("aria-label", verdict ? `${this.spoken}: ${verdict}` : this.spoken);
   }

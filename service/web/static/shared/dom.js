@@ -17,10 +17,12 @@ const UNSEEN = /[\p{Cc}\p{Cf}\p{Co}\p{Cn}\u2028\u2029]/gu;
 
 /** The text with every invisible character written out by its number, so that it cannot mislead. */
 export function visible(text) {
-  return String(text).replace(UNSEEN, (character) =>
-    character === "\n" || character === "\t"
-      ? " "
-      : `[U+${character.codePointAt(0).toString(16).toUpperCase().padStart(4, "0")}]`,
+  return String(text).replace(
+    UNSEEN,
+    (character) =>
+      character === "\n" || character === "\t"
+        ? " "
+        : `[U+${character.codePointAt(0).toString(16).toUpperCase().padStart(4, "0")}]`,
   );
 }
 

@@ -9,7 +9,8 @@ const MATHML_TAGS = new Set(
     "munderover mstyle mpadded mphantom semantics").split(" "),
 );
 const XHTML_TAGS = new Set(
-  "p ul ol li em strong b i code pre br hr blockquote table thead tbody tr th td h2 h3 h4 h5 h6 sub sup dl dt dd div span".split(" "),
+  "p ul ol li em strong b i code pre br hr blockquote table thead tbody tr th td h2 h3 h4 h5 h6 sub sup dl dt dd div span"
+    .split(" "),
 );
 const DROPPED = new Set(["annotation", "annotation-xml", "script", "style", "template", "iframe", "object"]);
 const ATTRIBUTES = new Set(

@@ -62,11 +62,15 @@ export function answersIn(hash) {
 
 /** Answers of the right shape, whatever was stored or linked: `{unit, parts: {id: {cells, choice}}}`. */
 function checked(value) {
-  if (typeof value !== "object" || value === null || typeof value.parts !== "object" || value.parts === null) return null;
+  if (typeof value !== "object" || value === null || typeof value.parts !== "object" || value.parts === null) {
+    return null;
+  }
   const isPart = (part) => Array.isArray(part?.cells) && part.cells.every((cell) => typeof cell === "string");
   const given = Object.entries(value.parts);
   if (!given.every(([, part]) => isPart(part))) return null;
   // Made from entries, so that a part named __proto__ is a part like any other.
-  const parts = Object.fromEntries(given.map(([id, { cells, choice }]) => [id, { cells, choice: typeof choice === "string" ? choice : "" }]));
+  const parts = Object.fromEntries(
+    given.map(([id, { cells, choice }]) => [id, { cells, choice: typeof choice === "string" ? choice : "" }]),
+  );
   return { unit: value.unit === "degrees" ? "degrees" : "radians", parts };
 }

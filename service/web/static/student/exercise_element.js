@@ -12,7 +12,7 @@ import { html } from "../shared/markup.js";
 import { PartView } from "./part_view.js";
 import { Previewer } from "./previewer.js";
 import { Service } from "../shared/service.js";
-import { Store, answersIn, fragment } from "../shared/storage.js";
+import { answersIn, fragment, Store } from "../shared/storage.js";
 
 const TOKENS = new URL("../shared/tokens.css", import.meta.url).href;
 const STYLE = new URL("./element.css", import.meta.url).href;
@@ -65,7 +65,9 @@ export class DhExercise extends HTMLElement {
     const base = new URL(this.getAttribute("api") ?? HOME, document.baseURI).href.replace(/\/?$/, "/");
     this.service = new Service(base, () => this.getAttribute("token"));
     this.main.setAttribute("aria-busy", "true");
-    this.state.replaceChildren(h("div", { class: "progress", role: "progressbar", "aria-label": "Loading the exercise" }));
+    this.state.replaceChildren(
+      h("div", { class: "progress", role: "progressbar", "aria-label": "Loading the exercise" }),
+    );
     try {
       const exercise = await this.service.exercise(id);
       if (turn === this.#loading) this.#show(exercise);
@@ -79,9 +81,17 @@ export class DhExercise extends HTMLElement {
 
   /** A state without an exercise. */
   #tell(title, text, again = false) {
-    const button = again ? h("button", { type: "button", class: "quiet-button", onclick: () => this.#begin() }, "Try again") : null;
+    const button = again
+      ? h("button", { type: "button", class: "quiet-button", onclick: () => this.#begin() }, "Try again")
+      : null;
     this.state.replaceChildren(
-      h("div", { class: "card trouble", role: "alert" }, h("p", {}, h("strong", {}, title)), h("p", {}, visible(text)), button),
+      h(
+        "div",
+        { class: "card trouble", role: "alert" },
+        h("p", {}, h("strong", {}, title)),
+        h("p", {}, visible(text)),
+        button,
+      ),
     );
   }
 
@@ -123,12 +133,18 @@ export class DhExercise extends HTMLElement {
   #save() {
     const empty = this.#parts.every((part) => part.isEmpty);
     const kept = this.store.save(empty ? null : this.answers);
-    this.saved.textContent = empty ? "" : kept ? "Kept in this browser" : "This browser keeps nothing: a reload loses the answers";
+    this.saved.textContent = empty
+      ? ""
+      : kept
+      ? "Kept in this browser"
+      : "This browser keeps nothing: a reload loses the answers";
   }
 
   /** All answers: `{unit, parts: {id: {cells, choice}}}`. */
   get answers() {
-    const parts = Object.fromEntries(this.#parts.filter((part) => !part.isEmpty).map((part) => [part.part.id, part.state]));
+    const parts = Object.fromEntries(
+      this.#parts.filter((part) => !part.isEmpty).map((part) => [part.part.id, part.state]),
+    );
     return { unit: this.unit.value, parts };
   }
 
@@ -156,7 +172,14 @@ export class DhExercise extends HTMLElement {
       .map((part) => new PartView(part, this, level + 1));
     this.main.replaceChildren(
       this.#about(level),
-      h("div", { class: "parts" }, this.#tools(), this.#received(), ...this.#parts.map((part) => part.element), this.#bar()),
+      h(
+        "div",
+        { class: "parts" },
+        this.#tools(),
+        this.#received(),
+        ...this.#parts.map((part) => part.element),
+        this.#bar(),
+      ),
     );
     this.state.replaceChildren();
     const shared = this.hasAttribute("linked") ? answersIn(location.hash) : null;
@@ -178,7 +201,12 @@ export class DhExercise extends HTMLElement {
   // The robot in 3D, loaded when it is asked for.
 
   #viewButton() {
-    this.opener = h("button", { type: "button", class: "quiet-button", "aria-expanded": "false", onclick: () => this.#toggleView() }, "Move it in 3D");
+    this.opener = h("button", {
+      type: "button",
+      class: "quiet-button",
+      "aria-expanded": "false",
+      onclick: () => this.#toggleView(),
+    }, "Move it in 3D");
     return this.opener;
   }
 
@@ -190,7 +218,7 @@ export class DhExercise extends HTMLElement {
       const { RobotView } = await import("../robot/robot_view.js");
       if (turn === this.#loading && !this.view) this.#openView(new RobotView(this.#viewHost()));
     } catch {
-      this.announce((this.saved.textContent = "The 3D view could not be loaded"));
+      this.announce(this.saved.textContent = "The 3D view could not be loaded");
     }
     return this.opener.removeAttribute("aria-busy");
   }
@@ -248,7 +276,17 @@ export class DhExercise extends HTMLElement {
     const address = this.service.address(`v1/exercises/${encodeURIComponent(this.exercise.id)}/figure.svg${asked}`);
     // The text below must not jump when the drawing arrives.
     const loaded = ({ target }) => target.classList.remove("loading");
-    return h("figure", {}, h("img", { src: address, alt: `Drawing of the robot: ${visible(this.exercise.title)}`, class: "loading", onload: loaded, onerror: loaded }));
+    return h(
+      "figure",
+      {},
+      h("img", {
+        src: address,
+        alt: `Drawing of the robot: ${visible(this.exercise.title)}`,
+        class: "loading",
+        onload: loaded,
+        onerror: loaded,
+      }),
+    );
   }
 
   #symbols(level) {
@@ -256,7 +294,9 @@ export class DhExercise extends HTMLElement {
       h("dt", {}, h("code", {}, visible(name))),
       h("dd", {}, visible(unit ? `${description} (${unit})` : description)),
     ]);
-    return symbols.length ? h("section", { class: "symbols" }, h(`h${level}`, {}, "Symbols"), h("dl", {}, ...symbols)) : null;
+    return symbols.length
+      ? h("section", { class: "symbols" }, h(`h${level}`, {}, "Symbols"), h("dl", {}, ...symbols))
+      : null;
   }
 
   #received() {

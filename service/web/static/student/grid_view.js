@@ -85,7 +85,9 @@ export class RowView {
     if (verdict) this.element.dataset.verdict = verdict;
     else delete this.element.dataset.verdict;
     this.sign.replaceChildren(
-      ...(verdict ? [h("span", { "aria-hidden": "true" }, SIGNS[verdict]), h("span", { class: "aloud" }, verdict)] : []),
+      ...(verdict
+        ? [h("span", { "aria-hidden": "true" }, SIGNS[verdict]), h("span", { class: "aloud" }, verdict)]
+        : []),
     );
   }
 }

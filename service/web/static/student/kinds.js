@@ -21,8 +21,19 @@ const FORMS = {
   dh_table(shape) {
     const either = shape.convention === "either";
     return {
-      grids: [{ title: "", look: "table", columns: parameters(shape), rows: shape.rows.map((label) => row(label, label === "e" ? "e, end effector" : label)) }],
-      choices: either ? { "": "Convention: not said", standard: "Convention: standard (distal)", modified: "Convention: modified (proximal)" } : null,
+      grids: [{
+        title: "",
+        look: "table",
+        columns: parameters(shape),
+        rows: shape.rows.map((label) => row(label, label === "e" ? "e, end effector" : label)),
+      }],
+      choices: either
+        ? {
+          "": "Convention: not said",
+          standard: "Convention: standard (distal)",
+          modified: "Convention: modified (proximal)",
+        }
+        : null,
       answer: (texts, choice) => ({
         rows: chunks(texts, shape.columns.length).map((values) => named(shape.columns, values)),
         ...(choice ? { convention: choice } : {}),
@@ -65,7 +76,12 @@ const FORMS = {
     }));
     const letter = kind === "euler_angles" ? "angle" : "value";
     return {
-      grids: [{ title: "", look: "list", columns: [{ label: "1", head: letter, spoken: "", quantity: "number" }], rows }],
+      grids: [{
+        title: "",
+        look: "list",
+        columns: [{ label: "1", head: letter, spoken: "", quantity: "number" }],
+        rows,
+      }],
       choices: null,
       answer: (texts) => texts,
     };
@@ -76,7 +92,12 @@ const FORMS = {
     const letter = shape.frame === "body" ? "B" : "S";
     const columns = shape.columns.map((label, i) => ({ label, head: heads[i], spoken: heads[i], quantity: "number" }));
     return {
-      grids: [{ title: "", look: "table", columns, rows: shape.rows.map((label) => row(label, `${letter}${label}`, `${letter}${label}`)) }],
+      grids: [{
+        title: "",
+        look: "table",
+        columns,
+        rows: shape.rows.map((label) => row(label, `${letter}${label}`, `${letter}${label}`)),
+      }],
       choices: null,
       answer: (texts) => chunks(texts, columns.length),
     };

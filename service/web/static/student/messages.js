@@ -21,7 +21,12 @@ export function item(feedback, { place = "", verdict = "incorrect", repair = nul
   const text = h("p", {}, where ? h("strong", {}, visible(where), ": ") : null, ...message(feedback.message));
   const correction = feedback.correction;
   if (correction) {
-    text.append(" ", ...(correction.latex === undefined ? message(correction.text) : ["It should be ", h("code", {}, visible(correction.text)), "."]));
+    text.append(
+      " ",
+      ...(correction.latex === undefined
+        ? message(correction.text)
+        : ["It should be ", h("code", {}, visible(correction.text)), "."]),
+    );
   }
   if (feedback.values) text.append(" ", h("span", { class: "quiet" }, visible(counterexample(feedback.values))));
   if (feedback.suggestion && repair) text.append(" ", repair(feedback.suggestion));

@@ -1,6 +1,6 @@
 // One part of an exercise: its prompt, its cells, the bar that says how the cell is read, its report.
 
-import { h, points, visible, message } from "../shared/dom.js";
+import { h, message, points, visible } from "../shared/dom.js";
 import { gridsOf } from "./grid_view.js";
 import { layoutOf } from "./kinds.js";
 import { html, mathml } from "../shared/markup.js";
@@ -129,11 +129,17 @@ export class PartView {
     const name = h("strong", {}, `${cell.spoken || this.part.title}: `);
     if (reading.error) {
       const { suggestion } = reading.error;
-      this.reading.replaceChildren(name, ...message(reading.error.message), " ", suggestion ? cell.repair(suggestion) : "");
+      this.reading.replaceChildren(
+        name,
+        ...message(reading.error.message),
+        " ",
+        suggestion ? cell.repair(suggestion) : "",
+      );
       if (aloud) this.host.announce(`Not read: ${reading.error.message}`, 1200);
       return undefined;
     }
-    const notes = reading.notes?.flatMap((note) => [" ", h("span", { class: "quiet" }, ...message(note.message))]) ?? [];
+    const notes = reading.notes?.flatMap((note) => [" ", h("span", { class: "quiet" }, ...message(note.message))]) ??
+      [];
     return this.reading.replaceChildren(name, mathml(reading.mathml) ?? visible(reading.text), ...notes);
   }
 
@@ -193,12 +199,19 @@ export class PartView {
       this.#say(`The pasted text filled ${pairs.length} cells. Ctrl+Z takes it back.`, grid?.notes);
       return;
     }
-    const misfit = grid?.rows ? `The pasted text has ${grid.rows.length} rows, which do not fit here.` : grid?.error?.message;
+    const misfit = grid?.rows
+      ? `The pasted text has ${grid.rows.length} rows, which do not fit here.`
+      : grid?.error?.message;
     const told = misfit && !grid.ok ? `Not read as a table or matrix: ${misfit}` : misfit;
     // Glued together, a script or several lines would only hide what stood in the cell.
     if (told && (grid.error?.code === SCRIPT || text.trim().includes("\n"))) return this.#say(told);
     const before = cell.text;
-    cell.input.setRangeText(text.replace(/\s*\n\s*/g, " ").trim(), cell.input.selectionStart, cell.input.selectionEnd, "end");
+    cell.input.setRangeText(
+      text.replace(/\s*\n\s*/g, " ").trim(),
+      cell.input.selectionStart,
+      cell.input.selectionEnd,
+      "end",
+    );
     const after = cell.text;
     cell.put(after);
     this.host.history.note([{ target: cell, before, after }]);

@@ -53,12 +53,16 @@ async function grade(input) {
   input.value = "";
   frame.hidden = byId("report-bar").hidden = true;
   if (!files.length) return tell("There is no file in it.");
-  if (files.length > MOST_FILES) return tell(`${files.length} files are too many here: grade them on the command line.`);
+  if (files.length > MOST_FILES) {
+    return tell(`${files.length} files are too many here: grade them on the command line.`);
+  }
   tell(`Grading ${files.length} ${files.length === 1 ? "file" : "files"} …`);
   const upload = { exercise: exercise.value, part: part.value || null, files: await Promise.all(files.map(sent)) };
   const packed = new Blob([JSON.stringify(upload)]).stream().pipeThrough(new CompressionStream("gzip"));
   const body = await new Response(packed).arrayBuffer();
-  if (body.byteLength > MOST_PACKED) return tell("The files are too large for the browser: grade them on the command line.");
+  if (body.byteLength > MOST_PACKED) {
+    return tell("The files are too large for the browser: grade them on the command line.");
+  }
   try {
     archive = await (await post("../tutor/class", body, "application/gzip")).arrayBuffer();
     found = entries(archive);

@@ -61,9 +61,7 @@ function show({ findings, summary, preview }) {
 }
 
 function item({ level, field, text, line }) {
-  const place = line
-    ? h("button", { type: "button", class: "line", onclick: () => go(line) }, `line ${line}`)
-    : null;
+  const place = line ? h("button", { type: "button", class: "line", onclick: () => go(line) }, `line ${line}`) : null;
   return h(
     "li",
     {},

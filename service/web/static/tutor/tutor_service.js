@@ -25,7 +25,7 @@ export async function send(path, body) {
 
 /** The same; where the service has no room for it now, it is sent again. */
 export async function sendPatiently(path, body) {
-  for (let left = TRIES; ; left -= 1) {
+  for (let left = TRIES;; left -= 1) {
     try {
       return await send(path, body);
     } catch (error) {

@@ -18,7 +18,9 @@ async function load() {
     const { exercise: name, learner } = found.attempt;
     const exercise = await get(`v1/exercises/${encodeURIComponent(name)}`).catch(() => null);
     // Also, a browser that shows a key here shows it from then on to all that is beside /v1/attempts.
-    const { attempts } = await get(`v1/attempts?${new URLSearchParams({ exercise: name, learner, limit: MOST_LISTED })}`);
+    const { attempts } = await get(
+      `v1/attempts?${new URLSearchParams({ exercise: name, learner, limit: MOST_LISTED })}`,
+    );
     show(found, exercise, attempts);
     tell(state, "");
   } catch (error) {
@@ -50,7 +52,9 @@ function reports({ report, earlier_reports: earlier }, drawn) {
     { report, text: `Newest report: ${points(report.points, report.max_points)}` },
     ...earlier.toReversed().map((each) => ({
       report: each.report,
-      text: `Until ${moment(each.replaced_at).textContent}: ${points(each.report.points, each.max_points)}, version ${each.version}`,
+      text: `Until ${moment(each.replaced_at).textContent}: ${
+        points(each.report.points, each.max_points)
+      }, version ${each.version}`,
     })),
   ];
   const options = all.map(({ text }, i) => h("option", { value: i }, visible(text)));
@@ -66,11 +70,18 @@ function facts({ attempt, submission, report }, exercise, attempts) {
     ["Learner", list({ learner }, learnerName(learner))],
     ["Exercise", list({ exercise: attempt.exercise }, h("code", {}, attempt.exercise))],
     ["Handed in", h("span", {}, moment(at), late ? ", late" : "")],
-    ["Attempt", ordinal === undefined ? `does not count: ${isEmpty(submission.answers) ? "it is empty" : "nothing could be read"}` : `no. ${ordinal}`],
-    attempts.length > 1 && ["All attempts", h("ul", { class: "all-attempts" }, ...attempts.toReversed().map(ofLearner))],
+    [
+      "Attempt",
+      ordinal === undefined
+        ? `does not count: ${isEmpty(submission.answers) ? "it is empty" : "nothing could be read"}`
+        : `no. ${ordinal}`,
+    ],
+    attempts.length > 1 &&
+    ["All attempts", h("ul", { class: "all-attempts" }, ...attempts.toReversed().map(ofLearner))],
     ["Points", h("strong", {}, earned(attempt))],
     attempt.awarded !== undefined && ["instead of", points(attempt.points, attempt.max_points)],
-    late && report.points > 0 && ["by its report", `${points(report.points, report.max_points)}, ${lateShare(attempt.points / report.points)}`],
+    late && report.points > 0 &&
+    ["by its report", `${points(report.points, report.max_points)}, ${lateShare(attempt.points / report.points)}`],
     ["Plain angles in", submission.angle_unit ?? "radians"],
     ["Graded by", h("span", {}, `exercise ${version}${isOld ? " (not the one of today)" : ""}, program ${grader}`)],
   ].filter(Boolean);
@@ -94,7 +105,15 @@ function ofLearner({ id: other, ordinal }) {
   const name = ordinal === undefined ? "–" : String(ordinal);
   const spoken = ordinal === undefined ? "one that does not count" : `no. ${ordinal}`;
   if (other === id) return h("li", {}, h("strong", { "aria-current": "true", "aria-label": `${spoken}, shown` }, name));
-  return h("li", {}, h("a", { href: address(`tutor/attempts/${encodeURIComponent(other)}${location.search}`), "aria-label": spoken }, name));
+  return h(
+    "li",
+    {},
+    h(
+      "a",
+      { href: address(`tutor/attempts/${encodeURIComponent(other)}${location.search}`), "aria-label": spoken },
+      name,
+    ),
+  );
 }
 
 /** The form for other points than the report's, and those that were given. */
@@ -102,7 +121,15 @@ class PointsGiven {
   /** `changed` gets the attempt anew after each change. */
   constructor({ max_points: most }, changed) {
     this.changed = changed;
-    this.points = h("input", { id: "points", type: "number", min: 0, max: most, step: "any", required: true, inputmode: "decimal" });
+    this.points = h("input", {
+      id: "points",
+      type: "number",
+      min: 0,
+      max: most,
+      step: "any",
+      required: true,
+      inputmode: "decimal",
+    });
     this.reason = h("input", { id: "reason", type: "text", maxlength: 1000, required: true, autocomplete: "off" });
     this.author = h("input", { id: "author", type: "text", maxlength: 150, autocomplete: "name" });
     this.withdrawal = h("button", { type: "submit", value: "withdraw" }, "Withdraw them");
@@ -143,7 +170,10 @@ class PointsGiven {
       const { awarded } = await send(`${path}/override`, body);
       this.changed(await get(path));
       this.reason.value = "";
-      tell(this.told, isWithdrawal ? "Withdrawn: the report's points count." : `The attempt has ${number(awarded)} points.`);
+      tell(
+        this.told,
+        isWithdrawal ? "Withdrawn: the report's points count." : `The attempt has ${number(awarded)} points.`,
+      );
     } catch (error) {
       failed(error, this.told);
     }
@@ -153,7 +183,13 @@ class PointsGiven {
 function field(label, input, hint) {
   const described = `${input.id}-hint`;
   input.setAttribute("aria-describedby", described);
-  return h("p", { class: "field" }, h("label", { for: input.id }, label), input, h("span", { class: "quiet", id: described }, hint));
+  return h(
+    "p",
+    { class: "field" },
+    h("label", { for: input.id }, label),
+    input,
+    h("span", { class: "quiet", id: described }, hint),
+  );
 }
 
 function override({ points: given, reason, author, at }) {

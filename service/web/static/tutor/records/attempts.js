@@ -1,7 +1,20 @@
 // The list of recorded attempts: filters, pages, and all of a learner deleted.
 
 import { h } from "../../shared/dom.js";
-import { byId, count, earned, failed, learnerName, moment, nothing, query, showExports, span, table, tell } from "./records.js";
+import {
+  byId,
+  count,
+  earned,
+  failed,
+  learnerName,
+  moment,
+  nothing,
+  query,
+  showExports,
+  span,
+  table,
+  tell,
+} from "./records.js";
 import { address, get, send } from "../tutor_service.js";
 
 const FIELDS = ["exercise", "learner", "since", "until", "counted"];
@@ -37,9 +50,10 @@ function draw({ attempts, next }, wanted) {
     tell(state, "");
     const isNarrowed = Object.values(wanted).some(Boolean);
     list.replaceChildren(
-      isNarrowed
-        ? nothing("No attempt is like this", "Take a filter away.")
-        : nothing("Nobody has handed in yet", "Attempts appear here when a course records them: POST /v1/exercises/{id}/attempts."),
+      isNarrowed ? nothing("No attempt is like this", "Take a filter away.") : nothing(
+        "Nobody has handed in yet",
+        "Attempts appear here when a course records them: POST /v1/exercises/{id}/attempts.",
+      ),
     );
     return;
   }
@@ -47,7 +61,17 @@ function draw({ attempts, next }, wanted) {
   const more = next || page > 1 ? `Page ${page}: ` : "";
   tell(state, `${more}${count(attempts.length, "attempt")}${next ? ", and there are older ones" : ""}.`);
   list.replaceChildren(
-    wanted.exercise ? h("p", { class: "ways-on" }, h("a", { href: address(`tutor/statistics/${encodeURIComponent(wanted.exercise)}`) }, "Statistics and regrade of this exercise")) : "",
+    wanted.exercise
+      ? h(
+        "p",
+        { class: "ways-on" },
+        h(
+          "a",
+          { href: address(`tutor/statistics/${encodeURIComponent(wanted.exercise)}`) },
+          "Statistics and regrade of this exercise",
+        ),
+      )
+      : "",
     table("Attempts", ["When", "Learner", "Points", "No.", "Exercise", "Remarks"], attempts.map(row)),
     pages(next),
   );
@@ -55,10 +79,26 @@ function draw({ attempts, next }, wanted) {
 
 function row(attempt) {
   const { id, exercise, learner, ordinal, at, is_late: late, awarded } = attempt;
-  const remarks = [ordinal === undefined && "nothing readable", late && "late", awarded !== undefined && "points by a tutor"];
+  const remarks = [
+    ordinal === undefined && "nothing readable",
+    late && "late",
+    awarded !== undefined && "points by a tutor",
+  ];
   // The attempt's page leads back to the list as it is now.
-  const open = h("a", { href: address(`tutor/attempts/${encodeURIComponent(id)}`) + location.search }, moment(at), h("span", { class: "aloud" }, " by ", learnerName(learner)));
-  return [open, learnerName(learner), earned(attempt), String(ordinal ?? "–"), h("code", {}, exercise), remarks.filter(Boolean).join(", ")];
+  const open = h(
+    "a",
+    { href: address(`tutor/attempts/${encodeURIComponent(id)}`) + location.search },
+    moment(at),
+    h("span", { class: "aloud" }, " by ", learnerName(learner)),
+  );
+  return [
+    open,
+    learnerName(learner),
+    earned(attempt),
+    String(ordinal ?? "–"),
+    h("code", {}, exercise),
+    remarks.filter(Boolean).join(", "),
+  ];
 }
 
 function pages(next) {
@@ -72,7 +112,9 @@ function pages(next) {
   return h(
     "nav",
     { class: "pages", "aria-label": "Pages of the list" },
-    cursors.length > 1 ? h("button", { type: "button", onclick: turnTo(cursors.slice(0, -1)) }, "Newer attempts") : null,
+    cursors.length > 1
+      ? h("button", { type: "button", onclick: turnTo(cursors.slice(0, -1)) }, "Newer attempts")
+      : null,
     next ? h("button", { type: "button", onclick: turnTo([...cursors, next]) }, "Older attempts") : null,
   );
 }
@@ -110,7 +152,11 @@ async function lookUp(event) {
 }
 
 const amounts = ({ attempts, earlier_reports: earlier, overrides }) =>
-  [count(attempts, "attempt"), earlier && count(earlier, "earlier report"), overrides && `points given ${overrides === 1 ? "once" : `${overrides} times`}`]
+  [
+    count(attempts, "attempt"),
+    earlier && count(earlier, "earlier report"),
+    overrides && `points given ${overrides === 1 ? "once" : `${overrides} times`}`,
+  ]
     .filter(Boolean)
     .join(", ");
 
@@ -124,7 +170,12 @@ function confirm(found) {
     h(
       "p",
       { class: "choices" },
-      h("button", { type: "button", class: "danger", onclick: () => forget(found.learner).then(close) }, "Delete all of ", learnerName(found.learner)),
+      h(
+        "button",
+        { type: "button", class: "danger", onclick: () => forget(found.learner).then(close) },
+        "Delete all of ",
+        learnerName(found.learner),
+      ),
       h("button", { type: "button", autofocus: true, onclick: close }, "Keep it"),
     ),
   );
@@ -135,7 +186,9 @@ function confirm(found) {
 async function forget(learner) {
   try {
     const deleted = await send("v1/learners/forget", { learner, apply: true });
-    const later = deleted.erased === false ? " Another program is reading the database: the text is overwritten in its files when that has ended." : "";
+    const later = deleted.erased === false
+      ? " Another program is reading the database: the text is overwritten in its files when that has ended."
+      : "";
     tell(forgetState, `Deleted of ${learner}: ${amounts(deleted)}.${later}`);
     byId("forgotten").value = "";
     await changed();

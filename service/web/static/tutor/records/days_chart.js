@@ -31,11 +31,20 @@ export function daysCharts(all) {
 /** One chart, in which a bar of `most` has the full height. */
 function chart(counts, bars, most) {
   const step = Math.min(WIDTH / bars.length, 16);
-  const drawn = make("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, width: WIDTH, height: HEIGHT, role: "img", "aria-label": inWords(counts), class: "days" });
+  const drawn = make("svg", {
+    viewBox: `0 0 ${WIDTH} ${HEIGHT}`,
+    width: WIDTH,
+    height: HEIGHT,
+    role: "img",
+    "aria-label": inWords(counts),
+    class: "days",
+  });
   drawn.append(make("path", { d: `M0 ${HEIGHT - 0.5}H${bars.length * step}`, class: "ground" }));
   bars.forEach((times, i) => {
     const height = times && Math.max((times / most) * (HEIGHT - 3), 2);
-    if (times) drawn.append(make("rect", { x: i * step + step * 0.1, y: HEIGHT - 1 - height, width: step * 0.8, height }));
+    if (times) {
+      drawn.append(make("rect", { x: i * step + step * 0.1, y: HEIGHT - 1 - height, width: step * 0.8, height }));
+    }
   });
   return drawn;
 }

@@ -7,7 +7,9 @@ import { PartView } from "../../student/part_view.js";
 import { Previewer } from "../../student/previewer.js";
 import { send } from "../tutor_service.js";
 
-const SHEETS = ["../../shared/tokens.css", "../../student/element.css", "./recorded.css"].map((name) => new URL(name, import.meta.url).href);
+const SHEETS = ["../../shared/tokens.css", "../../student/element.css", "./recorded.css"].map((name) =>
+  new URL(name, import.meta.url).href
+);
 
 /** A part whose cells are read and not written. */
 class RecordedPart extends PartView {
@@ -38,13 +40,22 @@ export class RecordedReport {
     const context = () => ({ exercise: exercise?.id, angle_unit: submission.angle_unit ?? "radians" });
     // What a part asks of its exercise.
     this.host = {
-      service, context, previewer: new Previewer(service, context, () => {}), history: { note() {}, undo: () => null, redo: () => null },
-      announce() {}, edited() {}, check() {}, failed() {},
+      service,
+      context,
+      previewer: new Previewer(service, context, () => {}),
+      history: { note() {}, undo: () => null, redo: () => null },
+      announce() {},
+      edited() {},
+      check() {},
+      failed() {},
     };
     this.parts = new Map((exercise?.parts ?? []).map((part) => [part.id, new RecordedPart(part, this.host)]));
     this.body = h("div", { class: "parts" });
     this.element = h("div", { class: "recorded" });
-    this.element.attachShadow({ mode: "open" }).append(...SHEETS.map((href) => h("link", { rel: "stylesheet", href })), this.body);
+    this.element.attachShadow({ mode: "open" }).append(
+      ...SHEETS.map((href) => h("link", { rel: "stylesheet", href })),
+      this.body,
+    );
   }
 
   /** Draw a report: parts that the exercise has no more are told without their cells. */
@@ -93,11 +104,20 @@ export class RecordedReport {
 
 /** The report on a part that the exercise does not have any more. */
 function bare({ part, verdict, points: earned, max_points: most, feedback, rows }) {
-  const messages = [...feedback, ...rows.flatMap((row) => [...row.feedback, ...row.cells.flatMap((cell) => cell.feedback)])];
+  const messages = [
+    ...feedback,
+    ...rows.flatMap((row) => [...row.feedback, ...row.cells.flatMap((cell) => cell.feedback)]),
+  ];
   return h(
     "section",
     { class: "card part" },
-    h("header", {}, h("h2", {}, visible(part)), h("span", { class: "badge", "data-verdict": verdict }, verdict), h("span", { class: "points" }, `${points(earned, most)} points`)),
+    h(
+      "header",
+      {},
+      h("h2", {}, visible(part)),
+      h("span", { class: "badge", "data-verdict": verdict }, verdict),
+      h("span", { class: "points" }, `${points(earned, most)} points`),
+    ),
     h("p", { class: "quiet" }, "The exercise does not have this part any more."),
     h("ul", { class: "messages", hidden: !messages.length }, ...messages.map((each) => item(each, { verdict }))),
   );
@@ -107,5 +127,10 @@ function asSent(answer) {
   const text = typeof answer === "string" ? answer : JSON.stringify(answer, null, 1);
   // Its lines stay lines, and nothing in them is unseen.
   const lines = text.split("\n").map(visible).join("\n");
-  return h("details", { class: "as-sent" }, h("summary", {}, "As it was sent"), h("pre", { tabindex: 0 }, h("code", {}, lines)));
+  return h(
+    "details",
+    { class: "as-sent" },
+    h("summary", {}, "As it was sent"),
+    h("pre", { tabindex: 0 }, h("code", {}, lines)),
+  );
 }

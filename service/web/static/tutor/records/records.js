@@ -69,12 +69,18 @@ export function tell(state, text) {
 }
 
 /** What stands where a list or a count has nothing in it. */
-export const nothing = (title, text) => h("div", { class: "empty" }, h("h2", {}, title), h("p", { class: "quiet" }, text));
+export const nothing = (title, text) =>
+  h("div", { class: "empty" }, h("h2", {}, title), h("p", { class: "quiet" }, text));
 
 /** A table in a box that scrolls by itself: heads, and rows of cells of which the first is their head. */
 export function table(name, heads, rows) {
   const body = rows.map(([first, ...cells]) =>
-    h("tr", {}, h("th", { scope: "row" }, first), ...cells.map((cell) => (cell instanceof HTMLTableCellElement ? cell : h("td", {}, cell)))),
+    h(
+      "tr",
+      {},
+      h("th", { scope: "row" }, first),
+      ...cells.map((cell) => (cell instanceof HTMLTableCellElement ? cell : h("td", {}, cell))),
+    )
   );
   return h(
     "div",

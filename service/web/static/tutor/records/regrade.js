@@ -45,7 +45,10 @@ export function regradeForm(exercise, done) {
     let graded = 0;
     let cursor;
     for (;;) {
-      const step = await sendPatiently(`v1/exercises/${encodeURIComponent(exercise)}/regrade`, { apply, ...(cursor ? { cursor } : {}) });
+      const step = await sendPatiently(`v1/exercises/${encodeURIComponent(exercise)}/regrade`, {
+        apply,
+        ...(cursor ? { cursor } : {}),
+      });
       graded += step.regraded;
       changed.push(...step.changes);
       bar.value = graded / Math.max(graded + step.left, 1);
@@ -61,16 +64,33 @@ export function regradeForm(exercise, done) {
     const stopped = left ? ` Stopped: ${count(left, "attempt")} left.` : "";
     if (apply) tell(state, `Regraded: ${count(graded, "attempt")}. The reports before are kept.${stopped}`);
     else if (!graded) tell(state, "All attempts were graded by this version of the exercise and of the program.");
-    else tell(state, `${count(graded, "attempt")} by another version; ${changed.length} would change${ofWhich}. Nothing is written yet.${stopped}`);
+    else {tell(
+        state,
+        `${
+          count(graded, "attempt")
+        } by another version; ${changed.length} would change${ofWhich}. Nothing is written yet.${stopped}`,
+      );}
     changes.replaceChildren(...(changed.length ? [list(changed)] : []));
   }
 
   function list(changed) {
-    const rows = changed.slice(0, MOST_SHOWN).map(({ id, learner, ordinal, before, after, max_points: most, awarded, reasons }) => [
-      h("a", { href: address(`tutor/attempts/${encodeURIComponent(id)}`) }, learnerName(learner), h("span", { class: "aloud" }, `, attempt ${ordinal ?? "that does not count"}`)),
+    const rows = changed.slice(0, MOST_SHOWN).map((
+      { id, learner, ordinal, before, after, max_points: most, awarded, reasons },
+    ) => [
+      h(
+        "a",
+        { href: address(`tutor/attempts/${encodeURIComponent(id)}`) },
+        learnerName(learner),
+        h("span", { class: "aloud" }, `, attempt ${ordinal ?? "that does not count"}`),
+      ),
       String(ordinal ?? "–"),
       `${points(before, most).split(" / ")[0]} → ${points(after, most)}`,
-      h("span", {}, ...message(reasons.join("; ") || "what a late attempt earns"), awarded === undefined ? "" : `; a tutor's ${number(awarded)} stays`),
+      h(
+        "span",
+        {},
+        ...message(reasons.join("; ") || "what a late attempt earns"),
+        awarded === undefined ? "" : `; a tutor's ${number(awarded)} stays`,
+      ),
     ]);
     const more = changed.length - rows.length;
     const all = table("Changes", ["Learner", "No.", "Points", "Why"], rows);
@@ -80,7 +100,11 @@ export function regradeForm(exercise, done) {
   return h(
     "div",
     {},
-    h("p", { class: "quiet" }, "After a correction: attempts that another version of the exercise or of the program has graded are graded anew. Points that tutors gave stay, and so do the reports before."),
+    h(
+      "p",
+      { class: "quiet" },
+      "After a correction: attempts that another version of the exercise or of the program has graded are graded anew. Points that tutors gave stay, and so do the reports before.",
+    ),
     h("p", { class: "choices" }, look, write, stop),
     bar,
     state,

@@ -4,7 +4,19 @@ import { h, message, visible } from "../../shared/dom.js";
 import { daysCharts } from "./days_chart.js";
 import { layoutOf } from "../../student/kinds.js";
 import { cellName } from "../../student/messages.js";
-import { byId, count, failed, learnerName, nothing, percent, query, showExports, span, table, tell } from "./records.js";
+import {
+  byId,
+  count,
+  failed,
+  learnerName,
+  nothing,
+  percent,
+  query,
+  showExports,
+  span,
+  table,
+  tell,
+} from "./records.js";
 import { regradeForm } from "./regrade.js";
 import { address, get } from "../tutor_service.js";
 
@@ -43,7 +55,9 @@ async function namesOf(id) {
 
 function cellNames(grids) {
   const [{ look, columns }] = grids;
-  const rows = grids.flatMap((grid) => grid.rows.map(({ label, spoken, head }) => [label, grids.length > 1 ? spoken : head]));
+  const rows = grids.flatMap((grid) =>
+    grid.rows.map(({ label, spoken, head }) => [label, grids.length > 1 ? spoken : head])
+  );
   // A list has one column, which says nothing; those of a matrix have numbers.
   const heads = look === "matrix" ? [] : columns.map(({ label, head }) => [label, head]);
   return { isList: look === "list", rows: new Map(rows), columns: new Map(heads) };
@@ -57,39 +71,72 @@ function draw({ attempts, learners, parts, misconceptions, identical }) {
   if (!attempts) {
     tell(state, "");
     const isNarrowed = Object.values(span()).some(Boolean);
-    place.replaceChildren(nothing(isNarrowed ? "Nobody handed in on these days" : "Nobody has handed in yet", "Counts appear here with the first recorded attempt."));
+    place.replaceChildren(
+      nothing(
+        isNarrowed ? "Nobody handed in on these days" : "Nobody has handed in yet",
+        "Counts appear here with the first recorded attempt.",
+      ),
+    );
     return;
   }
-  tell(state, `${count(attempts, "attempt")} of ${count(learners, "learner")}. Who was wrong three times counts three times.`);
+  tell(
+    state,
+    `${count(attempts, "attempt")} of ${count(learners, "learner")}. Who was wrong three times counts three times.`,
+  );
   place.replaceChildren(
     section(
       "Right answers",
       "Of the answers, one of each attempt. A part or a cell that could not be read is an answer that is not right; of a table that could not be read as a whole, no row is counted.",
       parts.map(partShares),
     ),
-    section("Misconceptions", "The attempts that have each, the commonest first, and on which days (UTC). The sentence is what one of them was told.", [
-      misconceptions.length ? folded(misconceptions, slipsOf(misconceptions)) : h("p", {}, "None was found."),
-    ]),
-    section("Identical wrong answers", "Sent by several learners letter by letter. This is no proof that anybody copied.", [
-      identical.length ? folded(identical, (groups) => h("ul", { class: "groups" }, ...groups.map(group))) : h("p", {}, "There are none."),
-    ]),
+    section(
+      "Misconceptions",
+      "The attempts that have each, the commonest first, and on which days (UTC). The sentence is what one of them was told.",
+      [
+        misconceptions.length ? folded(misconceptions, slipsOf(misconceptions)) : h("p", {}, "None was found."),
+      ],
+    ),
+    section(
+      "Identical wrong answers",
+      "Sent by several learners letter by letter. This is no proof that anybody copied.",
+      [
+        identical.length
+          ? folded(identical, (groups) => h("ul", { class: "groups" }, ...groups.map(group)))
+          : h("p", {}, "There are none."),
+      ],
+    ),
   );
 }
 
-const section = (title, note, content) => h("section", {}, h("h2", {}, title), h("p", { class: "quiet" }, note), ...content);
+const section = (title, note, content) =>
+  h("section", {}, h("h2", {}, title), h("p", { class: "quiet" }, note), ...content);
 
 function partShares({ part, rows, ...share }) {
-  const told = share.share === undefined ? "nobody answered" : `${percent(share.share)} right of ${count(share.answered, "answer")}`;
+  const told = share.share === undefined
+    ? "nobody answered"
+    : `${percent(share.share)} right of ${count(share.answered, "answer")}`;
   const body = rows.length ? shares(part, rows) : null;
-  return h("section", { class: "card" }, h("header", {}, h("h3", {}, titleOf(part)), h("span", { class: "badge", "data-share": band(share) }, told)), body);
+  return h(
+    "section",
+    { class: "card" },
+    h("header", {}, h("h3", {}, titleOf(part)), h("span", { class: "badge", "data-share": band(share) }, told)),
+    body,
+  );
 }
 
 /** The rows of a part with the share of each cell. */
 function shares(part, rows) {
-  const labels = rows.reduce((most, { cells }) => (cells.length > most.length ? cells : most), []).map(({ label }) => label);
+  const labels = rows.reduce((most, { cells }) => (cells.length > most.length ? cells : most), []).map(({ label }) =>
+    label
+  );
   // In a list, the one cell is the whole row.
   const shown = names.get(part)?.isList ? [] : labels;
-  const heads = ["Row", ...shown.map((label) => columnName(part, label)), shown.length ? "Whole row" : "Right", "Answers"];
+  const heads = [
+    "Row",
+    ...shown.map((label) => columnName(part, label)),
+    shown.length ? "Whole row" : "Right",
+    "Answers",
+  ];
   const body = rows.map(({ label, cells, ...whole }) => [
     rowName(part, label),
     ...shown.map((each) => shareCell(cells.find((cell) => cell.label === each))),
@@ -102,7 +149,11 @@ function shares(part, rows) {
 function shareCell(figures) {
   if (!figures) return h("td", {});
   const told = figures.share === undefined ? "–" : percent(figures.share);
-  return h("td", { class: "share", "data-share": band(figures), title: `${figures.correct} of ${figures.answered}` }, told);
+  return h(
+    "td",
+    { class: "share", "data-share": band(figures), title: `${figures.correct} of ${figures.answered}` },
+    told,
+  );
 }
 
 const band = ({ share }) => (share === undefined ? "none" : BANDS.filter((edge) => share >= edge).length);
@@ -112,9 +163,16 @@ function slipsOf(misconceptions) {
   const charts = daysCharts(misconceptions.map(({ by_day: counts }) => counts));
   const most = misconceptions[0].attempts;
   const row = ({ part, code, sentence, attempts, by_day: counts }) => [
-    sentence ? h("span", { class: "slip" }, h("span", {}, ...message(sentence)), h("code", {}, visible(code))) : h("code", {}, visible(code)),
+    sentence
+      ? h("span", { class: "slip" }, h("span", {}, ...message(sentence)), h("code", {}, visible(code)))
+      : h("code", {}, visible(code)),
     titleOf(part),
-    h("span", { class: "counted" }, String(attempts), h("meter", { min: 0, max: most, value: attempts, "aria-hidden": "true" })),
+    h(
+      "span",
+      { class: "counted" },
+      String(attempts),
+      h("meter", { min: 0, max: most, value: attempts, "aria-hidden": "true" }),
+    ),
     charts.get(counts),
   ];
   return (shown) => table("Misconceptions", ["Misconception", "Part", "Attempts", "Over days"], shown.map(row));
@@ -129,7 +187,14 @@ function group({ learners, attempts, wrong, among }) {
   return h(
     "li",
     { class: "card" },
-    h("p", {}, h("strong", {}, count(learners, "learner")), attempts > learners ? ` in ${count(attempts, "attempt")}: ` : ": ", ...names, more),
+    h(
+      "p",
+      {},
+      h("strong", {}, count(learners, "learner")),
+      attempts > learners ? ` in ${count(attempts, "attempt")}: ` : ": ",
+      ...names,
+      more,
+    ),
     h("p", { class: "quiet" }, `Wrong in ${placesInWords(wrong)}`),
   );
 }
@@ -142,7 +207,10 @@ function placesInWords(places) {
     const rows = parts.get(part) ?? parts.set(part, new Map()).get(part);
     rows.set(row, [...(rows.get(row) ?? []), columnName(part, cell)]);
   }
-  const ofRow = (part, [row, cells]) => (names.get(part)?.isList ? rowName(part, row) : `${inWords(rowName(part, row))} ${cells.join(", ")}`);
+  const ofRow = (
+    part,
+    [row, cells],
+  ) => (names.get(part)?.isList ? rowName(part, row) : `${inWords(rowName(part, row))} ${cells.join(", ")}`);
   const ofPart = ([part, rows]) => `${titleOf(part)}: ${[...rows].map((row) => ofRow(part, row)).join("; ")}`;
   return visible([...parts].map(ofPart).join(". "));
 }
@@ -152,7 +220,10 @@ const inWords = (row) => (row.includes(" ") ? row : `row ${row}`);
 /** The first of many, and the others folded below. */
 function folded(all, draw) {
   const [first, rest] = [all.slice(0, SHOWN), all.slice(SHOWN)];
-  return [draw(first), rest.length ? h("details", { class: "source" }, h("summary", {}, `${rest.length} more`), draw(rest)) : null];
+  return [
+    draw(first),
+    rest.length ? h("details", { class: "source" }, h("summary", {}, `${rest.length} more`), draw(rest)) : null,
+  ];
 }
 
 byId("filters").addEventListener("submit", (event) => {
