@@ -53,6 +53,7 @@ SUITES = {
     "load",
     "worst",
     "browser",
+    "front",
 }
 
 

@@ -2,8 +2,9 @@
 
 import { h, visible } from "../shared/dom.js";
 import { History } from "../shared/history.js";
-import { mathml, matrix } from "../shared/markup.js";
-import { freshCells, jointNumbers, MOST_JOINTS, MOST_ROWS, PlayTable, rowsOf } from "./play_table.js";
+import { PlayTable } from "./play_table.js";
+import { card, quietButton, Results } from "./results.js";
+import { freshCells, jointCount, MOST_JOINTS, MOST_ROWS, robotOf, rowsOf, withKind, without } from "./rows.js";
 import { RobotView } from "../robot/robot_view.js";
 import { ROBOTS } from "./robots.js";
 import { Service } from "../shared/service.js";
@@ -18,39 +19,28 @@ const KEPT = "dh-grader:play";
 const FIRST = "Stanford arm, RRPRRR";
 const LETTERS = { standard: "Standard (distal)", modified: "Modified (proximal)" };
 
+/** @typedef {{ put(state: Front.Robot): void, focus(): void }} Place */
+
 export class DhPlay extends HTMLElement {
+  #saving = 0;
+  /** @type {Front.PlayRow[]} */
+  #rows = [];
+  // The table before the next change.
+  /** @type {Front.Robot} */
+  #before;
+  /** @type {Map<string, Place>} */
+  #places = new Map();
+  /** @type {History<Place, Front.Robot>} */
+  #history = new History();
+
   constructor() {
     super();
     const sheets = [TOKENS, STYLE, PLAY_STYLE].map((href) => h("link", { rel: "stylesheet", href }));
+    this.service = new Service(HOME);
     this.live = h("p", { class: "aloud", role: "status", "aria-live": "polite" });
     this.main = h("div", { class: "exercise with-view play" });
     this.attachShadow({ mode: "open" }).append(...sheets, this.main, this.live);
-  }
-
-  connectedCallback() {
-    this.service = new Service(HOME);
-    this.table = new PlayTable(this);
-    this.history = new History();
-    this.view = new RobotView({
-      service: this.service,
-      body: () => this.#body(),
-      announce: (text) => this.announce(text),
-      answered: (answer, isKept) => this.#answered(answer, isKept),
-      moved: (picture) => this.#showPose(picture),
-    });
-    this.#build();
-    const shared = location.hash.startsWith(NAME) ? checked(unpacked(location.hash.slice(NAME.length))) : null;
-    if (shared) history.replaceState(null, "", location.pathname);
-    this.#show(shared ?? this.#kept() ?? ROBOTS[FIRST]);
-    this.before = this.state;
-    this.view.open();
-  }
-
-  disconnectedCallback() {
-    this.view.close();
-  }
-
-  #build() {
+    /** @type {(text: string, value?: string) => HTMLElement} */
     const option = (text, value = text) => h("option", { value }, text);
     this.robot = h(
       "select",
@@ -60,7 +50,7 @@ export class DhPlay extends HTMLElement {
     );
     this.convention = h(
       "select",
-      { "aria-label": "Convention", onchange: () => this.#conventionChosen() },
+      { "aria-label": "Convention", onchange: () => this.#change(this.state) },
       ...Object.entries(LETTERS).map(([value, text]) => option(text, value)),
     );
     this.unit = h(
@@ -70,25 +60,37 @@ export class DhPlay extends HTMLElement {
       option("degrees"),
     );
     this.said = h("p", { class: "quiet saved" });
-    this.add = h("button", { type: "button", class: "quiet-button", onclick: () => this.#addRow() }, "Add a row");
-    const share = h("button", { type: "button", class: "quiet-button", onclick: () => this.#share() }, "Copy link");
-    this.freedoms = h("p", { class: "points" });
-    this.pose = h("div", { class: "scroll", tabindex: 0, role: "group", "aria-label": "Pose as numbers" });
-    this.formula = h("div", { class: "scroll formula", tabindex: 0, role: "group", "aria-label": "Pose as formulas" });
-    this.converted = h("div", { class: "scroll" });
-    this.convertedTitle = h("h2", {});
-    this.latex = h("button", {
-      type: "button",
-      class: "quiet-button",
-      onclick: () => this.#copy(this.poseLatex, "LaTeX of the pose copied"),
-    }, "Copy LaTeX");
-    this.use = h(
-      "button",
-      { type: "button", class: "quiet-button", onclick: () => this.#useConverted() },
-      "Use this table",
+    this.add = quietButton("Add a row", () => this.#addRow());
+    this.table = new PlayTable(this);
+    this.results = new Results(
+      (latex) => this.#copy(latex, "LaTeX of the pose copied"),
+      (rows) => this.#useConverted(rows),
     );
-    const card = (title, ...children) => h("section", { class: "card part" }, h("header", {}, ...title), ...children);
-    this.main.append(
+  }
+
+  connectedCallback() {
+    this.view = new RobotView({
+      service: this.service,
+      body: () => this.#body(),
+      announce: (text) => this.announce(text),
+      answered: (answer, isKept) => this.#answered(answer, isKept),
+      moved: (picture) => this.results.showPose(picture),
+    });
+    this.#build(this.view);
+    const shared = location.hash.startsWith(NAME) ? robotOf(unpacked(location.hash.slice(NAME.length))) : null;
+    if (shared) history.replaceState(null, "", location.pathname);
+    this.#show(shared ?? kept() ?? ROBOTS[FIRST]);
+    this.#before = this.state;
+    this.view.open();
+  }
+
+  disconnectedCallback() {
+    this.view?.close();
+  }
+
+  /** @param {RobotView} view */
+  #build(view) {
+    this.main.replaceChildren(
       h(
         "section",
         { class: "about", tabindex: 0, "aria-labelledby": "title" },
@@ -98,14 +100,14 @@ export class DhPlay extends HTMLElement {
           h("h1", { id: "title" }, "Free play"),
           h("p", { class: "quiet" }, "Write any DH table, see the robot that it builds, and move it."),
         ),
-        this.view.element,
+        view.element,
       ),
       h(
         "div",
         { class: "parts" },
-        h("div", { class: "tools" }, this.robot, this.said, share),
+        h("div", { class: "tools" }, this.robot, this.said, quietButton("Copy link", () => this.#share())),
         card(
-          [h("h2", {}, "Table"), this.freedoms],
+          [h("h2", {}, "Table"), this.results.freedoms],
           h(
             "div",
             { class: "tools" },
@@ -120,16 +122,18 @@ export class DhPlay extends HTMLElement {
           ),
           h("div", { class: "tools" }, this.add),
         ),
-        card([h("h2", {}, "Pose of the last frame"), this.latex], this.pose, this.formula),
-        card([this.convertedTitle, this.use], this.converted),
+        this.results.poseCard,
+        this.results.convertedCard,
       ),
     );
   }
 
+  /** @param {string} text */
   announce(text) {
     this.live.textContent = visible(text);
   }
 
+  /** @param {string} text */
   #say(text) {
     this.said.textContent = visible(text);
     this.announce(text);
@@ -137,81 +141,114 @@ export class DhPlay extends HTMLElement {
 
   // The robot: `{convention, unit, rows: [{kind, cells}]}`.
 
+  /** @returns {Front.Robot} */
   get state() {
-    const rows = this.rows.map(({ kind }, i) => ({ kind, cells: this.table.texts[i] }));
-    return { convention: this.convention.value, unit: this.unit.value, rows };
-  }
-
-  #show({ convention, unit, rows }) {
-    this.convention.value = convention;
-    this.unit.value = unit;
-    this.rows = rows;
-    this.table.show({ rows, convention });
-    this.add.disabled = rows.length >= MOST_ROWS;
-    this.convertedTitle.textContent = `The same in the ${
-      convention === "standard" ? "modified (proximal)" : "standard (distal)"
-    } convention`;
-    this.view.refit();
-    this.changed();
-  }
-
-  #body() {
-    const structure = this.rows.map(({ kind }) => kind).filter((kind) => kind !== "F").join("");
-    if (!structure) return null;
     return {
-      table: { rows: this.table.texts, convention: this.convention.value, structure, formulas: true },
-      angle_unit: this.unit.value,
+      convention: this.convention.value === "modified" ? "modified" : "standard",
+      unit: this.unit.value === "degrees" ? "degrees" : "radians",
+      rows: this.#rows.map(({ kind }, i) => ({ kind, cells: this.table.texts[i] })),
     };
   }
 
+  /** @param {Front.Robot} robot */
+  #show({ convention, unit, rows }) {
+    this.convention.value = convention;
+    this.unit.value = unit;
+    this.#rows = rows;
+    this.table.show({ rows, convention });
+    this.add.disabled = rows.length >= MOST_ROWS;
+    this.results.title.textContent = `The same in the ${
+      convention === "standard" ? "modified (proximal)" : "standard (distal)"
+    } convention`;
+    this.view?.refit();
+    this.changed();
+  }
+
+  /** What every request says of the table; null if it has no joint. */
+  #body() {
+    const { convention, unit, rows } = this.state;
+    const structure = rows.map(({ kind }) => kind).filter((kind) => kind !== "F").join("");
+    if (!structure) return null;
+    return { table: { rows: this.table.texts, convention, structure, formulas: true }, angle_unit: unit };
+  }
+
   changed() {
-    this.view.changed();
-    clearTimeout(this.saving);
-    this.saving = setTimeout(() => keep(this.state), 250);
+    this.view?.changed();
+    clearTimeout(this.#saving);
+    this.#saving = setTimeout(() => keep(this.state), 250);
   }
 
   // What changes the table. Each change is a step that can be taken back.
 
-  /** Note that the table was changed; what is typed into one cell is one step. */
+  /**
+   * Note that the table was changed; what is typed into one cell is one step.
+   *
+   * @param {Front.PlayCell | null} [cell]
+   */
   #edited(cell = null) {
-    const before = this.before;
-    this.before = this.state;
-    this.history.note([{ target: this.#place(cell?.place ?? [0, 0]), before, after: this.before }], cell !== null);
+    const before = this.#before;
+    this.#before = this.state;
+    this.#history.note([{ target: this.#place(cell?.place.at ?? [0, 0]), before, after: this.#before }], cell !== null);
     this.changed();
   }
 
-  /** What puts a table of the past back, and the cursor where it was changed. */
+  /**
+   * What puts a table of the past back, and the cursor where it was changed.
+   *
+   * @param {[number, number]} at
+   */
   #place([i, j]) {
     const key = `${i} ${j}`;
-    this.places ??= new Map();
-    if (!this.places.has(key)) {
-      this.places.set(key, {
-        put: (state) => this.#show(state),
-        focus: () => this.table.rows[Math.min(i, this.rows.length - 1)].cells[j].input.focus(),
-      });
-    }
-    return this.places.get(key);
+    const known = this.#places.get(key);
+    if (known) return known;
+    /** @type {Place} */
+    const place = {
+      put: (state) => this.#show(state),
+      focus: () => this.#focus(i, j),
+    };
+    this.#places.set(key, place);
+    return place;
   }
 
+  /**
+   * Put the cursor into a cell, or into the last row if the table is shorter now.
+   *
+   * @param {number} i
+   * @param {number} [j]
+   */
+  #focus(i, j = 0) {
+    this.table.rows[Math.min(i, this.#rows.length - 1)].cells[j].input.focus();
+  }
+
+  /** @param {Front.Direction} direction */
   undone(direction) {
-    const place = this.history[direction]();
+    const place = this.#history[direction]();
     if (!place) return this.announce(direction === "undo" ? "Nothing to undo" : "Nothing to redo");
-    this.before = this.state;
+    this.#before = this.state;
     return place.focus();
   }
 
+  /** @param {Front.PlayCell} cell */
   typed(cell) {
     this.#edited(cell);
   }
 
-  /** Put texts into cells, as one step. */
+  /**
+   * Put texts into cells, as one step.
+   *
+   * @param {[Front.PlayCell, string][]} pairs
+   */
   filled(pairs) {
     for (const [cell, text] of pairs) cell.put(text);
     this.#edited();
     if (pairs.length > 1) this.#say(`${pairs.length} cells are filled; Ctrl+Z takes it back`);
   }
 
-  /** Show another table, as one step. */
+  /**
+   * Show another table, as one step.
+   *
+   * @param {Front.Robot} state
+   */
   #change(state) {
     this.#show(state);
     this.#edited();
@@ -221,58 +258,45 @@ export class DhPlay extends HTMLElement {
     const robot = ROBOTS[this.robot.value];
     this.robot.value = "";
     if (!robot) return;
-    this.view.forget();
+    this.view?.forget();
     this.#change(robot);
     this.announce("The table is filled in.");
   }
 
-  #conventionChosen() {
-    this.#change(this.state);
-  }
-
   #addRow() {
     const { rows, ...rest } = this.state;
-    const joints = jointNumbers(rows).filter(Boolean).length;
+    const joints = jointCount(rows);
     const kind = joints < MOST_JOINTS ? "R" : "F";
     this.#change({ ...rest, rows: [...rows, { kind, cells: freshCells(kind, joints + 1) }] });
-    this.table.rows.at(-1).cells[0].input.focus();
+    this.#focus(rows.length);
   }
 
+  /** @param {number} i */
   removed(i) {
     const { rows, ...rest } = this.state;
     if (rows.length === 1) return this.#say("A table has a row at least");
-    this.#change({ ...rest, rows: renumbered(rows, rows.toSpliced(i, 1), i) });
-    this.table.rows[Math.min(i, rows.length - 2)].cells[0].input.focus();
+    this.#change({ ...rest, rows: without(rows, i) });
+    this.#focus(i);
     return this.announce(`Row ${i + 1} is removed.`);
   }
 
+  /** @param {number} i @param {string} kind */
   kindChanged(i, kind) {
     const { rows, ...rest } = this.state;
-    const before = jointNumbers(rows)[i];
-    const changed = rows.with(i, { ...rows[i], kind });
-    const number = jointNumbers(changed)[i];
-    // The variable moves to the column in which the joint now moves.
-    const [a, alpha, d, theta] = rows[i].cells;
-    const [, , freshD, freshTheta] = freshCells(kind, number);
-    const isBare = (text) => ["0", "", `d${before}`, `theta${before}`, `q${before}`].includes(text.trim());
-    changed[i].cells = [a, alpha, isBare(d) ? freshD : d, isBare(theta) ? freshTheta : theta];
-    this.#change({ ...rest, rows: renumbered(rows, changed) });
-    this.table.rows[i].element.querySelector("select").focus();
+    this.#change({ ...rest, rows: withKind(rows, i, kind) });
+    this.table.rows[i].choice.focus();
   }
 
+  /** @param {string} text */
   async pasted(text) {
     try {
-      const table = {
-        rows: text,
-        structure: "R".repeat(MOST_JOINTS),
-        formulas: true,
-        convention: this.convention.value,
-      };
-      const { table: read } = await this.service.frames({ table, angle_unit: this.unit.value });
-      if (read.error || !read.formulas?.cells.length) {
-        return this.#say(`Not read as a table: ${read.error?.message ?? "it has no rows"}`);
+      const { convention, unit } = this.state;
+      const table = { rows: text, structure: "R".repeat(MOST_JOINTS), formulas: true, convention };
+      const { table: read } = await this.service.frames({ table, angle_unit: unit });
+      if (read?.error || !read?.formulas?.cells.length) {
+        return this.#say(`Not read as a table: ${read?.error?.message ?? "it has no rows"}`);
       }
-      this.view.forget();
+      this.view?.forget();
       this.#change({ ...this.state, rows: rowsOf(read.formulas.cells.map((row) => row.map((cell) => cell.text))) });
       return this.#say("The pasted table is filled in; Ctrl+Z takes it back");
     } catch (error) {
@@ -282,54 +306,24 @@ export class DhPlay extends HTMLElement {
 
   // What the service says.
 
+  /** @param {Api.Frames} answer @param {boolean} isKept */
   #answered({ table }, isKept) {
+    if (!table) return;
     this.table.showReadings(table);
-    for (const each of [this.freedoms, this.pose, this.formula, this.converted]) each.classList.toggle("stale", isKept);
-    this.use.disabled = this.latex.disabled = isKept;
-    if (isKept) return;
-    const { degrees_of_freedom: freedoms, formulas } = table;
-    this.freedoms.textContent = freedoms === undefined
-      ? ""
-      : `${freedoms} degree${freedoms === 1 ? "" : "s"} of freedom`;
-    const { pose, converted } = formulas ?? {};
-    this.formula.hidden = !pose;
-    this.formula.replaceChildren(
-      pose ? h("div", { class: "bracketed" }, matrix(pose.map((row) => row.map((entry) => entry.mathml)))) : "",
-    );
-    this.poseFormulas = pose;
-    this.convertedRows = converted;
-    this.converted.closest(".card").hidden = !converted;
-    this.converted.replaceChildren(converted ? convertedTable(converted, this.convention.value) : "");
+    this.results.show(table, this.state.convention, isKept);
   }
 
-  #showPose({ frames }) {
-    const frame = frames?.at(-1);
-    this.pose.closest(".card").hidden = !frame || frames.length < 2;
-    this.frame = frame;
-    if (!frame) return;
-    if (!this.entries) {
-      this.entries = Array.from({ length: 16 }, () => h("span", { role: "cell" }));
-      const row = (i) => h("span", { role: "row", class: "row" }, ...this.entries.slice(4 * i, 4 * i + 4));
-      this.pose.replaceChildren(
-        h("div", { class: "bracketed numeric", role: "table", "aria-label": "Pose" }, ...[0, 1, 2, 3].map(row)),
-      );
-    }
-    frame.flat().forEach((value, i) => (this.entries[i].textContent = decimal(value)));
-  }
-
-  get poseLatex() {
-    const rows = this.poseFormulas?.map((row) => row.map((entry) => entry.latex)) ??
-      this.frame.map((row) => row.map(decimal));
-    return `\\begin{bmatrix}\n${rows.map((row) => row.join(" & ")).join(" \\\\\n")}\n\\end{bmatrix}`;
-  }
-
-  #useConverted() {
-    const rows = this.convertedRows.map(({ cells }) => cells.map((cell) => cell.text));
-    const convention = this.convention.value === "standard" ? "modified" : "standard";
-    // A fixed row more stands before or behind those of the joints.
-    const kinds = this.rows.map(({ kind }) => kind);
-    while (kinds.length < rows.length) this.convertedRows[0].label === "b" ? kinds.unshift("F") : kinds.push("F");
-    this.#change({ convention, unit: this.unit.value, rows: rows.map((cells, i) => ({ kind: kinds[i], cells })) });
+  /** @param {Api.ConvertedRow[]} converted */
+  #useConverted(converted) {
+    const { rows, unit, convention } = this.state;
+    // A fixed row more stands before or after those of the joints.
+    const kinds = rows.map(({ kind }) => kind);
+    while (kinds.length < converted.length) converted[0].label === "b" ? kinds.unshift("F") : kinds.push("F");
+    this.#change({
+      convention: convention === "standard" ? "modified" : "standard",
+      unit,
+      rows: converted.map(({ cells }, i) => ({ kind: kinds[i], cells: cells.map((cell) => cell.text) })),
+    });
     this.announce("The table is now in the other convention.");
   }
 
@@ -341,6 +335,7 @@ export class DhPlay extends HTMLElement {
     );
   }
 
+  /** @param {string} text @param {string} told @param {boolean} [isLink] */
   async #copy(text, told, isLink = false) {
     try {
       await navigator.clipboard.writeText(text);
@@ -350,71 +345,21 @@ export class DhPlay extends HTMLElement {
       this.#say(isLink ? "The link is in the address bar" : "The browser does not let this page copy");
     }
   }
+}
 
-  #kept() {
-    try {
-      return checked(JSON.parse(localStorage.getItem(KEPT)));
-    } catch {
-      return null;
-    }
+function kept() {
+  try {
+    return robotOf(JSON.parse(localStorage.getItem(KEPT) ?? "null"));
+  } catch {
+    return null;
   }
 }
 
+/** @param {Front.Robot} state */
 function keep(state) {
   try {
     localStorage.setItem(KEPT, JSON.stringify(state));
   } catch {
     // The table then lasts as long as the page.
   }
-}
-
-function decimal(value) {
-  return (Math.round(value * 1000) / 1000 + 0).toFixed(3).replace("-", "−").replace(/^−(0\.000)$/, "$1");
-}
-
-/** The rows after a change, with the variables that stand alone in a cell named by their new joints. */
-function renumbered(before, after, removed = null) {
-  const old = jointNumbers(before).filter((_, i) => i !== removed);
-  return after.map((row, i) => {
-    const number = jointNumbers(after)[i];
-    if (!old[i] || !number || old[i] === number) return row;
-    return {
-      ...row,
-      cells: row.cells.map((text) => text.replace(new RegExp(`^(theta|d|q)_?${old[i]}$`), `$1${number}`)),
-    };
-  });
-}
-
-function convertedTable(rows, convention) {
-  const index = convention === "standard" ? "i−1" : "i";
-  const heads = [["a", index], ["α", index], ["d", "i"], ["θ", "i"]].map(([letter, sub]) =>
-    h("th", { scope: "col" }, h("i", {}, letter), h("sub", {}, sub))
-  );
-  const body = rows.map(({ label, cells }) => {
-    const shown = cells.map((cell) => h("td", { class: "said" }, mathml(cell.mathml) ?? visible(cell.text)));
-    return h("tr", {}, h("th", { scope: "row" }, label), ...shown);
-  });
-  const caption = h("caption", { class: "aloud" }, "The table in the other convention");
-  return h(
-    "table",
-    {},
-    caption,
-    h("thead", {}, h("tr", {}, h("th", { scope: "col" }, h("span", { class: "aloud" }, "row")), ...heads)),
-    h("tbody", {}, ...body),
-  );
-}
-
-/** A robot of the right shape, whatever was stored or linked; null otherwise. */
-function checked(value) {
-  const { convention, unit, rows } = value ?? {};
-  if (!Array.isArray(rows) || !rows.length || rows.length > MOST_ROWS) return null;
-  const isRow = ({ kind, cells }) =>
-    ["R", "P", "F"].includes(kind) && Array.isArray(cells) && cells.length === 4 &&
-    cells.every((cell) => typeof cell === "string");
-  if (!rows.every((row) => row && isRow(row)) || jointNumbers(rows).filter(Boolean).length > MOST_JOINTS) return null;
-  return {
-    convention: convention === "modified" ? "modified" : "standard",
-    unit: unit === "degrees" ? "degrees" : "radians",
-    rows: rows.map(({ kind, cells }) => ({ kind, cells })),
-  };
 }

@@ -4,33 +4,32 @@ import { Cell } from "../shared/cell.js";
 import { h } from "../shared/dom.js";
 import { target, undoKey } from "../shared/keyboard.js";
 import { blockOf, placedFrom } from "../shared/pasted_block.js";
+import { LETTERS, SPOKEN } from "../student/kinds.js";
+import { jointCount, MOST_JOINTS } from "./rows.js";
 
 const COLUMNS = ["a", "alpha", "d", "theta"];
-const SPOKEN = { a: "a, link length", alpha: "alpha, link twist", d: "d, link offset", theta: "theta, joint angle" };
-const LETTERS = { a: "a", alpha: "α", d: "d", theta: "θ" };
-const KINDS = { R: "R, turns", P: "P, slides", F: "fixed" };
-const KINDS_SHORT = { R: "R", P: "P", F: "–" };
-export const MOST_ROWS = 12;
-export const MOST_JOINTS = 10;
+/** @type {Record<string, { text: string, short: string }>} */
+const KINDS = {
+  R: { text: "R, turns", short: "R" },
+  P: { text: "P, slides", short: "P" },
+  F: { text: "fixed", short: "–" },
+};
 
-const D = 2;
-const THETA = 3;
-
-/** The cells of a new row of joint `number`. */
-export function freshCells(kind, number) {
-  return ["0", "0", kind === "P" ? `d${number}` : "0", kind === "R" ? `theta${number}` : "0"];
-}
-
-/** The number of the joint of each row; null where there is none. */
-export function jointNumbers(rows) {
-  let count = 0;
-  return rows.map(({ kind }) => (kind === "F" ? null : ++count));
-}
+/**
+ * @typedef {object} TableHost
+ * @property {(cell: Front.PlayCell) => void} typed
+ * @property {(pairs: [Front.PlayCell, string][]) => void} filled
+ * @property {(i: number, kind: string) => void} kindChanged
+ * @property {(i: number) => void} removed
+ * @property {(text: string) => void} pasted
+ * @property {(direction: Front.Direction) => void} undone
+ */
 
 export class PlayTable {
-  /** `host` hears: typed(cell), filled(pairs), kindChanged(i, kind), removed(i), pasted(text), undone(direction). */
+  /** @param {TableHost} host */
   constructor(host) {
     this.host = host;
+    /** @type {{ cells: Front.PlayCell[], choice: HTMLSelectElement, element: HTMLElement }[]} */
     this.rows = [];
     this.head = h("tr");
     this.body = h("tbody");
@@ -42,7 +41,11 @@ export class PlayTable {
     );
   }
 
-  /** Draw all rows anew. */
+  /**
+   * Draw all rows anew.
+   *
+   * @param {Pick<Front.Robot, "rows" | "convention">} robot
+   */
   show({ rows, convention }) {
     const before = convention === "modified" ? "i−1" : "i";
     const heads = COLUMNS.map((label) => {
@@ -50,28 +53,29 @@ export class PlayTable {
       const seen = h("span", { "aria-hidden": "true" }, h("i", {}, LETTERS[label]), h("sub", {}, index));
       return h("th", { scope: "col" }, seen, h("span", { class: "aloud" }, SPOKEN[label]));
     });
+    /** @type {(text: string) => HTMLElement} */
     const aloud = (text) => h("th", { scope: "col" }, h("span", { class: "aloud" }, text));
     this.head.replaceChildren(aloud("row"), aloud("joint"), ...heads, aloud("remove"));
-    const joints = jointNumbers(rows).filter(Boolean).length;
+    const joints = jointCount(rows);
     this.rows = rows.map((row, i) => this.#row(row, i, joints));
     this.body.replaceChildren(...this.rows.map((row) => row.element));
   }
 
+  /** @param {Front.PlayRow} row @param {number} i @param {number} joints */
   #row({ kind, cells }, i, joints) {
     const number = i + 1;
-    const options = Object.entries(KINDS).map(([value, text]) =>
-      h("option", { value, selected: value === kind, title: text }, KINDS_SHORT[value])
+    const isFull = kind === "F" && joints >= MOST_JOINTS;
+    const options = Object.entries(KINDS).map(([value, { text, short }]) =>
+      h("option", { value, selected: value === kind, disabled: isFull && value !== "F", title: text }, short)
     );
-    if (kind === "F" && joints >= MOST_JOINTS) { for (const option of options.slice(0, 2)) option.disabled = true; }
     const choice = h("select", {
       "aria-label": `Joint of row ${number}: R turns, P slides, – none`,
       onchange: (event) => this.host.kindChanged(i, event.target.value),
     }, ...options);
     const made = COLUMNS.map((label, j) => {
-      const cell = new Cell(
-        { id: `play-${i}-${j}`, place: [i, j], label, spoken: `${SPOKEN[label]}, row ${number}` },
-        this,
-      );
+      /** @type {Front.PlayPlace} */
+      const place = { id: `play-${i}-${j}`, at: [i, j], label, spoken: `${SPOKEN[label]}, row ${number}` };
+      const cell = new Cell(place, this);
       cell.input.value = cells[j];
       return cell;
     });
@@ -85,6 +89,7 @@ export class PlayTable {
     const head = h("th", { scope: "row" }, String(number));
     return {
       cells: made,
+      choice,
       element: h(
         "tr",
         {},
@@ -100,12 +105,16 @@ export class PlayTable {
     return this.rows.map((row) => row.cells.map((cell) => cell.text));
   }
 
-  /** Show below each cell how the service reads it. */
+  /**
+   * Show below each cell how the service reads it.
+   *
+   * @param {Api.FramesOfTable} table
+   */
   showReadings({ unread, formulas }) {
     const errors = new Map(unread.map(({ row, column, error }) => [`${row} ${column}`, error]));
     this.rows.forEach((row, i) =>
       row.cells.forEach((cell, j) => {
-        const error = errors.get(`${i + 1} ${cell.label}`);
+        const error = errors.get(`${i + 1} ${cell.place.label}`);
         const formula = formulas?.cells[i]?.[j];
         if (error) cell.understood(cell.text.trim() ? { error } : null);
         else cell.understood(formula?.text ? formula : null);
@@ -115,10 +124,12 @@ export class PlayTable {
 
   // What a cell tells.
 
+  /** @param {Front.PlayCell} cell */
   changed(cell) {
     cell.understood(null);
   }
 
+  /** @param {Front.PlayCell} cell */
   typed(cell) {
     this.host.typed(cell);
   }
@@ -127,21 +138,25 @@ export class PlayTable {
 
   understood() {}
 
+  /** @param {InputEvent} event */
   beforeInput(event) {
-    const undone = { historyUndo: "undo", historyRedo: "redo" }[event.inputType];
-    if (undone) this.#undo(event, undone);
+    if (event.inputType === "historyUndo") this.#undo(event, "undo");
+    if (event.inputType === "historyRedo") this.#undo(event, "redo");
   }
 
+  /** @param {Event} event @param {Front.Direction} direction */
   #undo(event, direction) {
     event.preventDefault();
     this.host.undone(direction);
   }
 
+  /** @param {Front.PlayCell} cell @param {string} suggestion */
   repaired(cell, suggestion) {
     this.host.filled([[cell, suggestion]]);
     cell.input.focus();
   }
 
+  /** @param {KeyboardEvent} event @param {Front.PlayCell} cell */
   pressed(event, cell) {
     const undone = undoKey(event);
     if (undone) return this.#undo(event, undone);
@@ -152,9 +167,14 @@ export class PlayTable {
     return next.input.select();
   }
 
-  /** A block smaller than a table goes where the cursor is; what a whole table is, the service says. */
+  /**
+   * A block smaller than a table goes where the cursor is; what a whole table is, the service says.
+   *
+   * @param {ClipboardEvent} event
+   * @param {Front.PlayCell} cell
+   */
   pasted(event, cell) {
-    const text = event.clipboardData.getData("text/plain");
+    const text = event.clipboardData?.getData("text/plain") ?? "";
     if (!/[\n\t;&|]/.test(text.trim())) return;
     event.preventDefault();
     const block = blockOf(text);
@@ -163,16 +183,4 @@ export class PlayTable {
     if (pairs) this.host.filled(pairs);
     else this.host.pasted(text);
   }
-}
-
-/** Rows from the cells of a pasted table: a joint slides where only d holds its variable. */
-export function rowsOf(cells) {
-  return cells.map((texts, i) => {
-    const number = i + 1;
-    const own = (text) => new RegExp(`\\b(theta|q|d)_?${number}\\b`).test(text);
-    const slides = own(texts[D]) && !new RegExp(`\\b(theta|q)_?${number}\\b`).test(texts[THETA]);
-    const kind = slides ? "P" : own(texts[THETA]) ? "R" : "F";
-    const named = slides ? texts[D].replace(new RegExp(`\\btheta${number}\\b`), `d${number}`) : texts[D];
-    return { kind, cells: [texts[0], texts[1], named, texts[THETA]] };
-  });
 }

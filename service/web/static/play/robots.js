@@ -1,9 +1,13 @@
 // Robots to begin free play with, as tables of the distal convention.
 
+/** @type {(a: string, alpha: string, d: string, theta: string) => Front.PlayRow} */
 const R = (a, alpha, d, theta) => ({ kind: "R", cells: [a, alpha, d, theta] });
+/** @type {(a: string, alpha: string, d: string, theta: string) => Front.PlayRow} */
 const P = (a, alpha, d, theta) => ({ kind: "P", cells: [a, alpha, d, theta] });
+/** @param {...Front.PlayRow} rows @returns {Front.Robot} */
 const robot = (...rows) => ({ convention: "standard", unit: "radians", rows });
 
+/** @type {Record<string, Front.Robot>} */
 export const ROBOTS = {
   "Planar arm, RR": robot(R("a1", "0", "0", "theta1"), R("a2", "0", "0", "theta2")),
   "SCARA, RRPR": robot(

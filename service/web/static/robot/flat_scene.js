@@ -7,9 +7,15 @@ export class FlatScene {
   #asked = false;
   #busy = false;
   #closed = false;
+  /** @type {string | null} */
   #address = null;
 
-  /** `stage` is the element that the drawing fills; `draw(theme)` gives its SVG, or null. */
+  /**
+   * `stage` is the element that the drawing fills; `draw(theme)` gives its SVG, or null.
+   *
+   * @param {HTMLElement} stage
+   * @param {Front.DrawSvg} draw
+   */
   constructor(stage, draw) {
     this.stage = stage;
     this.draw = draw;
@@ -40,7 +46,11 @@ export class FlatScene {
     this.#busy = false;
   }
 
-  /** As an image a drawing can do nothing, whatever is in it. */
+  /**
+   * As an image a drawing can do nothing, whatever is in it.
+   *
+   * @param {string} svg
+   */
   #put(svg) {
     if (this.#address) URL.revokeObjectURL(this.#address);
     this.#address = URL.createObjectURL(new Blob([svg], { type: "image/svg+xml" }));

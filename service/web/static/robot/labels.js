@@ -29,24 +29,43 @@ const FRAGMENT = `
   uniform sampler2D texts; varying vec2 at;
   void main() { gl_FragColor = texture2D(texts, at); }`;
 
+/**
+ * A text in that picture: how wide it is for its height, and from where to where it goes.
+ *
+ * @typedef {{ text: string, colour: keyof Front.Palette, ratio: number, piece: [number, number, number, number] }} Written
+ */
+
 /** All labels of a scene; like a `Batch` of shapes. */
 export class Labels {
+  /** @type {Map<string, Written>} */
   #texts = new Map();
   #parts = 0;
   #count = 0;
+  /** @type {ReturnType<Labels["make"]> | null} */
   #mesh = null;
 
-  /** `stage` holds the size of the stage in pixels. */
+  /**
+   * `stage` holds the size of the stage in pixels.
+   *
+   * @param {Front.Palette} palette
+   * @param {Vector2} stage
+   */
   constructor(palette, stage) {
     this.palette = palette;
     this.stage = stage;
   }
 
-  /** A text `height` pixels high, whose `centre` (from its lower left corner, of size 1) is where the part is. */
+  /**
+   * A text `height` pixels high, whose `centre` (from its lower left corner, of size 1) is where the part is.
+   *
+   * @param {string} text
+   * @param {keyof Front.Palette} colour
+   * @param {number} height
+   */
   part(text, colour, height) {
     this.#parts += 1;
     const key = `${text} ${colour}`;
-    if (!this.#texts.has(key)) this.#texts.set(key, { text, colour });
+    if (!this.#texts.has(key)) this.#texts.set(key, { text, colour, ratio: 1, piece: [0, 0, 1, 1] });
     const part = new Object3D();
     part.userData = { batch: this, text: this.#texts.get(key), height, centre: new Vector2(0.5, 0.5) };
     return part;
@@ -56,33 +75,34 @@ export class Labels {
     this.#count = 0;
   }
 
+  /** @param {Object3D} part */
   add({ matrixWorld, userData: { text, height, centre } }) {
-    const { place, piece, box } = this.#mesh.geometry.attributes;
-    place.setXYZ(this.#count, ...matrixWorld.elements.slice(12, 15));
-    piece.setXYZW(this.#count, ...text.piece);
+    const { place, piece, box } = this.mesh.geometry.attributes;
+    const [x, y, z] = matrixWorld.elements.slice(12, 15);
+    place.setXYZ(this.#count, x, y, z);
+    piece.setXYZW(this.#count, .../** @type {Written} */ (text).piece);
     box.setXYZW(this.#count, height * text.ratio, height, centre.x, centre.y);
     this.#count += 1;
   }
 
   end() {
-    const { geometry } = this.#mesh;
+    const { geometry } = this.mesh;
     geometry.instanceCount = this.#count;
     for (const name of ["place", "piece", "box"]) geometry.attributes[name].needsUpdate = true;
   }
 
   /** What draws the labels that there are by now. */
   get mesh() {
-    this.#mesh ??= this.#made();
-    return this.#mesh;
+    return (this.#mesh ??= this.make());
   }
 
-  #made() {
+  make() {
     const geometry = new InstancedBufferGeometry();
     const { index, attributes } = new PlaneGeometry(1, 1);
     geometry.setIndex(index);
     geometry.setAttribute("position", attributes.position);
     geometry.setAttribute("uv", attributes.uv);
-    for (const [name, size] of [["place", 3], ["piece", 4], ["box", 4]]) {
+    for (const [name, size] of Object.entries({ place: 3, piece: 4, box: 4 })) {
       geometry.setAttribute(name, new InstancedBufferAttribute(new Float32Array(size * this.#parts), size));
     }
     const texts = new CanvasTexture(this.#written());
@@ -107,12 +127,13 @@ export class Labels {
   #written() {
     const canvas = document.createElement("canvas");
     const texts = [...this.#texts.values()];
-    let context = canvas.getContext("2d");
+    const context = canvas.getContext("2d");
+    if (!context) return canvas;
     context.font = FONT;
     const widths = texts.map(({ text }) => Math.ceil(context.measureText(text).width + 0.2 * LINE));
+    // A new size resets the context.
     canvas.width = Math.max(...widths);
     canvas.height = LINE * texts.length;
-    context = canvas.getContext("2d");
     Object.assign(context, {
       font: FONT,
       textAlign: "center",

@@ -2,9 +2,11 @@
 
 import { h } from "../shared/dom.js";
 
+/** @type {Record<string, string>} */
 const GREEK = { alpha: "α", beta: "β", gamma: "γ", theta: "θ", phi: "φ", psi: "ψ" };
 
+/** @param {string} name */
 export function symbolName(name) {
-  const [, letters, index] = name.match(/^(.*?)_?(\d*)$/s);
+  const [, letters = name, index = ""] = name.match(/^(.*?)_?(\d*)$/s) ?? [];
   return h("span", {}, h("i", {}, GREEK[letters] ?? letters), index ? h("sub", {}, index) : null);
 }

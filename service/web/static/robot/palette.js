@@ -1,6 +1,7 @@
 // The colours of the figures, for the 3D view: light and dark.
 
-const LIGHT = {
+/** The first of the two; the other one has the same names. */
+export const LIGHT = {
   rod: 0xc3cad4,
   turning: 0x7fb0e6,
   sliding: 0xefc877,
@@ -29,11 +30,20 @@ const DARK = {
   z: 0x8ab4ff,
 };
 
-/** Whether an element's text is light, on a dark ground. */
+/**
+ * Whether an element's text is light, on a dark ground.
+ *
+ * @param {Element} element
+ */
 export function isDark(element) {
-  const [red, green, blue] = getComputedStyle(element).color.match(/[\d.]+/g).map(Number);
+  const [red, green, blue] = (getComputedStyle(element).color.match(/[\d.]+/g) ?? ["0", "0", "0"]).map(Number);
   return red + green + blue > 384;
 }
 
-/** The colours that suit an element's own. */
+/**
+ * The colours that suit an element's own.
+ *
+ * @param {Element} element
+ * @returns {Front.Palette}
+ */
 export const paletteOf = (element) => (isDark(element) ? DARK : LIGHT);

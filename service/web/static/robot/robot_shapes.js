@@ -14,19 +14,22 @@ const UP = new Vector3(0, 1, 0);
 
 /** A joint on its axis: a cylinder turns, a box slides. */
 class JointShape {
-  constructor(shapes, slides, size, colour) {
+  /** @param {Front.Shapes} shapes @param {boolean} slides @param {number} size */
+  constructor(shapes, slides, size) {
     this.size = size;
     this.slides = slides;
-    this.body = shapes.mesh(slides ? "box" : "cylinder", colour ?? (slides ? "sliding" : "turning"));
+    this.body = shapes.mesh(slides ? "box" : "cylinder", slides ? "sliding" : "turning");
     this.line = shapes.mesh("thin", "axis", true);
     this.group = new Group();
     this.group.add(this.body, this.line);
   }
 
+  /** @param {number[]} centre @param {number[]} axis */
   put(centre, axis) {
     const { size } = this;
     const at = vector(centre);
     const direction = vector(axis);
+    /** @type {(share: number) => Vector3} */
     const along = (share) => at.clone().addScaledVector(direction, share * size);
     const width = (this.slides ? 2.1 : 1) * JOINT_RADIUS * size;
     lay(this.body, along(-JOINT_LENGTH / 2), along(JOINT_LENGTH / 2), width);
@@ -35,16 +38,24 @@ class JointShape {
 }
 
 export class MechanismShape {
+  /**
+   * @param {Front.Shapes} shapes
+   * @param {Api.JointKind[]} kinds
+   * @param {number} size
+   * @param {Api.DrawnConfiguration} first
+   */
   constructor(shapes, kinds, size, first) {
     this.size = size;
     this.group = new Group();
     this.joints = kinds.map((kind) => new JointShape(shapes, kind === "P", size));
     this.links = first.links.map((link) => shapes.rods(link.length, "rod"));
+    /** @param {Front.Shapes} shapes @param {number} size */
     this.gripper = gripper(shapes, size);
     this.group.add(...this.joints.map((joint) => joint.group), ...this.links, this.gripper);
     this.group.add(ground(shapes, size, vector(first.base), vector(first.base_normal)));
   }
 
+  /** @param {Api.DrawnConfiguration} shown */
   put(shown) {
     this.joints.forEach((joint, i) => joint.put(shown.centres[i], shown.axes[i]));
     const last = this.links.length - 1;
@@ -58,9 +69,11 @@ export class MechanismShape {
   }
 }
 
+/** @param {Front.Shapes} shapes @param {number} size */
 function gripper(shapes, size) {
   const group = new Group();
   const reach = GRIPPER * size;
+  /** @type {(x: number, y: number, width: number, height: number) => void} */
   const part = (x, y, width, height) => {
     const box = shapes.mesh("box", "grip");
     box.position.set(x * reach, y * reach, 0);
@@ -73,6 +86,7 @@ function gripper(shapes, size) {
   return group;
 }
 
+/** @param {Front.Shapes} shapes @param {number} size @param {Vector3} base @param {Vector3} normal */
 function ground(shapes, size, base, normal) {
   const plate = shapes.mesh("cylinder", "ground");
   lay(plate, base.clone().addScaledVector(normal, -0.03 * size), base, 0.17 * size);
@@ -84,6 +98,14 @@ function ground(shapes, size, base, normal) {
  * rows' joints, null for a row without one.
  */
 export class ChainShape {
+  /**
+   * @param {Front.Shapes} shapes
+   * @param {(Api.JointKind | null)[]} kinds
+   * @param {Api.Convention} convention
+   * @param {number} size
+   * @param {number} count
+   * @param {boolean} solid
+   */
   constructor(shapes, kinds, convention, size, count, solid) {
     this.size = size;
     this.convention = convention;
@@ -93,10 +115,11 @@ export class ChainShape {
       ? kinds.slice(0, count - 1).map((kind) => kind && new JointShape(shapes, kind === "P", size))
       : [];
     this.radius = (solid ? ROD : 0.007) * size;
-    this.group.add(...this.lines, ...this.joints.filter(Boolean).map((joint) => joint.group));
+    this.group.add(...this.lines, ...this.joints.flatMap((joint) => joint?.group ?? []));
     if (solid) this.group.add(ground(shapes, size, new Vector3(0, 0, 0), new Vector3(0, 0, 1)));
   }
 
+  /** @param {Front.Frame[]} frames */
   put(frames) {
     this.lines.forEach((line, i) => layRods(line, linkOf(frames[i], frames[i + 1], this.convention), this.radius));
     this.joints.forEach((joint, i) => {
@@ -106,7 +129,13 @@ export class ChainShape {
   }
 }
 
-/** The line from a frame to the next: along z and along x, in the order of the convention. */
+/**
+ * The line from a frame to the next: along z and along x, in the order of the convention.
+ *
+ * @param {Front.Frame} from
+ * @param {Front.Frame} to
+ * @param {Api.Convention} convention
+ */
 function linkOf(from, to, convention) {
   const [start, end] = [column(from, 3), column(to, 3)];
   const first = column(from, convention === "modified" ? 0 : 2);
@@ -116,6 +145,7 @@ function linkOf(from, to, convention) {
 
 /** The frames of a table, with their names; `shown` says which. */
 export class FramesShape {
+  /** @param {Front.Shapes} shapes @param {number} count @param {number} length */
   constructor(shapes, count, length) {
     this.length = length;
     this.group = new Group();
@@ -124,7 +154,9 @@ export class FramesShape {
     this.group.add(...this.frames, ...this.labels);
   }
 
+  /** @param {Front.Frame[]} frames @param {(i: number) => boolean} shown */
   put(frames, shown) {
+    /** @type {Vector3[]} */
     const taken = [];
     frames.slice(0, this.frames.length).forEach((frame, i) => {
       this.frames[i].visible = this.labels[i].visible = shown(i);

@@ -11,9 +11,13 @@ const AFTER_A_KEY = 250;
 const RETRY = 3000;
 
 export class RobotView {
+  /** @type {Api.Frames | null} */
   #answer = null;
+  /** @type {Record<string, number>} */
   #values = {};
+  /** @type {Record<string, number>} */
   #symbols = {};
+  /** @type {Sweep | null} */
   #sweep = null;
   #turn = 0;
   #pending = 0;
@@ -22,10 +26,16 @@ export class RobotView {
   #refit = false;
   #timer = 0;
   #closed = false;
+  /** @type {Front.Picture | undefined} */
+  picture;
+  /** @type {string | null | undefined} */
+  structure = null;
 
   /**
    * `host`: `service`; `body()`, what every request says, or null; `descriptions`, of symbols by name; `announce`;
    * `answered`, which hears of each answer, and whether the picture of the one before stays; `moved`, of each picture.
+   *
+   * @param {Front.ViewHost} host
    */
   constructor(host) {
     this.host = host;
@@ -70,6 +80,7 @@ export class RobotView {
     this.element.remove();
   }
 
+  /** @param {string} text @param {boolean} on @param {() => void} [changed] */
   #switch(text, on, changed) {
     const box = h("input", { type: "checkbox", checked: on, onchange: () => (this.#draw(), changed?.()) });
     return { box, label: h("label", {}, box, " ", text) };
@@ -102,6 +113,7 @@ export class RobotView {
     this.frames.showAll();
   }
 
+  /** @param {number[][] | null} sets @param {Api.FramesRequest | null} [body] */
   async #request(sets, body = this.host.body()) {
     this.#busy(1);
     try {
@@ -111,13 +123,21 @@ export class RobotView {
     }
   }
 
-  /** Say to whoever cannot see it that the picture is about to change. */
+  /**
+   * Say to whoever cannot see it that the picture is about to change.
+   *
+   * @param {number} step
+   */
   #busy(step) {
     this.#pending += step;
-    this.element.setAttribute("aria-busy", this.#isWaiting || this.#pending > 0);
+    this.element.setAttribute("aria-busy", String(this.#isWaiting || this.#pending > 0));
   }
 
-  /** Ask for the picture at the joint values as they are. */
+  /**
+   * Ask for the picture at the joint values as they are.
+   *
+   * @returns {Promise<void>}
+   */
   async #refresh() {
     const turn = ++this.#turn;
     const body = this.host.body();
@@ -144,22 +164,29 @@ export class RobotView {
     return undefined;
   }
 
-  /** Tell what cannot be read, beside the picture of what could be. */
+  /**
+   * Tell what cannot be read, beside the picture of what could be.
+   *
+   * @param {Api.Frames} answer
+   */
   #keep(answer) {
     this.#stale(true);
     this.#showTold(answer);
     this.host.answered?.(answer, true);
   }
 
+  /** @param {boolean} isStale */
   #stale(isStale) {
     for (const each of [this.stage, this.numbers, this.sliders]) each.element.classList.toggle("stale", isStale);
     this.sliders.element.inert = this.home.disabled = isStale;
   }
 
+  /** @param {Api.FramesRequest} body */
   #isSame(body) {
     return this.structure === (body.table?.structure ?? body.exercise);
   }
 
+  /** @param {Api.Frames} answer @param {Api.FramesRequest} body */
   #remember(answer, body) {
     this.structure = body.table?.structure ?? body.exercise;
     this.#answer = answer;
@@ -167,21 +194,27 @@ export class RobotView {
     this.host.answered?.(answer, false);
   }
 
+  /** @param {Api.Frames} answer */
   #moved(answer) {
     return answer.joints.some(({ variable, home }) => this.#values[variable] !== home);
   }
 
   get #current() {
-    return this.#answer.joints.map(({ variable }) => this.#values[variable]);
+    return this.#answer?.joints.map(({ variable }) => this.#values[variable]) ?? [];
   }
 
-  /** The picture as the service draws it, for a browser without WebGL. */
+  /**
+   * The picture as the service draws it, for a browser without WebGL.
+   *
+   * @param {Api.Theme} figure
+   */
   async #drawing(figure) {
     const body = this.host.body();
     if (!body || !this.#answer) return null;
     return (await this.#request([this.#current], { ...withoutFormulas(body), figure })).figure;
   }
 
+  /** @param {Api.Frames | null} answer */
   #show(answer) {
     this.#answer = answer;
     this.element.classList.toggle("empty", !answer);
@@ -194,19 +227,20 @@ export class RobotView {
     // A drawing shows all that there is, as one.
     this.over.hidden = this.stage.isFlat || !(answer.mechanism && answer.table);
     if (!this.stage.isFlat) this.frames.show(this.picture.frames?.length ?? 0);
-    this.#showScene();
+    this.#showScene(answer, this.picture);
     this.#showNumbers();
   }
 
-  #showScene() {
-    const { joints, mechanism, table } = this.#answer;
-    const { frames } = this.picture;
+  /** @param {Api.Frames} answer @param {Front.Picture} picture */
+  #showScene({ joints, mechanism, table }, picture) {
+    const { frames } = picture;
     const kinds = new Map(joints.map(({ joint, kind }) => [joint, kind]));
     // The sizes of parts stay while joints move.
+    /** @type {Front.Subject} */
     const subject = {
       kinds: joints.map(({ kind }) => kind),
       rowKinds: table?.row_joints.map((joint) => kinds.get(joint) ?? null) ?? [],
-      convention: this.host.body().table?.convention ?? "standard",
+      convention: this.host.body()?.table?.convention ?? "standard",
       size: mechanism?.size ?? sizeOf(frames ?? []),
       azimuth: mechanism?.azimuth ?? -60,
       elevation: mechanism?.elevation ?? 25,
@@ -215,14 +249,18 @@ export class RobotView {
       robot: () => this.robot.box.checked || !frames,
       shown: (i) => this.frames.isShown(i),
     };
-    this.stage.show(subject, this.picture);
+    this.stage.show(subject, picture);
     if (this.#refit) this.stage.reset();
     this.#refit = false;
   }
 
   // Joints and symbols.
 
-  /** Fetch the sweep of a joint, unless it is there. */
+  /**
+   * Fetch the sweep of a joint, unless it is there.
+   *
+   * @param {number} i
+   */
   prepare(i) {
     const body = this.host.body();
     // Where the table has other joints since, their values are still to come.
@@ -232,8 +270,7 @@ export class RobotView {
     if (this.#sweep?.index === i && this.#sweep.others === others) return;
     // The table as it is now: by the sweep's later requests it may have other joints.
     const asked = withoutFormulas(body);
-    const sweep = new Sweep((sets) => this.#request(sets, asked), values, i, this.#answer.joints[i]);
-    sweep.others = others;
+    const sweep = new Sweep((sets) => this.#request(sets, asked), values, i, this.#answer.joints[i], others);
     this.#sweep = sweep;
     // A picture at the very place where the slider was left is better than one from the sweep.
     sweep.load(() => sweep === this.#sweep && this.#dragging && this.#follow()).catch(() =>
@@ -241,6 +278,7 @@ export class RobotView {
     );
   }
 
+  /** @param {number} i @param {number} value */
   dragged(i, value) {
     if (!this.#answer) return;
     this.#values[this.#answer.joints[i].variable] = value;
@@ -276,11 +314,13 @@ export class RobotView {
     if (this.picture) this.stage.move(this.picture);
   }
 
+  /** @param {string} name @param {number} value */
   #chosen(name, value) {
     this.#symbols = { ...this.#symbols, [name]: value };
     this.changed();
   }
 
+  /** @param {Api.Frames} answer */
   #showTold({ table }) {
     const [cell] = table?.unread ?? [];
     const place = cell ? `Row ${cell.row}, ${cell.column}: ` : "";
@@ -289,7 +329,7 @@ export class RobotView {
     const isKept = this.stage.element.classList.contains("stale");
     const ends = reason && isKept
       ? " The picture is the one of before."
-      : reason && table.frames[0]?.length
+      : reason && table?.frames[0]?.length
       ? " The frames end before it."
       : "";
     this.told.replaceChildren(...message([reason && reason + ends, ...lost].filter(Boolean).join(" ")));
@@ -297,19 +337,29 @@ export class RobotView {
   }
 
   #showNumbers() {
+    if (!this.picture) return;
     this.numbers.show(this.picture);
-    this.host.moved?.(this.picture, this.#values);
+    this.host.moved?.(this.picture);
   }
 }
 
+/** @param {Api.Frames} answer */
 const isUnread = ({ table }) => Boolean(table?.error || table?.unread.length);
 
-/** A sweep and a drawing need no formulas. */
+/**
+ * A sweep and a drawing need no formulas.
+ *
+ * @param {Api.FramesRequest} body
+ */
 function withoutFormulas({ table, ...body }) {
   return table ? { ...body, table: { ...table, formulas: false } } : body;
 }
 
-/** A size for the parts of a chain without a mechanism. */
+/**
+ * A size for the parts of a chain without a mechanism.
+ *
+ * @param {Front.Frame[]} frames
+ */
 function sizeOf(frames) {
   const origins = frames.map((frame) => column(frame, 3));
   const spans = [0, 1, 2].map((i) =>

@@ -27,12 +27,22 @@ const AT_REST = 200;
 const FINE = 2;
 
 export class RobotScene {
-  #picture = null;
-  #subject = null;
+  // Both are there from the first call of `show` on.
+  /** @type {Front.Picture} */
+  #picture;
+  /** @type {Front.Subject} */
+  #subject;
   #asked = 0;
   #fitted = false;
+  // How far beside the robot a table's own chain is drawn.
+  aside = new Vector3();
 
-  /** `stage` is the element that the canvas fills; `inSoftware` says that no graphics card draws. */
+  /**
+   * `stage` is the element that the canvas fills; `inSoftware` says that no graphics card draws.
+   *
+   * @param {HTMLElement} stage
+   * @param {boolean} [inSoftware]
+   */
   constructor(stage, inSoftware = false) {
     this.stage = stage;
     this.size = new Vector2(1, 1);
@@ -68,7 +78,12 @@ export class RobotScene {
     this.canvas.addEventListener("webglcontextrestored", () => this.draw());
   }
 
-  /** Say what is drawn: `{kinds, rowKinds, convention, size, azimuth, elevation, solid, beside, shown, robot}`. */
+  /**
+   * Say what is drawn: `{kinds, rowKinds, convention, size, azimuth, elevation, solid, beside, shown, robot}`.
+   *
+   * @param {Front.Subject} subject
+   * @param {Front.Picture} picture
+   */
   show(subject, picture) {
     this.#subject = subject;
     this.#picture = picture;
@@ -108,7 +123,11 @@ export class RobotScene {
     this.move(this.#picture);
   }
 
-  /** Move everything to another picture of the same subject. */
+  /**
+   * Move everything to another picture of the same subject.
+   *
+   * @param {Front.Picture} picture
+   */
   move(picture) {
     this.#picture = picture;
     const { shown, robot, beside } = this.#subject;
@@ -128,7 +147,7 @@ export class RobotScene {
   reset() {
     const { azimuth, elevation, beside } = this.#subject;
     const [turn, height] = [azimuth, elevation].map((angle) => (angle * Math.PI) / 180);
-    this.towards = new Vector3(Math.cos(height) * Math.cos(turn), Math.cos(height) * Math.sin(turn), Math.sin(height));
+    const towards = new Vector3(Math.cos(height) * Math.cos(turn), Math.cos(height) * Math.sin(turn), Math.sin(height));
     const across = new Vector3(-Math.sin(turn), Math.cos(turn), 0);
     const { mechanism, frames } = this.#picture;
     const robot = mechanism
@@ -141,29 +160,35 @@ export class RobotScene {
     const points = [...robot, ...chain.map((point) => (beside() ? point.add(this.aside) : point))];
     const low = points.reduce((least, point) => least.min(point), points[0]?.clone() ?? new Vector3());
     const high = points.reduce((most, point) => most.max(point), low.clone());
-    this.middle = low.clone().add(high).multiplyScalar(0.5);
-    const up = new Vector3().crossVectors(this.towards, across);
+    const middle = low.clone().add(high).multiplyScalar(0.5);
+    const up = new Vector3().crossVectors(towards, across);
     const room = 0.29 * this.#subject.size;
     const half = Math.tan(((FIELD_OF_VIEW / 2) * Math.PI) / 180);
     const needed = points.map((point) => {
-      const from = point.clone().sub(this.middle);
+      const from = point.clone().sub(middle);
       const sides = [Math.abs(from.dot(up)) + room, (Math.abs(from.dot(across)) + room) / this.camera.aspect];
-      return from.dot(this.towards) + Math.max(...sides) / half;
+      return from.dot(towards) + Math.max(...sides) / half;
     });
     this.distance = Math.max(...needed, this.#subject.size);
     this.camera.near = this.distance / 100;
     this.camera.far = this.distance * 10;
     this.camera.updateProjectionMatrix();
-    this.controls.target.copy(this.middle);
+    this.controls.target.copy(middle);
     this.controls.minDistance = this.distance / 10;
     this.controls.maxDistance = this.distance * 4;
-    this.camera.position.copy(this.middle).addScaledVector(this.towards, this.distance);
+    this.camera.position.copy(middle).addScaledVector(towards, this.distance);
     this.controls.update();
     this.#fitted = true;
     this.draw();
   }
 
-  /** Go around by angles in radians, and nearer by a factor. */
+  /**
+   * Go around by angles in radians, and nearer by a factor.
+   *
+   * @param {number} right
+   * @param {number} up
+   * @param {number} [nearer]
+   */
   turn(right, up, nearer = 1) {
     const offset = this.camera.position.clone().sub(this.controls.target);
     const size = offset.length();
@@ -195,7 +220,11 @@ export class RobotScene {
     if (!this.#asked) this.#asked = requestAnimationFrame(() => this.#render());
   }
 
-  /** Pixels of the canvas to those of the page. */
+  /**
+   * Pixels of the canvas to those of the page.
+   *
+   * @param {boolean} fine
+   */
   #ratio(fine) {
     if (!this.inSoftware) return Math.min(devicePixelRatio, 2);
     return fine ? FINE : 1;

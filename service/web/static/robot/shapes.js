@@ -17,6 +17,8 @@ import {
 import { Labels } from "./labels.js";
 
 const UP = new Vector3(0, 1, 0);
+/** @type {["x" | "y" | "z", number[]][]} */
+const AXES = [["x", [1, 0, 0]], ["y", [0, 1, 0]], ["z", [0, 0, 1]]];
 const SHAPES = {
   cylinder: new CylinderGeometry(1, 1, 1, 28),
   thin: new CylinderGeometry(1, 1, 1, 8),
@@ -25,19 +27,23 @@ const SHAPES = {
   sphere: new SphereGeometry(1, 12, 8),
 };
 
+/** @param {number[]} numbers */
 export const vector = (numbers) => new Vector3(...numbers);
 
 /** All parts of one shape, in any colours. */
 class Batch {
   #parts = 0;
+  /** @type {InstancedMesh | null} */
   #mesh = null;
   #count = 0;
 
+  /** @param {keyof typeof SHAPES} shape @param {boolean} flat */
   constructor(shape, flat) {
     this.geometry = SHAPES[shape];
     this.material = flat ? new MeshBasicMaterial() : new MeshLambertMaterial();
   }
 
+  /** @param {string | number} colour */
   part(colour) {
     this.#parts += 1;
     const part = new Object3D();
@@ -49,22 +55,26 @@ class Batch {
     this.#count = 0;
   }
 
+  /** @param {Object3D} part */
   add({ matrixWorld, userData: { colour } }) {
-    this.#mesh.setMatrixAt(this.#count, matrixWorld);
-    this.#mesh.setColorAt(this.#count, colour);
+    this.mesh.setMatrixAt(this.#count, matrixWorld);
+    this.mesh.setColorAt(this.#count, colour);
     this.#count += 1;
   }
 
   end() {
-    this.#mesh.count = this.#count;
-    this.#mesh.instanceMatrix.needsUpdate = true;
-    if (this.#mesh.instanceColor) this.#mesh.instanceColor.needsUpdate = true;
+    const { mesh } = this;
+    mesh.count = this.#count;
+    mesh.instanceMatrix.needsUpdate = true;
+    if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
   }
 
   /** What draws the parts that there are by now. */
   get mesh() {
-    this.#mesh ??= new InstancedMesh(this.geometry, this.material, this.#parts);
-    this.#mesh.frustumCulled = false;
+    if (!this.#mesh) {
+      this.#mesh = new InstancedMesh(this.geometry, this.material, this.#parts);
+      this.#mesh.frustumCulled = false;
+    }
     return this.#mesh;
   }
 
@@ -77,35 +87,56 @@ class Batch {
 
 /** The parts of one scene. */
 export class Shapes {
+  /** @type {Map<string, Batch>} */
   #batches = new Map();
+  /** @type {Labels | null} */
+  #labels = null;
 
-  /** `stage` holds the size of the stage in pixels. */
+  /**
+   * `stage` holds the size of the stage in pixels.
+   *
+   * @param {Front.Palette} palette
+   * @param {Front.Scene} scene
+   * @param {Front.Vector2} stage
+   */
   constructor(palette, scene, stage) {
     this.palette = palette;
     this.scene = scene;
     this.stage = stage;
   }
 
+  /** @param {keyof typeof SHAPES} shape @param {keyof Front.Palette} colour @param {boolean} [flat] */
   mesh(shape, colour, flat = false) {
     const key = `${shape} ${flat}`;
-    if (!this.#batches.has(key)) this.#batches.set(key, new Batch(shape, flat));
-    return this.#batches.get(key).part(this.palette[colour]);
+    const batch = this.#batches.get(key) ?? new Batch(shape, flat);
+    this.#batches.set(key, batch);
+    return batch.part(this.palette[colour]);
+  }
+
+  get #all() {
+    return [...this.#batches.values(), ...(this.#labels ? [this.#labels] : [])];
   }
 
   /** Nothing is added from here on. */
   finish() {
-    for (const batch of this.#batches.values()) this.scene.add(batch.mesh);
+    for (const batch of this.#all) this.scene.add(batch.mesh);
   }
 
   /** Put all parts that are visible where they are in the scene by now. */
   put() {
-    for (const batch of this.#batches.values()) batch.begin();
+    for (const batch of this.#all) batch.begin();
     this.scene.updateMatrixWorld();
     this.scene.traverseVisible((each) => each.userData.batch?.add(each));
-    for (const batch of this.#batches.values()) batch.end();
+    for (const batch of this.#all) batch.end();
   }
 
-  /** A rod along `count` corners, with round elbows. */
+  /**
+   * A rod along `count` corners, with round elbows.
+   *
+   * @param {number} count
+   * @param {keyof Front.Palette} colour
+   * @param {boolean} [flat]
+   */
   rods(count, colour, flat = false) {
     const group = new Group();
     for (let i = 0; i < count; i++) {
@@ -115,10 +146,14 @@ export class Shapes {
     return group;
   }
 
-  /** Three arrows from the origin: x red, y green, z blue, each with its letter. */
+  /**
+   * Three arrows from the origin: x red, y green, z blue, each with its letter.
+   *
+   * @param {number} length
+   */
   frame(length) {
     const group = new Group();
-    for (const [name, axis] of Object.entries({ x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] })) {
+    for (const [name, axis] of AXES) {
       const direction = vector(axis);
       const shaft = this.mesh("thin", name, true);
       lay(shaft, new Vector3(), direction.clone().multiplyScalar(0.82 * length), 0.022 * length);
@@ -134,17 +169,25 @@ export class Shapes {
     return group;
   }
 
+  /** @param {string} text @param {keyof Front.Palette} colour @param {number} height */
   label(text, colour, height) {
-    if (!this.#batches.has("label")) this.#batches.set("label", new Labels(this.palette, this.stage));
-    return this.#batches.get("label").part(text, colour, height);
+    this.#labels ??= new Labels(this.palette, this.stage);
+    return this.#labels.part(text, colour, height);
   }
 
   dispose() {
-    for (const batch of this.#batches.values()) batch.dispose();
+    for (const batch of this.#all) batch.dispose();
   }
 }
 
-/** Lay a mesh whose shape is along y from one point to another. */
+/**
+ * Lay a mesh whose shape is along y from one point to another.
+ *
+ * @param {Object3D} mesh
+ * @param {Vector3} from
+ * @param {Vector3} to
+ * @param {number} radius
+ */
 export function lay(mesh, from, to, radius) {
   const step = to.clone().sub(from);
   const length = step.length();
@@ -155,7 +198,13 @@ export function lay(mesh, from, to, radius) {
   mesh.scale.set(radius, length, radius);
 }
 
-/** Lay the rods of `Shapes.rods` along corners. */
+/**
+ * Lay the rods of `Shapes.rods` along corners.
+ *
+ * @param {Group} group
+ * @param {number[][]} corners
+ * @param {number} radius
+ */
 export function layRods(group, corners, radius) {
   const points = corners.map(vector);
   points.forEach((point, i) => {

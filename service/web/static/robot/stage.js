@@ -22,10 +22,15 @@ function webGl() {
 }
 
 export class Stage {
+  /** @type {Front.RobotScene | Front.FlatScene | null} */
   #scene = null;
   #closed = false;
 
-  /** `draw(theme)` gives the SVG of the picture as it is, for a browser without WebGL. */
+  /**
+   * `draw(theme)` gives the SVG of the picture as it is, for a browser without WebGL.
+   *
+   * @param {Front.DrawSvg} draw
+   */
   constructor(draw) {
     this.draw = draw;
     this.room = h("div", { class: "stage" });
@@ -40,8 +45,9 @@ export class Stage {
       if (!drawnBy) throw new Error("no WebGL");
       const { RobotScene } = await import("./scene.js");
       if (this.#closed) return;
-      this.#scene = new RobotScene(this.room, drawnBy === "software");
-      this.#controls();
+      const scene = new RobotScene(this.room, drawnBy === "software");
+      this.#scene = scene;
+      this.#controls(scene);
     } catch {
       const reason = drawnBy
         ? "The 3D view could not be loaded."
@@ -50,6 +56,7 @@ export class Stage {
     }
   }
 
+  /** @param {string} reason */
   async #openFlat(reason) {
     this.isFlat = true;
     this.room.classList.add("flat");
@@ -58,10 +65,12 @@ export class Stage {
     if (!this.#closed) this.#scene = new FlatScene(this.room, this.draw);
   }
 
+  /** @param {Front.Subject} subject @param {Front.Picture} picture */
   show(subject, picture) {
     this.#scene?.show(subject, picture);
   }
 
+  /** @param {Front.Picture} picture */
   move(picture) {
     this.#scene?.move(picture);
   }
@@ -75,18 +84,21 @@ export class Stage {
     this.#scene?.dispose();
   }
 
-  #controls() {
-    const { canvas } = this.#scene;
+  /** @param {Front.RobotScene} scene */
+  #controls(scene) {
+    const { canvas } = scene;
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "img");
     canvas.setAttribute(
       "aria-label",
       "The robot in 3D. Arrow keys go around it, plus and minus zoom, 0 shows all of it.",
     );
-    canvas.addEventListener("keydown", (event) => this.#pressed(event));
+    canvas.addEventListener("keydown", (event) => this.#pressed(event, scene));
+    /** @type {(text: string, name: string, act: () => void) => HTMLElement} */
     const button = (text, name, act) =>
       h("button", { type: "button", title: name, "aria-label": name, onclick: act }, text);
-    const turn = (right, up) => () => this.#scene.turn(right * TURN, up * TURN);
+    /** @type {(right: number, up: number) => () => void} */
+    const turn = (right, up) => () => scene.turn(right * TURN, up * TURN);
     this.element.append(
       h(
         "div",
@@ -95,20 +107,24 @@ export class Stage {
         button("→", "View from further right", turn(1, 0)),
         button("↑", "View from higher", turn(0, 1)),
         button("↓", "View from lower", turn(0, -1)),
-        button("+", "Zoom in", () => this.#scene.turn(0, 0, NEARER)),
-        button("−", "Zoom out", () => this.#scene.turn(0, 0, 1 / NEARER)),
-        button("⟲", "Reset view", () => this.#scene.reset()),
+        button("+", "Zoom in", () => scene.turn(0, 0, NEARER)),
+        button("−", "Zoom out", () => scene.turn(0, 0, 1 / NEARER)),
+        button("⟲", "Reset view", () => scene.reset()),
       ),
     );
   }
 
-  #pressed(event) {
+  /** @param {KeyboardEvent} event @param {Front.RobotScene} scene */
+  #pressed(event, scene) {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
+    /** @type {Record<string, [number, number]>} */
     const turns = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+    /** @type {Record<string, number>} */
     const zooms = { "+": NEARER, "=": NEARER, "-": 1 / NEARER };
-    if (turns[event.key]) this.#scene.turn(...turns[event.key].map((each) => each * TURN));
-    else if (zooms[event.key]) this.#scene.turn(0, 0, zooms[event.key]);
-    else if (event.key === "0" || event.key === "Home") this.#scene.reset();
+    const [right, up] = turns[event.key] ?? [0, 0];
+    if (right || up) scene.turn(right * TURN, up * TURN);
+    else if (zooms[event.key]) scene.turn(0, 0, zooms[event.key]);
+    else if (event.key === "0" || event.key === "Home") scene.reset();
     else return;
     event.preventDefault();
   }

@@ -1,6 +1,6 @@
 // What stands around the picture of a robot: sliders, numbers of symbols, which frames are shown, points.
 
-import { h, visible } from "../shared/dom.js";
+import { decimal, h, visible } from "../shared/dom.js";
 import { column } from "./motion.js";
 import { symbolName } from "./names.js";
 
@@ -10,22 +10,34 @@ const LARGEST = 1e6;
 
 /** A slider for each joint variable. */
 export class JointSliders {
-  /** `host` hears: prepare(i) before a slider moves, dragged(i, value), released(). */
+  /**
+   * `host` hears: prepare(i) before a slider moves, dragged(i, value), released().
+   *
+   * @param {{ prepare(i: number): void, dragged(i: number, value: number): void, released(): void }} host
+   */
   constructor(host) {
     this.host = host;
+    /** @type {Api.MovingJoint[]} */
+    this.joints = [];
+    /** @type {{ field: HTMLInputElement, output: HTMLOutputElement, element: HTMLElement }[]} */
+    this.fields = [];
+    this.drawn = "";
     this.element = h("div", { class: "sliders", role: "group", "aria-label": "Joint variables" });
   }
 
+  /** @param {Api.MovingJoint[]} joints @param {Record<string, number>} values */
   show(joints, values) {
-    const names = JSON.stringify(joints.map(({ home, ...joint }) => joint));
-    if (this.names !== names) {
-      this.names = names;
+    const drawn = JSON.stringify(joints.map((joint) => ({ ...joint, home: 0 })));
+    if (this.drawn !== drawn) {
+      this.drawn = drawn;
       this.joints = joints;
-      this.element.replaceChildren(...joints.map((joint, i) => this.#slider(joint, i)));
+      this.fields = joints.map((joint, i) => this.#slider(joint, i));
+      this.element.replaceChildren(...this.fields.map((each) => each.element));
     }
     joints.forEach(({ variable }, i) => this.put(i, values[variable]));
   }
 
+  /** @param {Api.MovingJoint} joint @param {number} i */
   #slider({ joint, variable, kind, low, high }, i) {
     const doing = kind === "P" ? "slides" : "turns";
     const prepare = () => this.host.prepare(i);
@@ -40,29 +52,34 @@ export class JointSliders {
       onpointerdown: prepare,
       onfocus: prepare,
     });
-    return h(
-      "div",
-      { class: "slider" },
-      h("span", { class: "name", "aria-hidden": "true" }, symbolName(variable)),
-      field,
-      h("output", {}),
-    );
+    const name = h("span", { class: "name", "aria-hidden": "true" }, symbolName(variable));
+    const output = h("output");
+    return { field, output, element: h("div", { class: "slider" }, name, field, output) };
   }
 
-  /** Show the value of a joint. */
+  /**
+   * Show the value of a joint.
+   *
+   * @param {number} i
+   * @param {number} value
+   */
   put(i, value) {
-    const row = this.element.children[i];
+    const { field, output } = this.fields[i];
     const text = this.joints[i].kind === "P" ? decimal(value) : `${Math.round(value * DEGREES)}°`;
-    row.querySelector("output").textContent = text;
-    const field = row.querySelector("input");
+    output.textContent = text;
     field.setAttribute("aria-valuetext", text);
-    if (!field.matches(":active") && Number(field.value) !== value) field.value = value;
+    if (!field.matches(":active") && Number(field.value) !== value) field.value = String(value);
   }
 }
 
 /** A number for each symbol that is no joint variable, folded away. */
 export class SymbolFields {
-  /** `chosen(name, value)` hears of each number; `descriptions` are those of the symbols by name. */
+  /**
+   * `chosen(name, value)` hears of each number; `descriptions` are those of the symbols by name.
+   *
+   * @param {(name: string, value: number) => void} chosen
+   * @param {Record<string, string>} [descriptions]
+   */
   constructor(chosen, descriptions = {}) {
     this.chosen = chosen;
     this.descriptions = descriptions;
@@ -75,6 +92,7 @@ export class SymbolFields {
     );
   }
 
+  /** @param {Record<string, number>} symbols */
   show(symbols) {
     const names = Object.keys(symbols);
     this.element.hidden = names.length === 0;
@@ -87,9 +105,10 @@ export class SymbolFields {
     }
   }
 
+  /** @param {string} name */
   #field(name) {
     const described = this.descriptions[name] && visible(this.descriptions[name]);
-    const changed = ({ target: { valueAsNumber: value } }) =>
+    const changed = (/** @type {{ target: HTMLInputElement }} */ { target: { valueAsNumber: value } }) =>
       Number.isFinite(value) && Math.abs(value) <= LARGEST && this.chosen(name, value);
     const field = h("input", {
       type: "number",
@@ -109,13 +128,16 @@ export class SymbolFields {
 
 /** Which frames of the table are shown. */
 export class FrameSwitches {
+  /** @type {Set<number>} */
   #hidden = new Set();
 
+  /** @param {() => void} changed */
   constructor(changed) {
     this.changed = changed;
     this.element = h("div", { class: "frames", role: "group", "aria-label": "Frames shown" });
   }
 
+  /** @param {number} i */
   isShown(i) {
     return !this.#hidden.has(i);
   }
@@ -124,8 +146,10 @@ export class FrameSwitches {
     this.#hidden.clear();
   }
 
+  /** @param {number} count */
   show(count) {
     if (this.element.children.length === (count ? count + 1 : 0)) return;
+    /** @type {(i: number, on: boolean) => void} */
     const toggle = (i, on) => (on ? this.#hidden.delete(i) : this.#hidden.add(i), this.changed());
     const boxes = Array.from({ length: count }, (_, i) => {
       const box = h("input", {
@@ -152,10 +176,13 @@ export class PoseNumbers {
     this.element = h("div", { class: "pose-numbers" });
   }
 
+  /** @param {Front.Picture} picture */
   show({ frames, mechanism }) {
+    /** @type {[string, number[]][]} */
     const lines = [];
+    const last = frames && frames.length - 1;
     if (mechanism) lines.push(["Tool of the robot", mechanism.tool]);
-    if (frames?.length > 1) lines.push([`Origin of your frame {${frames.length - 1}}`, column(frames.at(-1), 3)]);
+    if (last && last > 0) lines.push([`Origin of your frame {${last}}`, column(frames[last], 3)]);
     if (this.element.children.length !== lines.length) {
       this.element.replaceChildren(...lines.map(() => h("p", {}, h("span"), h("code"))));
     }
@@ -165,9 +192,4 @@ export class PoseNumbers {
       value.textContent = point.map(decimal).join("  ");
     });
   }
-}
-
-/** Three decimals, without a negative zero. */
-function decimal(value) {
-  return (Math.round(value * 1000) / 1000 + 0).toFixed(3).replace(/^-(0\.000)$/, "$1");
 }

@@ -5,27 +5,34 @@ import { mathml } from "./markup.js";
 
 export const SIGNS = { correct: "✓", partial: "~", incorrect: "✗", unreadable: "?", missing: "–" };
 
+/** @template {Front.CellPlace} Place */
 export class Cell {
   #before = "";
 
-  /** `place` has part, quantity, spoken (its name aloud) and id; `owner` hears of all that happens. */
+  /**
+   * `place` says where the cell is, and its name aloud (`spoken`); `owner` hears of all that happens.
+   *
+   * @param {Place} place
+   * @param {Front.CellOwner<Place>} owner
+   */
   constructor(place, owner) {
-    Object.assign(this, place);
+    const { id, spoken } = place;
+    this.place = place;
     this.owner = owner;
+    /** @type {Front.Reading | null} */
     this.reading = null;
-    this.report = null;
-    this.shown = h("div", { class: "shown", id: `${this.id}-shown` });
+    this.shown = h("div", { class: "shown", id: `${id}-shown` });
     this.sign = h("span", { class: "sign" });
     this.echo = h("span", { class: "echo", "aria-hidden": "true" });
     this.input = h("input", {
       type: "text",
-      id: this.id,
+      id,
       autocomplete: "off",
       autocapitalize: "off",
       autocorrect: "off",
       spellcheck: "false",
-      "aria-label": this.spoken,
-      "aria-describedby": `${this.id}-shown`,
+      "aria-label": spoken,
+      "aria-describedby": `${id}-shown`,
       oninput: () => this.#typed(),
       onscroll: () => this.#follow(),
       onfocus: () => this.owner.entered(this),
@@ -41,7 +48,11 @@ export class Cell {
     return this.input.value;
   }
 
-  /** Put another text here, without a step for undo. */
+  /**
+   * Put another text here, without a step for undo.
+   *
+   * @param {string} text
+   */
   put(text) {
     this.input.value = text;
     this.#changed();
@@ -60,7 +71,11 @@ export class Cell {
     this.owner.changed(this);
   }
 
-  /** Show how the text is understood: an answer of the preview, or null for an empty cell. */
+  /**
+   * Show how the text is understood: an answer of the preview, or null for an empty cell.
+   *
+   * @param {Front.Reading | null} reading
+   */
   understood(reading) {
     this.reading = reading;
     const error = reading?.error;
@@ -68,11 +83,12 @@ export class Cell {
     this.input.toggleAttribute("aria-invalid", false);
     if (error) this.input.setAttribute("aria-invalid", "true");
     else this.input.removeAttribute("aria-invalid");
-    this.#underline(error?.span);
+    this.#underline(error?.span ?? null);
     this.shown.replaceChildren(...this.#readingShown(reading));
     this.owner.understood(this);
   }
 
+  /** @param {Front.Reading | null} reading */
   #readingShown(reading) {
     if (!reading) return [];
     if (!reading.error) return [mathml(reading.mathml) ?? visible(reading.text)];
@@ -80,7 +96,12 @@ export class Cell {
     return [told, reading.error.suggestion ? this.repair(reading.error.suggestion) : "not read"];
   }
 
-  /** The button that writes the repaired text. */
+  /**
+   * The button that writes the repaired text.
+   *
+   * @param {string} suggestion
+   * @returns {HTMLElement}
+   */
   repair(suggestion) {
     return h(
       "button",
@@ -91,10 +112,15 @@ export class Cell {
     );
   }
 
-  /** Underline [from, to) of the text, which is counted in code points. */
+  /**
+   * Underline [from, to) of the text, which is counted in code points.
+   *
+   * @param {[number, number] | null} span
+   */
   #underline(span) {
     if (!span) return this.echo.replaceChildren();
     const characters = Array.from(this.text);
+    /** @type {(from?: number, to?: number) => string} */
     const piece = (from, to) => characters.slice(from, to).join("");
     const to = Math.max(span[1], span[0] + 1);
     this.echo.replaceChildren(piece(0, span[0]), h("u", {}, piece(span[0], to) || " "), piece(to));
@@ -105,9 +131,13 @@ export class Cell {
     this.echo.scrollLeft = this.input.scrollLeft;
   }
 
-  /** Mark the cell as its report says; null takes the mark away. */
+  /**
+   * Mark the cell as its report says; null takes the mark away.
+   *
+   * @param {Api.CellReport | null} report
+   */
   mark(report) {
-    this.report = report;
+    const { spoken } = this.place;
     const verdict = report?.verdict;
     if (verdict) this.element.dataset.verdict = verdict;
     else delete this.element.dataset.verdict;
@@ -116,6 +146,6 @@ export class Cell {
         ? [h("span", { "aria-hidden": "true" }, SIGNS[verdict]), h("span", { class: "aloud" }, verdict)]
         : []),
     );
-    this.input.setAttribute("aria-label", verdict ? `${this.spoken}: ${verdict}` : this.spoken);
+    this.input.setAttribute("aria-label", verdict ? `${spoken}: ${verdict}` : spoken);
   }
 }

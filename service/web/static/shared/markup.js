@@ -18,16 +18,21 @@ const ATTRIBUTES = new Set(
     "columnalign scope start colspan rowspan").split(" "),
 );
 
-const policy = globalThis.trustedTypes?.createPolicy("dh-grader", { createHTML: (text) => text });
+/** @type {{ createHTML(text: string): string } | undefined} */
+const policy = /** @type {any} */ (globalThis).trustedTypes?.createPolicy("dh-grader", {
+  createHTML: (/** @type {string} */ text) => text,
+});
 
+/** @param {string} text @param {DOMParserSupportedType} type */
 function parsed(text, type) {
   return new DOMParser().parseFromString(policy ? policy.createHTML(text) : text, type);
 }
 
+/** @param {Node} node @returns {Node | null} */
 function copied(node) {
-  if (node.nodeType === Node.TEXT_NODE) return document.createTextNode(node.data);
-  if (node.nodeType !== Node.ELEMENT_NODE || DROPPED.has(node.localName)) return null;
-  const children = [...node.childNodes].map(copied).filter(Boolean);
+  if (node.nodeType === Node.TEXT_NODE) return document.createTextNode(node.nodeValue ?? "");
+  if (!(node instanceof Element) || DROPPED.has(node.localName)) return null;
+  const children = [...node.childNodes].map(copied).filter((child) => child !== null);
   const tags = node.namespaceURI === MATHML ? MATHML_TAGS : node.namespaceURI === XHTML ? XHTML_TAGS : null;
   if (!tags?.has(node.localName)) {
     const fragment = document.createDocumentFragment();
@@ -40,29 +45,47 @@ function copied(node) {
   return element;
 }
 
-/** The one `<math>` element in the text, or null where it is none. */
+/**
+ * The one `<math>` element in the text, or null where it is none.
+ *
+ * @param {string | undefined} text
+ */
 export function mathml(text) {
   const root = text ? parsed(text, "application/xml").documentElement : null;
   return root?.namespaceURI === MATHML && root.localName === "math" ? copied(root) : null;
 }
 
-/** A page that the service wrote, to be shown where a policy lets no script run. */
+/**
+ * A page that the service wrote, to be shown where a policy lets no script run.
+ *
+ * @param {string} text
+ */
 export function documentOf(text) {
   return parsed(text, "text/html");
 }
 
-/** The statement of an exercise as nodes. */
+/**
+ * The statement of an exercise as nodes.
+ *
+ * @param {string} text
+ */
 export function html(text) {
-  return [...parsed(text, "text/html").body.childNodes].map(copied).filter(Boolean);
+  return [...parsed(text, "text/html").body.childNodes].map(copied).filter((node) => node !== null);
 }
 
-/** A matrix of formulas, each the text of a `<math>` element. */
+/**
+ * A matrix of formulas, each the text of a `<math>` element.
+ *
+ * @param {string[][]} rows
+ */
 export function matrix(rows) {
+  /** @type {(tag: string, ...children: Node[]) => Element} */
   const make = (tag, ...children) => {
     const element = document.createElementNS(MATHML, tag);
     element.append(...children);
     return element;
   };
+  /** @type {(text: string) => Element} */
   const entry = (text) => make("mtd", ...(mathml(text)?.childNodes ?? []));
   const table = make("mtable", ...rows.map((row) => make("mtr", ...row.map(entry))));
   // Its brackets are drawn by the style sheet: not every system has a font whose brackets grow.

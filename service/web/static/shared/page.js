@@ -1,6 +1,6 @@
 // What the service's own pages add: the choice of light or dark, and the search in the catalogue.
 
-import { h } from "./dom.js";
+import { byId, h } from "./dom.js";
 
 const NAME = "dh-grader:theme";
 const THEMES = { auto: "System", light: "Light", dark: "Dark" };
@@ -13,11 +13,13 @@ function kept() {
   }
 }
 
+/** @param {string} theme */
 function show(theme) {
   if (theme === "auto") delete document.documentElement.dataset.theme;
   else document.documentElement.dataset.theme = theme;
 }
 
+/** @param {string} theme */
 function choose(theme) {
   show(theme);
   try {
@@ -33,27 +35,34 @@ const theme = h(
   ...Object.entries(THEMES).map(([value, text]) => h("option", { value, selected: value === kept() }, text)),
 );
 show(kept());
-document.getElementById("theme").append(theme);
+byId("theme", HTMLElement).append(theme);
 
 const field = document.getElementById("search");
-if (field) {
-  const items = [...document.querySelectorAll(".exercises > li")];
+if (field instanceof HTMLInputElement) {
+  /** @type {NodeListOf<HTMLElement>} */
+  const found = document.querySelectorAll(".exercises > li");
+  const items = [...found];
   const texts = items.map((item) => item.textContent.toLowerCase());
-  const none = document.getElementById("none-found");
-  const count = document.getElementById("count");
+  const none = byId("none-found", HTMLElement);
+  const count = byId("count", HTMLElement);
   const narrow = () => {
     const words = field.value.toLowerCase().split(/\s+/).filter(Boolean);
     items.forEach((item, i) => (item.hidden = !words.every((word) => texts[i].includes(word))));
-    for (const group of document.querySelectorAll(".group")) {
+    /** @type {NodeListOf<HTMLElement>} */
+    const groups = document.querySelectorAll(".group");
+    for (const group of groups) {
       group.hidden = !group.querySelector(".exercises > li:not([hidden])");
     }
-    const found = items.filter((item) => !item.hidden).length;
-    count.textContent = words.length ? `${found} of ${items.length}` : `${items.length} exercises`;
-    none.hidden = found > 0;
+    const left = items.filter((item) => !item.hidden).length;
+    count.textContent = words.length ? `${left} of ${items.length}` : `${items.length} exercises`;
+    none.hidden = left > 0;
     none.textContent = "No exercise has all these words.";
   };
-  field.form.hidden = false;
-  field.form.addEventListener("submit", (event) => event.preventDefault());
+  const { form } = field;
+  if (form) {
+    form.hidden = false;
+    form.addEventListener("submit", (event) => event.preventDefault());
+  }
   field.addEventListener("input", narrow);
   narrow();
 }

@@ -7,6 +7,7 @@ const KEY_NEEDED = "Open this exercise from your course's site: here it needs a 
 
 /** A request that failed. `kind` is "offline", "busy", "refused" or "failed". */
 export class ServiceError extends Error {
+  /** @param {"offline" | "busy" | "refused" | "failed"} kind @param {string} text @param {number} [status] */
   constructor(kind, text, status = 0) {
     super(text);
     this.kind = kind;
@@ -15,45 +16,59 @@ export class ServiceError extends Error {
 }
 
 export class Service {
-  /** `base` is the address of the service, with a slash at its end; `token` gives that of the learner, if any. */
+  /**
+   * `base` is the address of the service, with a slash at its end; `token` gives that of the learner, if any.
+   *
+   * @param {string} base
+   * @param {() => string | null} [token]
+   */
   constructor(base, token = () => null) {
     this.base = base;
     this.token = token;
   }
 
+  /** @param {string} path */
   address(path) {
     return new URL(path, this.base).href;
   }
 
+  /** @param {string} id @returns {Promise<Api.Exercise>} */
   exercise(id) {
     return this.#ask(`v1/exercises/${encodeURIComponent(id)}`);
   }
 
+  /** @param {Api.PreviewRequest} body @returns {Promise<Api.Preview>} */
   preview(body) {
     return this.#ask("v1/preview", body);
   }
 
+  /** @param {Api.PreviewManyRequest} body @returns {Promise<Api.PreviewManyResponse>} */
   previews(body) {
     return this.#ask("v1/previews", body);
   }
 
+  /** @param {string} id @param {Api.GradeRequest} body @returns {Promise<Api.Report>} */
   grade(id, body) {
     return this.#ask(`v1/exercises/${encodeURIComponent(id)}/grade`, body);
   }
 
+  /** @param {Api.FramesRequest} body @returns {Promise<Api.Frames>} */
   frames(body) {
     return this.#ask("v1/frames", body);
   }
 
+  /** @param {string} path @param {unknown} [body] */
   async #ask(path, body) {
-    const options = { credentials: "omit", headers: {}, signal: AbortSignal.timeout(PATIENCE) };
+    const headers = new Headers();
+    /** @type {RequestInit} */
+    const options = { credentials: "omit", headers, signal: AbortSignal.timeout(PATIENCE) };
     if (body !== undefined) {
       options.method = "POST";
-      options.headers["Content-Type"] = "application/json";
+      headers.set("Content-Type", "application/json");
       options.body = JSON.stringify(body);
       // What is only read needs none, and is asked for without a question beforehand.
       const token = this.token();
-      if (token) options.headers.Authorization = `Bearer ${token}`;
+      if (token) headers.set("Authorization", `Bearer ${token}`);
     }
     let answer, content;
     try {
@@ -64,11 +79,12 @@ export class Service {
         ? new ServiceError("offline", "The service cannot be reached. Your answers are kept in this browser.")
         : failure(answer.status, {});
     }
-    if (!answer.ok) throw failure(answer.status, content);
+    if (!answer.ok) throw failure(answer.status, content ?? {});
     return content;
   }
 }
 
+/** @param {number} status @param {Partial<Api.Problem>} problem */
 function failure(status, problem) {
   if (status === 429 || status === 503) {
     return new ServiceError("busy", "The service has a lot to do. Try again in a few seconds.", status);

@@ -8,9 +8,11 @@
 
 import { h, points, visible } from "../shared/dom.js";
 import { History } from "../shared/history.js";
-import { html } from "../shared/markup.js";
+import { about } from "./about.js";
+import { CheckBar } from "./check_bar.js";
 import { PartView } from "./part_view.js";
 import { Previewer } from "./previewer.js";
+import { RobotFigure } from "./robot_figure.js";
 import { Service } from "../shared/service.js";
 import { answersIn, fragment, Store } from "../shared/storage.js";
 
@@ -22,9 +24,33 @@ const SAVED_AFTER = 250;
 export class DhExercise extends HTMLElement {
   static observedAttributes = ["exercise", "api", "parts", "theme"];
 
+  /** @type {PartView[]} */
   #parts = [];
-  #timers = {};
+  #speaking = 0;
+  #saving = 0;
   #loading = 0;
+  #onOnline = () => this.#online();
+
+  // Set when an exercise is loaded, and again for another one.
+
+  /** @type {Service} */
+  service;
+  /** @type {Api.Exercise} */
+  exercise;
+  /** @type {Previewer} */
+  previewer;
+  /** @type {Store} */
+  store;
+  /** @type {History<Front.PartCell, string>} */
+  history;
+  /** @type {RobotFigure | null} */
+  robot = null;
+  /** @type {HTMLSelectElement} */
+  unit;
+  /** @type {HTMLElement} */
+  saved;
+  /** @type {CheckBar} */
+  bar;
 
   constructor() {
     super();
@@ -33,23 +59,24 @@ export class DhExercise extends HTMLElement {
     // Until there is an exercise, what the page itself holds is shown.
     this.main = h("div", { class: "exercise" }, h("slot"));
     this.state = h("div", { class: "state" });
+    this.received = h("div", { class: "card notice" });
     const sheets = [TOKENS, STYLE].map((href) => h("link", { rel: "stylesheet", href }));
     root.append(...sheets, h("div", { class: "outer" }, this.state, this.main, this.live));
   }
 
   connectedCallback() {
     this.#begin();
-    this.onOnline = () => this.#online();
-    addEventListener("online", this.onOnline);
+    addEventListener("online", this.#onOnline);
   }
 
   disconnectedCallback() {
-    removeEventListener("online", this.onOnline);
-    this.#closeView();
+    removeEventListener("online", this.#onOnline);
+    this.robot?.close();
     this.#loading += 1;
   }
 
-  attributeChangedCallback(name, before, after) {
+  /** @param {string} _name @param {string | null} before @param {string | null} after */
+  attributeChangedCallback(_name, before, after) {
     if (this.isConnected && before !== after) this.#begin();
   }
 
@@ -59,6 +86,7 @@ export class DhExercise extends HTMLElement {
     queueMicrotask(() => turn === this.#loading && this.isConnected && this.#load(turn));
   }
 
+  /** @param {number} turn */
   async #load(turn) {
     const id = this.getAttribute("exercise");
     if (!id) return this.#tell("No exercise is chosen", "Name one in the attribute “exercise”.");
@@ -79,7 +107,13 @@ export class DhExercise extends HTMLElement {
     return this.main.removeAttribute("aria-busy");
   }
 
-  /** A state without an exercise. */
+  /**
+   * A state without an exercise.
+   *
+   * @param {string} title
+   * @param {string} text
+   * @param {boolean} [again]
+   */
   #tell(title, text, again = false) {
     const button = again
       ? h("button", { type: "button", class: "quiet-button", onclick: () => this.#begin() }, "Try again")
@@ -104,30 +138,35 @@ export class DhExercise extends HTMLElement {
 
   /** What every request about entries says. */
   context() {
-    return { exercise: this.exercise.id, angle_unit: this.unit.value };
+    return { exercise: this.exercise.id, angle_unit: this.angleUnit };
   }
 
-  /** Say something to a screen reader, after a pause in which nothing else is said. */
+  /**
+   * Say something to a screen reader, after a pause in which nothing else is said.
+   *
+   * @param {string} text
+   * @param {number} [pause]
+   */
   announce(text, pause = 0) {
-    clearTimeout(this.#timers.live);
-    this.#timers.live = setTimeout(() => (this.live.textContent = visible(text)), pause);
+    clearTimeout(this.#speaking);
+    this.#speaking = setTimeout(() => (this.live.textContent = visible(text)), pause);
   }
 
-  /** Show that the service does not answer; null when it does. */
+  /**
+   * Show that the service does not answer; null when it does.
+   *
+   * @param {Error | null} error
+   */
   failed(error) {
-    this.trouble.hidden = !error;
-    if (error && this.trouble.textContent !== error.message) {
-      this.trouble.textContent = visible(error.message);
-      this.announce(error.message);
-    }
+    if (this.bar.failed(error)) this.announce(String(error?.message));
   }
 
   /** The answers have changed: keep them. */
   edited() {
-    this.view?.changed();
-    clearTimeout(this.#timers.save);
-    this.#timers.save = setTimeout(() => this.#save(), SAVED_AFTER);
-    this.#showTotal(null);
+    this.robot?.changed();
+    clearTimeout(this.#saving);
+    this.#saving = setTimeout(() => this.#save(), SAVED_AFTER);
+    this.bar.outdated();
   }
 
   #save() {
@@ -140,17 +179,22 @@ export class DhExercise extends HTMLElement {
       : "This browser keeps nothing: a reload loses the answers";
   }
 
+  get angleUnit() {
+    return /** @type {Api.AngleUnit} */ (this.unit.value);
+  }
+
   /** All answers: `{unit, parts: {id: {cells, choice}}}`. */
   get answers() {
     const parts = Object.fromEntries(
       this.#parts.filter((part) => !part.isEmpty).map((part) => [part.part.id, part.state]),
     );
-    return { unit: this.unit.value, parts };
+    return { unit: this.angleUnit, parts };
   }
 
+  /** @param {Front.Answers} answers */
   #restore(answers) {
     this.unit.value = answers.unit;
-    this.view?.changed();
+    this.robot?.changed();
     return this.#parts.flatMap((part) => {
       const state = Object.hasOwn(answers.parts, part.part.id) ? answers.parts[part.part.id] : null;
       return part.restore(state ?? { cells: [], choice: "" });
@@ -159,97 +203,58 @@ export class DhExercise extends HTMLElement {
 
   // The exercise on the page.
 
+  /** @param {Api.Exercise} exercise */
   #show(exercise) {
-    this.#closeView();
+    this.robot?.close();
     this.exercise = exercise;
+    this.robot = this.#robotFigure();
     this.history = new History();
     this.previewer = new Previewer(this.service, () => this.context(), (error) => this.failed(error));
     this.store = new Store(this.service.base, exercise.id);
     const wanted = this.getAttribute("parts")?.trim().split(/[\s,]+/);
-    const level = this.hasAttribute("linked") ? 1 : 2;
+    // The service's own page has no other title.
+    const isOwn = this.hasAttribute("linked");
+    this.bar = new CheckBar(() => this.check());
     this.#parts = exercise.parts
       .filter((part) => !wanted || wanted.includes(part.id))
-      .map((part) => new PartView(part, this, level + 1));
+      .map((part) => new PartView(part, this, isOwn ? "h2" : "h3"));
     this.main.replaceChildren(
-      this.#about(level),
+      about(exercise, isOwn ? "h1" : "h2", this.robot),
       h(
         "div",
         { class: "parts" },
         this.#tools(),
-        this.#received(),
+        this.received,
         ...this.#parts.map((part) => part.element),
-        this.#bar(),
+        this.bar.element,
       ),
     );
+    this.received.hidden = true;
     this.state.replaceChildren();
-    const shared = this.hasAttribute("linked") ? answersIn(location.hash) : null;
+    const shared = isOwn ? answersIn(location.hash) : null;
     const own = this.store.load();
     if (own) this.#restore(own);
     if (shared) this.#takeShared(shared, own);
-    this.#showTotal(null);
+    this.bar.outdated();
     this.dispatchEvent(new CustomEvent("ready", { bubbles: true, composed: true }));
   }
 
-  /** What is asked; beside the cells it scrolls by itself, also by keyboard. */
-  #about(level) {
-    const title = h(`h${level}`, { id: "title" }, visible(this.exercise.title));
-    const header = h("header", {}, title, h("p", { class: "quiet" }, visible(this.exercise.source)));
-    const region = { class: "about", tabindex: 0, "aria-labelledby": "title" };
-    return h("section", region, header, this.#statement(), this.#symbols(level + 1));
-  }
+  // The robot, drawn and in 3D.
 
-  // The robot in 3D, loaded when it is asked for.
-
-  #viewButton() {
-    this.opener = h("button", {
-      type: "button",
-      class: "quiet-button",
-      "aria-expanded": "false",
-      onclick: () => this.#toggleView(),
-    }, "Move it in 3D");
-    return this.opener;
-  }
-
-  async #toggleView() {
-    if (this.view) return this.#closeView();
-    const turn = this.#loading;
-    this.opener.setAttribute("aria-busy", "true");
-    try {
-      const { RobotView } = await import("../robot/robot_view.js");
-      if (turn === this.#loading && !this.view) this.#openView(new RobotView(this.#viewHost()));
-    } catch {
-      this.announce(this.saved.textContent = "The 3D view could not be loaded");
-    }
-    return this.opener.removeAttribute("aria-busy");
-  }
-
-  #viewHost() {
-    return {
+  #robotFigure() {
+    const { figure, symbols, title, id } = this.exercise;
+    if (!figure) return null;
+    const theme = this.getAttribute("theme");
+    const asked = theme === "light" || theme === "dark" ? `?theme=${theme}` : "";
+    const address = this.service.address(`v1/exercises/${encodeURIComponent(id)}/figure.svg${asked}`);
+    const host = {
       service: this.service,
-      body: () => ({ exercise: this.exercise.id, angle_unit: this.unit.value, ...this.#tableToDraw() }),
-      descriptions: Object.fromEntries(this.exercise.symbols.map(({ name, description }) => [name, description])),
-      announce: (text) => this.announce(text),
+      body: () => ({ ...this.context(), ...this.#tableToDraw() }),
+      descriptions: Object.fromEntries(symbols.map(({ name, description }) => [name, description])),
+      announce: (/** @type {string} */ text) => this.announce(text),
     };
-  }
-
-  #openView(view) {
-    this.view = view;
-    this.figure.hidden = true;
-    this.figure.after(view.element);
-    this.main.classList.add("with-view");
-    this.opener.textContent = "Back to the drawing";
-    this.opener.setAttribute("aria-expanded", "true");
-    view.open();
-  }
-
-  #closeView() {
-    if (!this.view) return;
-    this.view.close();
-    this.view = null;
-    this.figure.hidden = false;
-    this.main.classList.remove("with-view");
-    this.opener.textContent = "Move it in 3D";
-    this.opener.setAttribute("aria-expanded", "false");
+    const failed = () => this.announce(this.saved.textContent = "The 3D view could not be loaded");
+    return new RobotFigure(address, title, host, (isOpen) => this.main.classList.toggle("with-view", isOpen), failed);
   }
 
   /** The table that the student filled in, if there is one: the last one that was changed. */
@@ -257,75 +262,32 @@ export class DhExercise extends HTMLElement {
     const tables = this.#parts.filter(({ part, isEmpty }) => part.kind === "dh_table" && !isEmpty);
     const [table] = tables.sort((one, other) => other.changedAt - one.changedAt);
     if (!table) return {};
-    const { rows, convention = table.part.shape.convention } = table.answer;
+    const { shape } = table.part;
+    const own = "convention" in shape ? shape.convention : "standard";
+    const { rows, convention = own } = /** @type {{ rows: unknown, convention?: typeof own }} */ (table.answer);
     return { table: { rows, convention: convention === "either" ? "standard" : convention } };
   }
 
-  #statement() {
-    const { statement, statement_html: markup } = this.exercise;
-    const text = markup ? html(markup) : statement.trim().split(/\n\n+/).map((each) => h("p", {}, visible(each)));
-    this.figure = this.#figure();
-    // The button stands before what it opens: it stays in sight, and Tab goes on into the view.
-    return h("div", { class: "statement" }, this.figure && this.#viewButton(), this.figure, ...text);
-  }
-
-  #figure() {
-    if (!this.exercise.figure) return null;
-    const theme = this.getAttribute("theme");
-    const asked = theme === "light" || theme === "dark" ? `?theme=${theme}` : "";
-    const address = this.service.address(`v1/exercises/${encodeURIComponent(this.exercise.id)}/figure.svg${asked}`);
-    // The text below must not jump when the drawing arrives.
-    const loaded = ({ target }) => target.classList.remove("loading");
-    return h(
-      "figure",
-      {},
-      h("img", {
-        src: address,
-        alt: `Drawing of the robot: ${visible(this.exercise.title)}`,
-        class: "loading",
-        onload: loaded,
-        onerror: loaded,
-      }),
-    );
-  }
-
-  #symbols(level) {
-    const symbols = this.exercise.symbols.flatMap(({ name, unit, description }) => [
-      h("dt", {}, h("code", {}, visible(name))),
-      h("dd", {}, visible(unit ? `${description} (${unit})` : description)),
-    ]);
-    return symbols.length
-      ? h("section", { class: "symbols" }, h(`h${level}`, {}, "Symbols"), h("dl", {}, ...symbols))
-      : null;
-  }
-
-  #received() {
-    this.receivedNotice = h("div", { class: "card notice", hidden: true });
-    return this.receivedNotice;
-  }
-
-  /** Answers that came by a link; the student's own can be had back. */
+  /**
+   * Answers that came by a link; the student's own can be had back.
+   *
+   * @param {Front.Answers} shared
+   * @param {Front.Answers | null} own
+   */
   #takeShared(shared, own) {
     const had = own ?? { unit: "radians", parts: {} };
     this.history.note(this.#restore(shared));
     const back = () => {
       this.history.note(this.#restore(had));
       this.edited();
-      this.receivedNotice.hidden = true;
+      this.received.hidden = true;
     };
-    this.receivedNotice.replaceChildren(
+    this.received.replaceChildren(
       h("p", {}, "These answers came with the link."),
       own ? h("button", { type: "button", class: "quiet-button", onclick: back }, "Back to my own") : "",
     );
-    this.receivedNotice.hidden = false;
+    this.received.hidden = false;
     history.replaceState(null, "", location.pathname + location.search);
-  }
-
-  #bar() {
-    this.button = h("button", { type: "button", class: "check", onclick: () => this.check() }, "Check");
-    this.total = h("p", { class: "total" });
-    this.trouble = h("p", { class: "trouble-line", hidden: true });
-    return h("div", { class: "bar" }, this.trouble, h("div", { class: "bar-line" }, this.button, this.total));
   }
 
   #tools() {
@@ -352,10 +314,10 @@ export class DhExercise extends HTMLElement {
   }
 
   #clear() {
-    this.history.note(this.#restore({ unit: this.unit.value, parts: {} }));
+    this.history.note(this.#restore({ unit: this.angleUnit, parts: {} }));
     for (const part of this.#parts) part.clearReport();
     this.#save();
-    this.#showTotal(null);
+    this.bar.outdated();
     this.announce("All cells are empty. Ctrl+Z in a cell takes it back.");
     this.saved.textContent = "Cleared; Ctrl+Z takes it back";
     this.#parts[0]?.focus(this.#parts[0].cells[0]);
@@ -378,17 +340,6 @@ export class DhExercise extends HTMLElement {
     this.announce(told);
   }
 
-  #showTotal(report) {
-    if (report) {
-      const share = report.max_points ? report.points / report.max_points : 0;
-      const meter = h("meter", { min: 0, max: 1, value: share, "aria-label": "Share of the points" });
-      this.total.replaceChildren(meter, h("strong", {}, points(report.points, report.max_points)), " points");
-      this.total.classList.remove("outdated");
-    } else if (this.total.childNodes.length) {
-      this.total.classList.add("outdated");
-    }
-  }
-
   /** Have all parts graded that hold something, and show the report. */
   async check() {
     const filled = this.#parts.filter((part) => !part.isEmpty);
@@ -397,12 +348,12 @@ export class DhExercise extends HTMLElement {
       this.saved.textContent = "Nothing is filled in yet";
       return;
     }
-    if (this.button.getAttribute("aria-disabled") === "true") return;
-    this.button.setAttribute("aria-disabled", "true");
-    const feedback = this.getAttribute("feedback");
+    if (this.bar.isBusy) return;
+    this.bar.isBusy = true;
+    const feedback = /** @type {Api.FeedbackLevel | null} */ (this.getAttribute("feedback"));
     const body = {
       answers: Object.fromEntries(filled.map((part) => [part.part.id, part.answer])),
-      angle_unit: this.unit.value,
+      angle_unit: this.angleUnit,
       ...(feedback ? { feedback } : {}),
     };
     try {
@@ -412,28 +363,36 @@ export class DhExercise extends HTMLElement {
     } catch (error) {
       this.failed(error);
     }
-    this.button.removeAttribute("aria-disabled");
+    this.bar.isBusy = false;
   }
 
+  /** @param {Api.Report} report @param {PartView[]} filled */
   #showReport(report, filled) {
     const shown = new Map(report.parts.map((part) => [part.part, part]));
     for (const part of this.#parts) {
-      if (filled.includes(part)) part.showReport(shown.get(part.part.id));
+      const told = filled.includes(part) ? shown.get(part.part.id) : null;
+      if (told) part.showReport(told);
       else part.clearReport();
     }
-    this.#showTotal(this.#ofShown(report));
-    const told = filled.map((part) => {
-      const { verdict, points: earned, max_points: most } = shown.get(part.part.id);
-      return `${part.part.title}: ${verdict}, ${points(earned, most)} points.`;
-    });
+    this.bar.show(this.#ofShown(report));
+    const titles = new Map(filled.map(({ part: { id, title } }) => [id, title]));
+    const told = report.parts.filter(({ part }) => titles.has(part)).map(
+      ({ part, verdict, points: earned, max_points: most }) =>
+        `${titles.get(part)}: ${verdict}, ${points(earned, most)} points.`,
+    );
     this.announce(told.join(" "));
     this.dispatchEvent(new CustomEvent("graded", { bubbles: true, composed: true, detail: report }));
   }
 
-  /** Points of the parts that are shown. */
+  /**
+   * Points of the parts that are shown.
+   *
+   * @param {Api.Report} report
+   */
   #ofShown(report) {
     const ids = new Set(this.#parts.map((part) => part.part.id));
     const shown = report.parts.filter((part) => ids.has(part.part));
+    /** @type {(name: "points" | "max_points") => number} */
     const sum = (name) => shown.reduce((total, part) => total + part[name], 0);
     return { points: sum("points"), max_points: sum("max_points") };
   }

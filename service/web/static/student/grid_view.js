@@ -3,13 +3,28 @@
 import { h, points } from "../shared/dom.js";
 import { Cell, SIGNS } from "../shared/cell.js";
 
-/** The rows of a layout, in order, with their cells; `elements` are the tables. */
+/**
+ * The rows of a layout, in order, with their cells; `elements` are the tables.
+ *
+ * @param {Front.Layout} layout
+ * @param {Api.Part} part
+ * @param {Front.CellOwner<Front.PartPlace>} owner
+ * @param {string} idPrefix
+ */
 export function gridsOf(layout, part, owner, idPrefix) {
+  /** @type {RowView[]} */
   const rows = [];
   const elements = layout.grids.map((grid, i) => gridElement(grid, part, owner, `${idPrefix}-${i}`, rows));
   return { rows, elements };
 }
 
+/**
+ * @param {Front.Grid} grid
+ * @param {Api.Part} part
+ * @param {Front.CellOwner<Front.PartPlace>} owner
+ * @param {string} id
+ * @param {RowView[]} rows
+ */
 function gridElement(grid, part, owner, id, rows) {
   const heads = grid.columns.map((column) => headOf(column));
   const isMatrix = grid.look === "matrix";
@@ -31,6 +46,7 @@ function gridElement(grid, part, owner, id, rows) {
   return h("div", { class: "scroll" }, table);
 }
 
+/** @param {Front.Column} column */
 function headOf(column) {
   const seen = h("span", { "aria-hidden": column.spoken ? "true" : null }, h("i", {}, column.head));
   if (column.index) seen.append(h("sub", {}, column.index));
@@ -39,6 +55,13 @@ function headOf(column) {
 
 /** One row: `cells`, its mark, its points, and the row of messages below it. */
 export class RowView {
+  /**
+   * @param {Front.Row} row
+   * @param {Front.Grid} grid
+   * @param {Api.Part} part
+   * @param {Front.CellOwner<Front.PartPlace>} owner
+   * @param {string} id
+   */
   constructor(row, grid, part, owner, id) {
     this.grid = grid;
     this.label = row.label;
@@ -65,12 +88,17 @@ export class RowView {
     this.notes = h("tr", { class: "notes", hidden: true }, h("td", { colspan: grid.columns.length + 2 }, this.list));
   }
 
-  /** Mark the row and its cells as the report says, with messages below; null takes all away. */
+  /**
+   * Mark the row and its cells as the report says, with messages below; null takes all away.
+   *
+   * @param {Api.RowReport | null} report
+   * @param {HTMLElement[]} [items]
+   */
   mark(report, items = []) {
-    this.setVerdict(report?.verdict);
+    this.setVerdict(report?.verdict ?? null);
     this.worth.textContent = report?.max_points ? points(report.points, report.max_points) : "";
     const cells = new Map(report?.cells.map((cell) => [cell.label, cell]));
-    for (const cell of this.cells) cell.mark(cells.get(cell.label) ?? null);
+    for (const cell of this.cells) cell.mark(cells.get(cell.place.label) ?? null);
     this.list.replaceChildren(...items);
     this.notes.hidden = items.length === 0;
   }
@@ -81,6 +109,7 @@ export class RowView {
     this.worth.textContent = "";
   }
 
+  /** @param {Api.Verdict | null} verdict */
   setVerdict(verdict) {
     if (verdict) this.element.dataset.verdict = verdict;
     else delete this.element.dataset.verdict;

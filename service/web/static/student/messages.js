@@ -3,11 +3,17 @@
 import { h, message, visible } from "../shared/dom.js";
 import { SIGNS } from "../shared/cell.js";
 
+/** @type {Record<string, string>} */
 const NAMES = { alpha: "α", theta: "θ" };
 const YOURS = "yours";
 const EXPECTED = "expected";
 
-/** One message with its places, what to write instead, and a counterexample. */
+/**
+ * Return one message with its places, what to write instead, and a counterexample, as an item of a list.
+ *
+ * @param {Omit<Api.Feedback, "code" | "severity"> & { severity: string }} feedback
+ * @param {{ place?: string, verdict?: Api.Verdict, repair?: ((suggestion: string) => HTMLElement) | null }} [options]
+ */
 export function item(feedback, { place = "", verdict = "incorrect", repair = null } = {}) {
   const isError = feedback.severity === "error";
   const kind = isError ? verdict : "note";
@@ -33,7 +39,11 @@ export function item(feedback, { place = "", verdict = "incorrect", repair = nul
   return h("li", {}, badge, text);
 }
 
-/** Places as "row 1 d, θ; row 2". */
+/**
+ * Places as "row 1 d, θ; row 2".
+ *
+ * @param {Api.Place[]} places
+ */
 function placesInWords(places) {
   const rows = new Map();
   for (const { row, cell } of places) {
@@ -43,11 +53,16 @@ function placesInWords(places) {
   return [...rows].map(([row, cells]) => `row ${row}${cells.length ? ` ${cells.join(", ")}` : ""}`).join("; ");
 }
 
-/** The name of a cell by its label in a report. */
+/**
+ * The name of a cell by its label in a report.
+ *
+ * @param {string} label
+ */
 export function cellName(label) {
   return NAMES[label] ?? (/^\d+$/.test(label) ? `column ${label}` : label);
 }
 
+/** @param {Record<string, string | number>} values */
 function counterexample(values) {
   const given = Object.entries(values).filter(([name]) => name !== YOURS && name !== EXPECTED);
   const told = [];

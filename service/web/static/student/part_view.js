@@ -5,7 +5,7 @@ import { gridsOf } from "./grid_view.js";
 import { layoutOf } from "./kinds.js";
 import { html, mathml } from "../shared/markup.js";
 import { cellName, item } from "./messages.js";
-import { blockOf, placedFrom } from "../shared/pasted_block.js";
+import { blockOf, pair, placedFrom } from "../shared/pasted_block.js";
 import { target, undoKey } from "../shared/keyboard.js";
 
 // A text with one of these may hold several cells; the service says whether it does.
@@ -15,10 +15,17 @@ const HELP = "Arrow keys and Enter move between cells. A table, a matrix or a bl
 
 export class PartView {
   changedAt = 0;
+  /** @type {Front.PartCell | null} */
   #current = null;
   #quiet = false;
 
-  /** `host` is the exercise: service, previewer, history, announce, edited, check. */
+  /**
+   * `host` is the exercise: service, previewer, history, announce, edited, check.
+   *
+   * @param {Api.Part} part
+   * @param {Front.PartHost} host
+   * @param {"h2" | "h3"} level
+   */
   constructor(part, host, level) {
     this.part = part;
     this.host = host;
@@ -26,7 +33,7 @@ export class PartView {
     const { rows, elements } = gridsOf(this.layout, part, this, `part-${part.id}`);
     this.rows = rows;
     this.cells = rows.flatMap((row) => row.cells);
-    this.choice = this.layout.choices ? this.#choiceField() : null;
+    this.choice = this.layout.choices ? this.#choiceField(this.layout.choices) : null;
     this.badge = h("span", { class: "badge", hidden: true });
     this.worth = h("span", { class: "points" }, `${points(0, part.points).split(" / ")[1]} points`);
     this.list = h("ul", { class: "messages", hidden: true });
@@ -35,7 +42,7 @@ export class PartView {
     this.element = h(
       "section",
       { class: "card part", "aria-labelledby": id },
-      h("header", {}, h(`h${level}`, { id }, part.title), this.badge, this.worth),
+      h("header", {}, h(level, { id }, part.title), this.badge, this.worth),
       h("div", { class: "prompt" }, ...html(part.prompt_html)),
       this.list,
       this.choice,
@@ -44,8 +51,9 @@ export class PartView {
     );
   }
 
-  #choiceField() {
-    const options = Object.entries(this.layout.choices).map(([value, text]) => h("option", { value }, text));
+  /** @param {Record<string, string>} choices */
+  #choiceField(choices) {
+    const options = Object.entries(choices).map(([value, text]) => h("option", { value }, text));
     return h(
       "select",
       { class: "choice", "aria-label": `${this.part.title}: what it is`, onchange: () => this.#chosen() },
@@ -70,7 +78,11 @@ export class PartView {
     return { cells: this.cells.map((cell) => cell.text), choice: this.choice?.value ?? "" };
   }
 
-  /** Put a kept answer here; changes are returned as one step for undo. */
+  /**
+   * Put a kept answer here; changes are returned as one step for undo.
+   *
+   * @param {Front.PartState} state
+   */
   restore(state) {
     if (this.choice && [...this.choice.options].some((option) => option.value === state.choice)) {
       this.choice.value = state.choice;
@@ -89,6 +101,7 @@ export class PartView {
     return this.layout.answer(cells, choice);
   }
 
+  /** @param {[Front.PartCell, string][]} pairs */
   #fill(pairs) {
     const changes = pairs.map(([cell, after]) => ({ target: cell, before: cell.text, after }));
     this.#quiet = true;
@@ -99,23 +112,27 @@ export class PartView {
 
   // What the cells tell.
 
+  /** @param {Front.PartCell} cell @param {string} before */
   typed(cell, before) {
     this.host.history.note([{ target: cell, before, after: cell.text }], true);
   }
 
+  /** @param {Front.PartCell} cell */
   changed(cell) {
     this.changedAt = performance.now();
-    cell.row.outdated();
+    cell.place.row.outdated();
     this.outdated();
     this.host.previewer.ask(cell);
     if (!this.#quiet) this.host.edited();
   }
 
+  /** @param {Front.PartCell} cell */
   entered(cell) {
     this.#current = cell;
     this.#showReading();
   }
 
+  /** @param {Front.PartCell} cell */
   understood(cell) {
     if (cell === this.#current) this.#showReading(true);
   }
@@ -123,10 +140,10 @@ export class PartView {
   /** The bar below the grids: how the cell is read that the student is in. */
   #showReading(aloud = false) {
     const cell = this.#current;
-    const reading = cell.text.trim() ? cell.reading : null;
+    const reading = cell?.text.trim() ? cell.reading : null;
     this.reading.classList.toggle("unread", Boolean(reading?.error));
-    if (!reading) return this.reading.replaceChildren(HELP);
-    const name = h("strong", {}, `${cell.spoken || this.part.title}: `);
+    if (!cell || !reading) return this.reading.replaceChildren(HELP);
+    const name = h("strong", {}, `${cell.place.spoken || this.part.title}: `);
     if (reading.error) {
       const { suggestion } = reading.error;
       this.reading.replaceChildren(
@@ -143,22 +160,26 @@ export class PartView {
     return this.reading.replaceChildren(name, mathml(reading.mathml) ?? visible(reading.text), ...notes);
   }
 
+  /** @param {Front.PartCell} cell @param {string} suggestion */
   repaired(cell, suggestion) {
     this.host.history.note(this.#fill([[cell, suggestion]]));
     this.host.edited();
     this.focus(cell);
   }
 
+  /** @param {Front.PartCell} cell */
   focus(cell) {
     cell.input.focus();
     cell.input.select();
   }
 
+  /** @param {InputEvent} event */
   beforeInput(event) {
-    const undone = { historyUndo: "undo", historyRedo: "redo" }[event.inputType];
-    if (undone) this.#undo(event, undone);
+    if (event.inputType === "historyUndo") this.#undo(event, "undo");
+    if (event.inputType === "historyRedo") this.#undo(event, "redo");
   }
 
+  /** @param {KeyboardEvent} event @param {Front.PartCell} cell */
   pressed(event, cell) {
     const undone = undoKey(event);
     if (undone) return this.#undo(event, undone);
@@ -170,6 +191,7 @@ export class PartView {
     return this.focus(next);
   }
 
+  /** @param {Event} event @param {Front.Direction} direction */
   #undo(event, direction) {
     event.preventDefault();
     const cell = this.host.history[direction]();
@@ -179,14 +201,15 @@ export class PartView {
 
   // Pasted texts. Whether one is a table, and what stands where, is said by the service.
 
+  /** @param {ClipboardEvent} event @param {Front.PartCell} cell */
   async pasted(event, cell) {
-    const text = event.clipboardData.getData("text/plain");
+    const text = event.clipboardData?.getData("text/plain") ?? "";
     if (!BETWEEN_CELLS.test(text.trim())) return;
     event.preventDefault();
     let grid;
     try {
       const context = this.host.context();
-      grid = await this.host.service.preview({ ...context, part: this.part.id, text, quantity: cell.quantity });
+      grid = await this.host.service.preview({ ...context, part: this.part.id, text, quantity: cell.place.quantity });
     } catch (error) {
       this.host.failed(error);
     }
@@ -202,14 +225,14 @@ export class PartView {
     const misfit = grid?.rows
       ? `The pasted text has ${grid.rows.length} rows, which do not fit here.`
       : grid?.error?.message;
-    const told = misfit && !grid.ok ? `Not read as a table or matrix: ${misfit}` : misfit;
+    const told = misfit && !grid?.ok ? `Not read as a table or matrix: ${misfit}` : misfit;
     // Glued together, a script or several lines would only hide what stood in the cell.
-    if (told && (grid.error?.code === SCRIPT || text.trim().includes("\n"))) return this.#say(told);
+    if (told && (grid?.error?.code === SCRIPT || text.trim().includes("\n"))) return this.#say(told);
     const before = cell.text;
     cell.input.setRangeText(
       text.replace(/\s*\n\s*/g, " ").trim(),
-      cell.input.selectionStart,
-      cell.input.selectionEnd,
+      cell.input.selectionStart ?? 0,
+      cell.input.selectionEnd ?? 0,
       "end",
     );
     const after = cell.text;
@@ -218,8 +241,15 @@ export class PartView {
     if (told) this.#say(told);
   }
 
-  /** The cells that a pasted grid goes to, with their texts; null where it does not fit. */
+  /**
+   * The cells that a pasted grid goes to, with their texts; null where it does not fit.
+   *
+   * @param {Api.PreviewCell[][]} read
+   * @param {Front.PartCell} cell
+   * @returns {[Front.PartCell, string][] | null}
+   */
   #placed(read, cell) {
+    /** @type {(row: Api.PreviewCell[]) => string[]} */
     const texts = (row) => row.map((each) => each.entry);
     const rows = this.rows.map((row) => row.cells);
     const isList = rows[0].length === 1 || rows.length === 1;
@@ -231,25 +261,36 @@ export class PartView {
     if (read.some((row) => row.length !== rows[0].length)) return null;
     const first = this.#firstRow(read, cell);
     if (first + read.length > rows.length) return null;
-    return read.flatMap((row, i) => rows[first + i].map((each, j) => [each, row[j].entry]));
+    return read.flatMap((row, i) => rows[first + i].map((each, j) => pair(each, row[j].entry)));
   }
 
-  /** The cells that a block from a spreadsheet goes to, within the one grid of the cell. */
+  /**
+   * The cells that a block from a spreadsheet goes to, within the one grid of the cell.
+   *
+   * @param {string[][]} block
+   * @param {Front.PartCell} cell
+   */
   #placedBlock(block, cell) {
-    const rows = this.rows.filter((row) => row.grid === cell.row.grid).map((row) => row.cells);
+    const rows = this.rows.filter((row) => row.grid === cell.place.row.grid).map((row) => row.cells);
     return placedFrom(cell, rows, block);
   }
 
-  /** Where a pasted grid begins: by its labels, or the one matrix in the matrix of the cell. */
+  /**
+   * Where a pasted grid begins: by its labels, or the one matrix in the matrix of the cell.
+   *
+   * @param {Api.PreviewCell[][]} read
+   * @param {Front.PartCell} cell
+   */
   #firstRow(read, cell) {
     const labels = this.rows.map((row) => row.label);
-    if (this.layout.grids.length === 1) return read.length < labels.length ? labels.indexOf(cell.row.label) : 0;
+    if (this.layout.grids.length === 1) return read.length < labels.length ? labels.indexOf(cell.place.row.label) : 0;
     const height = this.layout.grids[0].rows.length;
     const named = labels.indexOf(read[0][0].row);
     const isOne = read.length <= height && named === 0;
-    return isOne ? Math.floor(labels.indexOf(cell.row.label) / height) * height : Math.max(named, 0);
+    return isOne ? Math.floor(labels.indexOf(cell.place.row.label) / height) * height : Math.max(named, 0);
   }
 
+  /** @param {string} text @param {Api.PreviewNote[]} [notes] */
   #say(text, notes = []) {
     const told = notes?.map((note) => note.message) ?? [];
     this.reading.classList.remove("unread");
@@ -260,12 +301,16 @@ export class PartView {
 
   // The report.
 
-  /** Show the part's report, with a mark on each row and cell and messages beside them. */
+  /**
+   * Show the part's report, with a mark on each row and cell and messages beside them.
+   *
+   * @param {Api.PartReport} report
+   */
   showReport(report) {
     const rows = new Map(report.rows.map((row) => [row.label, row]));
     for (const view of this.rows) {
       const row = rows.get(view.label);
-      view.mark(row, row ? this.#items(row, view) : []);
+      view.mark(row ?? null, row ? this.#items(row, view) : []);
       rows.delete(view.label);
     }
     const more = [...rows.values()].flatMap((row) => [...row.feedback, ...row.cells.flatMap((cell) => cell.feedback)]);
@@ -279,17 +324,19 @@ export class PartView {
     this.worth.textContent = `${points(report.points, report.max_points)} points`;
   }
 
+  /** @param {Api.RowReport} row @param {Front.RowView} view */
   #items(row, view) {
     const own = row.feedback.map((each) => item(each, { verdict: row.verdict }));
     const ofCells = row.cells.flatMap((cell) => {
-      const target = view.cells.find((each) => each.label === cell.label);
-      const repair = target ? (suggestion) => target.repair(suggestion) : null;
+      const target = view.cells.find((each) => each.place.label === cell.label);
+      const repair = target ? (/** @type {string} */ suggestion) => target.repair(suggestion) : null;
       const place = view.cells.length > 1 ? cellName(cell.label) : "";
       return cell.feedback.map((each) => item(each, { place, verdict: cell.verdict, repair }));
     });
     return [...own, ...ofCells];
   }
 
+  /** @param {Api.Verdict | null} verdict */
   setVerdict(verdict) {
     this.badge.hidden = !verdict;
     this.badge.textContent = verdict ?? "";

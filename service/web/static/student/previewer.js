@@ -6,19 +6,31 @@ const REMEMBERED = 1000;
 const RETRY = 3000;
 
 export class Previewer {
+  /** @type {Map<Front.PartCell, string>} */
   #waiting = new Map();
+  /** @type {Map<string, Api.Preview>} */
   #known = new Map();
   #busy = false;
   #timer = 0;
 
-  /** `context` gives exercise and angle unit; `failed` hears of each failure, and of its end. */
+  /**
+   * `context` gives exercise and angle unit; `failed` hears of each failure, and of its end.
+   *
+   * @param {Pick<Front.PreviewService, "previews">} service
+   * @param {() => Front.Context} context
+   * @param {(error: Error | null) => void} failed
+   */
   constructor(service, context, failed) {
     this.service = service;
     this.context = context;
     this.failed = failed;
   }
 
-  /** Ask how a cell's text is read; its `understood` gets the answer unless it has changed since. */
+  /**
+   * Ask how a cell's text is read; its `understood` gets the answer unless it has changed since.
+   *
+   * @param {Front.PartCell} cell
+   */
   ask(cell) {
     const text = cell.text;
     const known = this.#known.get(this.#key(cell, text));
@@ -37,21 +49,22 @@ export class Previewer {
     return this.#busy || this.#waiting.size > 0;
   }
 
+  /** @param {Front.PartCell} cell @param {string} text */
   #key(cell, text) {
-    return `${cell.part}\n${cell.quantity}\n${this.context().angle_unit}\n${text}`;
+    return `${cell.place.part}\n${cell.place.quantity}\n${this.context().angle_unit}\n${text}`;
   }
 
   async #send() {
     if (this.#busy || this.#waiting.size === 0) return;
-    const [first] = this.#waiting.keys();
-    const batch = [...this.#waiting].filter(([cell]) => cell.part === first.part).slice(0, BATCH);
+    const [{ place: { part } }] = this.#waiting.keys();
+    const batch = [...this.#waiting].filter(([cell]) => cell.place.part === part).slice(0, BATCH);
     for (const [cell] of batch) this.#waiting.delete(cell);
     const context = this.context();
-    const entries = batch.map(([cell, text]) => ({ text, quantity: cell.quantity }));
+    const entries = batch.map(([cell, text]) => ({ text, quantity: cell.place.quantity }));
     this.#busy = true;
     let pause = 0;
     try {
-      const { results } = await this.service.previews({ ...context, part: first.part, entries });
+      const { results } = await this.service.previews({ ...context, part, entries });
       this.failed(null);
       batch.forEach(([cell, text], i) => this.#show(cell, text, results[i], context));
     } catch (error) {
@@ -67,9 +80,11 @@ export class Previewer {
     if (this.#waiting.size) this.#timer = setTimeout(() => this.#send(), pause);
   }
 
+  /** @param {Front.PartCell} cell @param {string} text @param {Api.Preview} result @param {Front.Context} context */
   #show(cell, text, result, context) {
     if (context.angle_unit !== this.context().angle_unit) return;
-    if (this.#known.size >= REMEMBERED) this.#known.delete(this.#known.keys().next().value);
+    const [oldest] = this.#known.keys();
+    if (this.#known.size >= REMEMBERED) this.#known.delete(oldest);
     this.#known.set(this.#key(cell, text), result);
     if (cell.text === text) cell.understood(result);
   }

@@ -1,20 +1,26 @@
 // The editor of exercise files: the checks of the command line as the author types.
 
-import { h, message, visible } from "../shared/dom.js";
+import { byId, h, message, visible } from "../shared/dom.js";
 import { html } from "../shared/markup.js";
 import { post, refusal } from "./tutor_service.js";
 
 // After so many milliseconds without a key the text is checked.
 const PAUSE = 300;
+/** @type {Record<string, string>} */
 const LEVELS = { unusable: "cannot be used", failed: "failed", warning: "warning" };
 
-const byId = (id) => document.getElementById(id);
-const area = byId("text");
-const name = byId("id");
-const numbers = byId("numbers");
-const saved = byId("saved");
+const area = byId("text", HTMLTextAreaElement);
+const name = byId("id", HTMLInputElement);
+const numbers = byId("numbers", HTMLElement);
+const saved = byId("saved", HTMLElement);
+const found = byId("findings", HTMLElement);
+const shown = byId("preview", HTMLElement);
 
-let mark = byId("main").dataset.mark;
+/** @typedef {{ level: string, field?: string, text: string, line?: number }} Finding */
+/** @typedef {{ title: string, source: string, statement_html: string, parts: string[], figure?: string }} Preview */
+/** @typedef {{ findings: Finding[], summary: string, preview?: Preview }} Checked */
+
+let mark = byId("main", HTMLElement).dataset.mark;
 let kept = area.value;
 let timer = 0;
 let busy = false;
@@ -39,27 +45,29 @@ async function check() {
   try {
     show(await (await post("../tutor/check", JSON.stringify(asked))).json());
   } catch (error) {
-    byId("findings").replaceChildren(h("h2", {}, "Findings"), h("p", { class: "level-unusable" }, refusal(error)));
+    found.replaceChildren(h("h2", {}, "Findings"), h("p", { class: "level-unusable" }, refusal(error)));
   }
   busy = false;
   const now = body();
   if (now.text !== asked.text || now.id !== asked.id) timer = setTimeout(check, PAUSE);
 }
 
+/** @param {Checked} checked */
 function show({ findings, summary, preview }) {
   const marked = new Set(findings.map(({ line }) => line).filter(Boolean));
   [...numbers.children].forEach((each, i) => each.classList.toggle("marked", marked.has(i + 1)));
   const verdict = findings.some(({ level }) => level !== "warning") ? "incorrect" : "correct";
   const told = { incorrect: "✗ ", correct: "✓ " }[verdict];
-  byId("findings").replaceChildren(
+  found.replaceChildren(
     h("h2", {}, "Findings"),
     h("p", { class: `verdict ${verdict}` }, h("span", { "aria-hidden": "true" }, told), visible(summary)),
     findings.length ? h("ul", {}, ...findings.map(item)) : h("p", { class: "quiet" }, "Nothing to mend."),
   );
   if (preview) showPreview(preview);
-  else byId("preview").classList.add("outdated");
+  else shown.classList.add("outdated");
 }
 
+/** @param {Finding} finding */
 function item({ level, field, text, line }) {
   const place = line ? h("button", { type: "button", class: "line", onclick: () => go(line) }, `line ${line}`) : null;
   return h(
@@ -72,7 +80,11 @@ function item({ level, field, text, line }) {
   );
 }
 
-/** Select a line of the text. */
+/**
+ * Select a line of the text.
+ *
+ * @param {number} line
+ */
 function go(line) {
   const lines = area.value.split("\n");
   const from = lines.slice(0, line - 1).reduce((length, each) => length + each.length + 1, 0);
@@ -81,15 +93,16 @@ function go(line) {
   area.scrollTop = (line - 4) * parseFloat(getComputedStyle(area).lineHeight);
 }
 
+/** @param {Preview} preview */
 function showPreview({ title, source, statement_html: statement, parts, figure }) {
   URL.revokeObjectURL(picture);
   picture = figure ? URL.createObjectURL(new Blob([figure], { type: "image/svg+xml" })) : "";
-  byId("preview").classList.remove("outdated");
-  byId("preview").replaceChildren(
+  shown.classList.remove("outdated");
+  shown.replaceChildren(
     h("h2", {}, "What students see"),
     h("h3", {}, visible(title)),
     h("p", { class: "quiet" }, visible(source)),
-    picture ? h("figure", {}, h("img", { src: picture, alt: `Drawing of the robot: ${visible(title)}` })) : null,
+    picture ? h("figure", {}, h("img", { src: picture, alt: `Drawing of the robot: ${visible(title)}` })) : "",
     h("div", { class: "statement" }, ...html(statement)),
     h("ol", {}, ...parts.map((part) => h("li", {}, visible(part)))),
   );
@@ -126,9 +139,9 @@ name.addEventListener("input", () => {
   mark = "";
   edited();
 });
-byId("download").addEventListener("click", download);
-byId("save")?.addEventListener("click", save);
-name.form.addEventListener("submit", (event) => event.preventDefault());
+byId("download", HTMLButtonElement).addEventListener("click", download);
+document.getElementById("save")?.addEventListener("click", save);
+name.form?.addEventListener("submit", (event) => event.preventDefault());
 addEventListener("beforeunload", (event) => {
   if (area.value !== kept) event.preventDefault();
 });

@@ -5,25 +5,52 @@ const HOME = new URL("../", import.meta.url);
 const TRIES = 5;
 const LONGEST_PAUSE = 10;
 
-/** An address below that of the service. */
+/**
+ * An address below that of the service.
+ *
+ * @param {string} path
+ */
 export const address = (path) => new URL(path, HOME).href;
 
-/** The answer to a body; throws an Error with the reason where it is refused. */
+/**
+ * The answer to a body; throws an Error with the reason where it is refused.
+ *
+ * @param {string} path
+ * @param {BodyInit} body
+ * @param {string} [type]
+ */
 export function post(path, body, type = "application/json") {
   return asked(path, { method: "POST", headers: { "Content-Type": type }, body });
 }
 
-/** The JSON that the service has at a path below its address. */
+/**
+ * The JSON that the service has at a path below its address.
+ *
+ * @param {string} path
+ * @returns {Promise<any>}
+ */
 export async function get(path) {
   return (await asked(address(path), {})).json();
 }
 
-/** The JSON that the service answers to a JSON body, at a path below its address. */
+/**
+ * The JSON that the service answers to a JSON body, at a path below its address.
+ *
+ * @param {string} path
+ * @param {unknown} body
+ * @returns {Promise<any>}
+ */
 export async function send(path, body) {
   return (await post(address(path), JSON.stringify(body))).json();
 }
 
-/** The same; where the service has no room for it now, it is sent again. */
+/**
+ * The same; where the service has no room for it now, it is sent again.
+ *
+ * @param {string} path
+ * @param {unknown} body
+ * @returns {Promise<any>}
+ */
 export async function sendPatiently(path, body) {
   for (let left = TRIES;; left -= 1) {
     try {
@@ -35,19 +62,35 @@ export async function sendPatiently(path, body) {
   }
 }
 
+/** @param {number} seconds @returns {Promise<void>} */
 export const pause = (seconds) => new Promise((done) => setTimeout(done, 1000 * seconds));
 
+/** The service refused a request; `pause` says after how many seconds it may be sent again, or 0. */
+class Refusal extends Error {
+  /** @param {string} reason @param {number} pause */
+  constructor(reason, pause) {
+    super(reason);
+    this.pause = pause;
+    this.kind = pause ? "busy" : "refused";
+  }
+}
+
+/** @param {string} path @param {RequestInit} options */
 async function asked(path, options) {
   const answer = await fetch(path, options);
   if (answer.ok) return answer;
-  const problem = await answer.json().catch(() => ({}));
-  const reason = problem.detail ?? `The service answered with the status ${answer.status}.`;
+  /** @type {Partial<Api.Problem> | null} */
+  const problem = await answer.json().catch(() => null);
+  const reason = problem?.detail ?? `The service answered with the status ${answer.status}.`;
   const wait = Number(answer.headers.get("Retry-After"));
-  const more = { told: true, kind: wait ? "busy" : "refused", pause: wait };
-  throw Object.assign(new Error(reason), more);
+  throw new Refusal(reason, wait);
 }
 
-/** The words for a request that failed. */
+/**
+ * The words for a request that failed.
+ *
+ * @param {unknown} error
+ */
 export function refusal(error) {
-  return error.told ? error.message : "The service cannot be reached.";
+  return error instanceof Refusal ? error.message : "The service cannot be reached.";
 }

@@ -3,7 +3,12 @@
 const END = 0x06054b50;
 const END_SIZE = 22;
 
-/** The entries of an archive in an ArrayBuffer: `{name: {from, size, packed}}`. */
+/**
+ * Return the entries of an archive by their names.
+ *
+ * @param {ArrayBuffer} buffer
+ * @returns {Map<string, Front.ZipEntry>}
+ */
 export function entries(buffer) {
   const view = new DataView(buffer);
   const end = buffer.byteLength - END_SIZE;
@@ -22,8 +27,13 @@ export function entries(buffer) {
   return found;
 }
 
-/** The text of an entry. */
-export async function textOf(buffer, { from, size, packed }) {
+/**
+ * The text of an entry.
+ *
+ * @param {ArrayBuffer} buffer
+ * @param {Front.ZipEntry} entry
+ */
+export function textOf(buffer, { from, size, packed }) {
   const bytes = new Blob([new Uint8Array(buffer, from, size)]);
   if (!packed) return bytes.text();
   return new Response(bytes.stream().pipeThrough(new DecompressionStream("deflate-raw"))).text();

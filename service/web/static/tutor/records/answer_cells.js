@@ -3,6 +3,10 @@
 /**
  * The state of a part (`cells`, `choice`) that has this answer; null where it does not fit, as a text does that the
  * service has to read first.
+ *
+ * @param {Front.Layout} layout
+ * @param {any} answer
+ * @returns {Front.PartState | null}
  */
 export function cellsOf(layout, answer) {
   const widths = layout.grids.flatMap((grid) => grid.rows.map(() => grid.columns.map((column) => column.label)));
@@ -14,12 +18,19 @@ export function cellsOf(layout, answer) {
   return texts?.length === empty.length ? { cells: texts, choice } : null;
 }
 
-/** All entries in their order; null where the answer holds anything else. */
+/**
+ * All entries in their order; null where the answer holds anything else.
+ *
+ * @param {any} answer
+ * @param {string[]} labels
+ * @returns {string[] | null}
+ */
 function textsOf(answer, labels) {
   if (typeof answer === "number") return [String(answer)];
   if (Array.isArray(answer)) {
     const found = answer.map((each) => (typeof each === "string" ? [each] : textsOf(each, labels)));
-    return found.includes(null) ? null : found.flat();
+    const entries = found.flatMap((each) => each ?? []);
+    return found.includes(null) ? null : entries;
   }
   if (answer === null || typeof answer !== "object") return null;
   // A row of a DH table by its columns; one that is left out is empty.

@@ -1,21 +1,23 @@
 // One recorded attempt: what was handed in, its report and those before it, and the points of a tutor.
 
-import { h, number, points, visible } from "../../shared/dom.js";
+import { byId, h, number, points, visible } from "../../shared/dom.js";
 import { RecordedReport } from "./recorded_report.js";
-import { byId, earned, failed, learnerName, moment, percent, tell } from "./records.js";
+import { earned, failed, learnerName, moment, percent, tell } from "./records.js";
 import { address, get, send } from "../tutor_service.js";
 
-const id = byId("main").dataset.attempt;
+const id = byId("main", HTMLElement).dataset.attempt ?? "";
 const path = `v1/attempts/${encodeURIComponent(id)}`;
-const state = byId("state");
-const place = byId("attempt");
+const state = byId("state", HTMLElement);
+const place = byId("attempt", HTMLElement);
 // So many attempts of a learner are listed, the newest.
-const MOST_LISTED = 20;
+const MOST_LISTED = "20";
 
 async function load() {
   try {
+    /** @type {Api.AttemptDetail} */
     const found = await get(path);
     const { exercise: name, learner } = found.attempt;
+    /** @type {Api.Exercise | null} */
     const exercise = await get(`v1/exercises/${encodeURIComponent(name)}`).catch(() => null);
     // Also, a browser that shows a key here shows it from then on to all that is beside /v1/attempts.
     const { attempts } = await get(
@@ -29,14 +31,17 @@ async function load() {
   }
 }
 
+/** @param {Api.AttemptDetail} found @param {Api.Exercise | null} exercise @param {Api.AttemptSummary[]} attempts */
 function show(found, exercise, attempts) {
   const { attempt } = found;
-  byId("title").textContent = visible(exercise?.title ?? attempt.exercise);
-  document.title = `${byId("title").textContent} · DH Grader`;
+  const title = visible(exercise?.title ?? attempt.exercise);
+  byId("title", HTMLElement).textContent = title;
+  document.title = `${title} · DH Grader`;
   const drawn = new RecordedReport(exercise, found.submission);
   drawn.show(found.report);
   const about = h("section", { class: "card facts", "aria-label": "Facts" });
   const given = new PointsGiven(attempt, (changed) => update(changed));
+  /** @type {(now: Api.AttemptDetail) => void} */
   const update = (now) => {
     about.replaceChildren(facts(now, exercise, attempts));
     given.show(now);
@@ -45,7 +50,12 @@ function show(found, exercise, attempts) {
   place.replaceChildren(about, h("div", { class: "handed-in" }, reports(found, drawn), drawn.element), given.element);
 }
 
-/** The choice between the report that counts and those that a regrade has replaced. */
+/**
+ * The choice between the report that counts and those that a regrade has replaced.
+ *
+ * @param {Api.AttemptDetail} found
+ * @param {RecordedReport} drawn
+ */
 function reports({ report, earlier_reports: earlier }, drawn) {
   if (!earlier.length) return null;
   const all = [
@@ -58,14 +68,22 @@ function reports({ report, earlier_reports: earlier }, drawn) {
     })),
   ];
   const options = all.map(({ text }, i) => h("option", { value: i }, visible(text)));
-  const choice = h("select", { id: "which-report", onchange: () => drawn.show(all[choice.value].report) }, ...options);
+  /** @type {HTMLSelectElement} */
+  const choice = h(
+    "select",
+    { id: "which-report", onchange: () => drawn.show(all[choice.selectedIndex].report) },
+    ...options,
+  );
   return h("p", { class: "field" }, h("label", { for: "which-report" }, "Report"), choice);
 }
 
+/** @param {Api.AttemptDetail} found @param {Api.Exercise | null} exercise @param {Api.AttemptSummary[]} attempts */
 function facts({ attempt, submission, report }, exercise, attempts) {
   const { learner, ordinal, at, is_late: late, version, grader } = attempt;
+  /** @type {(query: Record<string, string>, ...text: Front.Child[]) => HTMLElement} */
   const list = (query, ...text) => h("a", { href: address(`tutor/attempts?${new URLSearchParams(query)}`) }, ...text);
   const isOld = exercise && exercise.version !== version;
+  /** @type {([string, Front.Child] | false)[]} */
   const pairs = [
     ["Learner", list({ learner }, learnerName(learner))],
     ["Exercise", list({ exercise: attempt.exercise }, h("code", {}, attempt.exercise))],
@@ -82,25 +100,39 @@ function facts({ attempt, submission, report }, exercise, attempts) {
     attempt.awarded !== undefined && ["instead of", points(attempt.points, attempt.max_points)],
     late && report.points > 0 &&
     ["by its report", `${points(report.points, report.max_points)}, ${lateShare(attempt.points / report.points)}`],
-    ["Plain angles in", submission.angle_unit ?? "radians"],
+    ["Plain angles in", String(submission.angle_unit ?? "radians")],
     ["Graded by", h("span", {}, `exercise ${version}${isOld ? " (not the one of today)" : ""}, program ${grader}`)],
-  ].filter(Boolean);
-  return h("dl", {}, ...pairs.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
+  ];
+  const shown = pairs.filter((pair) => pair !== false);
+  return h("dl", {}, ...shown.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
 }
 
-/** How much of its report's points a late attempt earns. */
+/**
+ * How much of its report's points a late attempt earns.
+ *
+ * @param {number} share
+ */
 function lateShare(share) {
   if (share > 0.999) return "all of it although late";
   return `${Math.abs(share - 0.5) < 0.001 ? "half" : percent(share)} of it for being late`;
 }
 
-/** Whether an answer, or what an answer is made of, holds no letter at all. */
+/**
+ * Whether an answer, or what an answer is made of, holds no letter at all.
+ *
+ * @param {unknown} answer
+ * @returns {boolean}
+ */
 function isEmpty(answer) {
   if (answer && typeof answer === "object") return Object.values(answer).every(isEmpty);
   return String(answer ?? "").trim() === "";
 }
 
-/** One of the learner's attempts at the exercise: a link, but for the one that is shown. */
+/**
+ * One of the learner's attempts at the exercise: a link, but for the one that is shown.
+ *
+ * @param {Api.AttemptSummary} attempt
+ */
 function ofLearner({ id: other, ordinal }) {
   const name = ordinal === undefined ? "–" : String(ordinal);
   const spoken = ordinal === undefined ? "one that does not count" : `no. ${ordinal}`;
@@ -118,7 +150,12 @@ function ofLearner({ id: other, ordinal }) {
 
 /** The form for other points than the report's, and those that were given. */
 class PointsGiven {
-  /** `changed` gets the attempt anew after each change. */
+  /**
+   * `changed` gets the attempt anew after each change.
+   *
+   * @param {Api.AttemptSummary} attempt
+   * @param {(attempt: Api.AttemptDetail) => void} changed
+   */
   constructor({ max_points: most }, changed) {
     this.changed = changed;
     this.points = h("input", {
@@ -152,17 +189,20 @@ class PointsGiven {
     );
   }
 
+  /** @param {Api.AttemptDetail} found */
   show({ attempt, overrides }) {
     // Those of the report would stand here rounded.
-    this.points.value = attempt.awarded ?? "";
+    this.points.value = String(attempt.awarded ?? "");
     this.withdrawal.hidden = attempt.awarded === undefined;
     this.list.replaceChildren(...overrides.toReversed().map(override));
     this.list.hidden = !overrides.length;
   }
 
+  /** @param {SubmitEvent} event */
   async #give(event) {
     event.preventDefault();
     const isWithdrawal = event.submitter === this.withdrawal;
+    /** @type {Api.OverrideRequest} */
     const body = { reason: this.reason.value };
     if (!isWithdrawal) body.points = this.points.valueAsNumber;
     if (this.author.value.trim()) body.author = this.author.value;
@@ -180,6 +220,7 @@ class PointsGiven {
   }
 }
 
+/** @param {string} label @param {HTMLInputElement} input @param {string} hint */
 function field(label, input, hint) {
   const described = `${input.id}-hint`;
   input.setAttribute("aria-describedby", described);
@@ -192,6 +233,7 @@ function field(label, input, hint) {
   );
 }
 
+/** @param {Api.AttemptOverride} given */
 function override({ points: given, reason, author, at }) {
   return h(
     "li",
@@ -204,5 +246,5 @@ function override({ points: given, reason, author, at }) {
 }
 
 // The list as it was left: its filters and its page.
-byId("back-to-list").search = location.search;
+byId("back-to-list", HTMLAnchorElement).search = location.search;
 load();

@@ -1,11 +1,11 @@
 // The list of recorded attempts: filters, pages, and all of a learner deleted.
 
-import { h } from "../../shared/dom.js";
+import { byId, h } from "../../shared/dom.js";
 import {
-  byId,
   count,
   earned,
   failed,
+  fieldOf,
   learnerName,
   moment,
   nothing,
@@ -18,20 +18,21 @@ import {
 import { address, get, send } from "../tutor_service.js";
 
 const FIELDS = ["exercise", "learner", "since", "until", "counted"];
-const form = byId("filters");
-const state = byId("state");
-const list = byId("list");
+const form = byId("filters", HTMLFormElement);
+const state = byId("state", HTMLElement);
+const list = byId("list", HTMLElement);
 
 // The cursors of the pages up to the one that is shown; the first page has none. They stand in the address.
 let cursors = [""];
 let turn = 0;
 
+/** @param {string} text */
 const oneLine = (text) => text.trim().replace(/\s+/g, " ");
-const filter = () => ({ exercise: byId("exercise").value, learner: oneLine(byId("learner").value), ...span() });
+const filter = () => ({ exercise: fieldOf("exercise").value, learner: oneLine(fieldOf("learner").value), ...span() });
 
 async function show() {
   const mine = ++turn;
-  const wanted = { ...filter(), counted: byId("counted").value };
+  const wanted = { ...filter(), counted: fieldOf("counted").value };
   showExports(filter());
   list.setAttribute("aria-busy", "true");
   try {
@@ -45,6 +46,7 @@ async function show() {
   list.removeAttribute("aria-busy");
 }
 
+/** @param {Api.AttemptList} page @param {Front.Filter} wanted */
 function draw({ attempts, next }, wanted) {
   if (!attempts.length) {
     tell(state, "");
@@ -77,6 +79,7 @@ function draw({ attempts, next }, wanted) {
   );
 }
 
+/** @param {Api.AttemptSummary} attempt */
 function row(attempt) {
   const { id, exercise, learner, ordinal, at, is_late: late, awarded } = attempt;
   const remarks = [
@@ -101,13 +104,16 @@ function row(attempt) {
   ];
 }
 
+/** @param {string | undefined} next */
 function pages(next) {
   if (!next && cursors.length === 1) return "";
+  /** @type {(changed: string[]) => () => Promise<void>} */
   const turnTo = (changed) => async () => {
     cursors = changed;
     keepAddress();
     await show();
-    list.querySelector(".wide")?.focus();
+    const wide = list.querySelector(".wide");
+    if (wide instanceof HTMLElement) wide.focus();
   };
   return h(
     "nav",
@@ -119,7 +125,11 @@ function pages(next) {
   );
 }
 
-/** The filters have changed: the first page. */
+/**
+ * The filters have changed: the first page.
+ *
+ * @param {Event} [event]
+ */
 function changed(event) {
   event?.preventDefault();
   cursors = [""];
@@ -129,28 +139,33 @@ function changed(event) {
 
 /** Put filters and page into the address, which can be kept, and which the browser comes back to. */
 function keepAddress() {
-  const pairs = [...FIELDS.map((name) => [name, byId(name).value]), ...cursors.map((cursor) => ["cursor", cursor])];
+  const pairs = [...FIELDS.map((name) => [name, fieldOf(name).value]), ...cursors.map((cursor) => ["cursor", cursor])];
   const given = new URLSearchParams(pairs.filter(([, value]) => value));
   history.replaceState(null, "", location.pathname + (given.size ? `?${given}` : ""));
 }
 
 // All of a learner deleted.
 
-const forgetState = byId("forget-state");
+// Not there for a key that is restricted to some exercises.
+const forgetForm = document.getElementById("forget");
+const forgetState = () => byId("forget-state", HTMLElement);
 
+/** @param {Event} event */
 async function lookUp(event) {
   event.preventDefault();
-  const learner = oneLine(byId("forgotten").value);
+  const learner = oneLine(fieldOf("forgotten").value);
   try {
+    /** @type {Api.ForgottenData} */
     const found = await send("v1/learners/forget", { learner });
-    if (!found.attempts) return tell(forgetState, `Nothing is recorded of ${learner}.`);
-    tell(forgetState, "");
+    if (!found.attempts) return tell(forgetState(), `Nothing is recorded of ${learner}.`);
+    tell(forgetState(), "");
     return confirm(found);
   } catch (error) {
-    return failed(error, forgetState);
+    return failed(error, forgetState());
   }
 }
 
+/** @param {Api.ForgottenData} found */
 const amounts = ({ attempts, earlier_reports: earlier, overrides }) =>
   [
     count(attempts, "attempt"),
@@ -160,8 +175,10 @@ const amounts = ({ attempts, earlier_reports: earlier, overrides }) =>
     .filter(Boolean)
     .join(", ");
 
+/** @param {Api.ForgottenData} found */
 function confirm(found) {
   const close = () => dialog.close();
+  /** @type {HTMLDialogElement} */
   const dialog = h(
     "dialog",
     { "aria-labelledby": "forget-title", onclose: () => dialog.remove() },
@@ -183,25 +200,26 @@ function confirm(found) {
   dialog.showModal();
 }
 
+/** @param {string} learner */
 async function forget(learner) {
   try {
+    /** @type {Api.ForgottenData} */
     const deleted = await send("v1/learners/forget", { learner, apply: true });
     const later = deleted.erased === false
       ? " Another program is reading the database: the text is overwritten in its files when that has ended."
       : "";
-    tell(forgetState, `Deleted of ${learner}: ${amounts(deleted)}.${later}`);
-    byId("forgotten").value = "";
+    tell(forgetState(), `Deleted of ${learner}: ${amounts(deleted)}.${later}`);
+    fieldOf("forgotten").value = "";
     await changed();
   } catch (error) {
-    failed(error, forgetState);
+    failed(error, forgetState());
   }
 }
 
 const asked = new URLSearchParams(location.search);
-for (const name of FIELDS) if (asked.has(name)) byId(name).value = asked.get(name);
+for (const name of FIELDS) if (asked.has(name)) fieldOf(name).value = asked.get(name) ?? "";
 cursors.push(...asked.getAll("cursor"));
 form.addEventListener("submit", changed);
 form.addEventListener("change", changed);
-// Not there for a key that is for certain exercises.
-byId("forget")?.addEventListener("submit", lookUp);
+forgetForm?.addEventListener("submit", lookUp);
 show();

@@ -11,13 +11,18 @@ const DAY = 24 * 60 * 60 * 1000;
 // So many days are said one by one.
 const MOST_SAID = 10;
 
+/** @param {string} day */
 const at = (day) => Date.parse(`${day}T00:00:00Z`);
 
-/** The charts of `all` counts (by day, as 2026-11-22), by these counts: over the same days, and by one measure. */
+/**
+ * The charts of `all` counts (by day, as 2026-11-22), by these counts: over the same days, and by one measure.
+ *
+ * @param {Record<string, number>[]} all
+ */
 export function daysCharts(all) {
   const days = all.flatMap(Object.keys).sort();
   const first = at(days[0]);
-  const span = Math.round((at(days.at(-1)) - first) / DAY) + 1;
+  const span = Math.round((at(days[days.length - 1]) - first) / DAY) + 1;
   const width = Math.ceil(span / MOST_BARS);
   const bars = all.map((counts) => {
     const found = Array(Math.ceil(span / width)).fill(0);
@@ -28,7 +33,13 @@ export function daysCharts(all) {
   return new Map(all.map((counts, i) => [counts, chart(counts, bars[i], most)]));
 }
 
-/** One chart, in which a bar of `most` has the full height. */
+/**
+ * One chart, in which a bar of `most` has the full height.
+ *
+ * @param {Record<string, number>} counts
+ * @param {number[]} bars
+ * @param {number} most
+ */
 function chart(counts, bars, most) {
   const step = Math.min(WIDTH / bars.length, 16);
   const drawn = make("svg", {
@@ -49,6 +60,7 @@ function chart(counts, bars, most) {
   return drawn;
 }
 
+/** @param {Record<string, number>} counts */
 function inWords(counts) {
   const days = Object.entries(counts);
   const most = days.toSorted((one, other) => other[1] - one[1]).slice(0, MOST_SAID).sort();
@@ -56,8 +68,9 @@ function inWords(counts) {
   return days.length > most.length ? `most on ${said}; ${days.length} days in all` : said;
 }
 
+/** @param {string} tag @param {Record<string, string | number>} attributes */
 function make(tag, attributes) {
   const element = document.createElementNS(SVG, tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
   return element;
 }

@@ -13,8 +13,13 @@ const SHEETS = ["../../shared/tokens.css", "../../student/element.css", "./recor
 
 /** A part whose cells are read and not written. */
 class RecordedPart extends PartView {
+  // Whether its answer fits into its cells, as soon as that is known.
+  /** @type {Promise<boolean> | undefined} */
+  filled;
+
+  /** @param {Api.Part} part @param {Front.PartHost} host */
   constructor(part, host) {
-    super(part, host, 2);
+    super(part, host, "h2");
     this.reading.remove();
     if (this.choice) this.choice.disabled = true;
     for (const cell of this.cells) {
@@ -23,22 +28,37 @@ class RecordedPart extends PartView {
     }
   }
 
-  pasted() {}
+  /** @override */
+  pasted() {
+    return Promise.resolve();
+  }
 
+  /** @override */
   beforeInput() {}
 
+  /** @override */
   repaired() {}
 }
 
+/** @typedef {{ answers?: Record<string, unknown>, angle_unit?: Api.AngleUnit }} Submission */
+
 /** The submission, and one report on it at a time. */
 export class RecordedReport {
-  /** `exercise` is what students see of it, or null where it is gone; `submission` what was sent. */
+  /**
+   * `exercise` is what students see of it, or null where it is gone; `submission` what was sent.
+   *
+   * @param {Api.Exercise | null} exercise
+   * @param {Submission} submission
+   */
   constructor(exercise, submission) {
     this.exercise = exercise;
     this.submission = submission;
+    /** @type {Front.PreviewService} */
     const service = { previews: (body) => send("v1/previews", body), preview: (body) => send("v1/preview", body) };
-    const context = () => ({ exercise: exercise?.id, angle_unit: submission.angle_unit ?? "radians" });
+    /** @type {() => Front.Context} */
+    const context = () => ({ exercise: exercise?.id ?? "", angle_unit: submission.angle_unit ?? "radians" });
     // What a part asks of its exercise.
+    /** @type {Front.PartHost} */
     this.host = {
       service,
       context,
@@ -58,11 +78,16 @@ export class RecordedReport {
     );
   }
 
-  /** Draw a report: parts that the exercise has no more are told without their cells. */
+  /**
+   * Draw a report: parts that the exercise has no more are told without their cells.
+   *
+   * @param {Api.Report} report
+   */
   show(report) {
     this.body.replaceChildren(...report.parts.map((part) => this.#part(part)));
   }
 
+  /** @param {Api.PartReport} report */
   #part(report) {
     const view = this.parts.get(report.part);
     const answer = this.submission.answers?.[report.part];
@@ -81,17 +106,27 @@ export class RecordedReport {
     return element;
   }
 
-  /** Put the answer into its cells; whether it fits. */
+  /**
+   * Put the answer into its cells; whether it fits.
+   *
+   * @param {RecordedPart} view
+   * @param {unknown} answer
+   */
   async #fill(view, answer) {
     const read = typeof answer === "string" ? await this.#entries(view.part.id, answer) : answer;
     const state = cellsOf(view.layout, read);
     if (state) view.restore(state);
     // The letters stand below in any case.
-    else view.element.querySelector(".as-sent").open = true;
+    else view.element.querySelector(".as-sent")?.toggleAttribute("open", true);
     return state !== null;
   }
 
-  /** The entries of a table or matrix that was sent as one text, as the service reads it. */
+  /**
+   * The entries of a table or matrix that was sent as one text, as the service reads it.
+   *
+   * @param {string} part
+   * @param {string} text
+   */
   async #entries(part, text) {
     try {
       const { rows } = await this.host.service.preview({ ...this.host.context(), part, text });
@@ -102,7 +137,11 @@ export class RecordedReport {
   }
 }
 
-/** The report on a part that the exercise does not have any more. */
+/**
+ * The report on a part that the exercise does not have any more.
+ *
+ * @param {Api.PartReport} report
+ */
 function bare({ part, verdict, points: earned, max_points: most, feedback, rows }) {
   const messages = [
     ...feedback,
@@ -123,6 +162,7 @@ function bare({ part, verdict, points: earned, max_points: most, feedback, rows 
   );
 }
 
+/** @param {unknown} answer */
 function asSent(answer) {
   const text = typeof answer === "string" ? answer : JSON.stringify(answer, null, 1);
   // Its lines stay lines, and nothing in them is unseen.

@@ -9,7 +9,12 @@ const MOST_SHOWN = 200;
 // While others are at the last attempts, this asks again after so many seconds.
 const OTHERS = 1;
 
-/** The form; `done` is called when reports have been written. */
+/**
+ * The form; `done` is called when reports have been written.
+ *
+ * @param {string} exercise
+ * @param {() => void} done
+ */
 export function regradeForm(exercise, done) {
   const state = h("p", { class: "state-line", role: "status" });
   const bar = h("progress", { max: 1, value: 0, hidden: true, "aria-label": "Attempts graded anew" });
@@ -19,13 +24,14 @@ export function regradeForm(exercise, done) {
   const stop = h("button", { type: "button", hidden: true, onclick: () => (isStopped = true) }, "Stop");
   let isStopped = false;
 
+  /** @param {boolean} apply */
   async function run(apply) {
     isStopped = false;
     look.disabled = write.disabled = true;
     stop.hidden = bar.hidden = false;
     bar.removeAttribute("value");
     tell(state, apply ? "Writing …" : "Grading …");
-    let focused = document.activeElement;
+    const focused = document.activeElement instanceof HTMLElement ? document.activeElement : look;
     try {
       const { graded, changed, left } = await allSteps(apply);
       told(apply, graded, changed, left);
@@ -36,10 +42,14 @@ export function regradeForm(exercise, done) {
     }
     look.disabled = write.disabled = false;
     stop.hidden = bar.hidden = true;
-    if (document.activeElement === document.body) (focused?.hidden ? look : focused).focus();
+    if (document.activeElement === document.body) (focused.hidden ? look : focused).focus();
   }
 
-  /** Step by step until nothing is left; the service does about a second of work in each. */
+  /**
+   * Step by step until nothing is left; the service does about a second of work in each.
+   *
+   * @param {boolean} apply
+   */
   async function allSteps(apply) {
     const changed = [];
     let graded = 0;
@@ -58,6 +68,7 @@ export function regradeForm(exercise, done) {
     }
   }
 
+  /** @param {boolean} apply @param {number} graded @param {Api.AttemptChange[]} changed @param {number} left */
   function told(apply, graded, changed, left) {
     const kept = changed.filter(({ awarded }) => awarded !== undefined).length;
     const ofWhich = kept ? `, of which ${kept} would keep the points of a tutor` : "";
@@ -73,6 +84,7 @@ export function regradeForm(exercise, done) {
     changes.replaceChildren(...(changed.length ? [list(changed)] : []));
   }
 
+  /** @param {Api.AttemptChange[]} changed */
   function list(changed) {
     const rows = changed.slice(0, MOST_SHOWN).map((
       { id, learner, ordinal, before, after, max_points: most, awarded, reasons },

@@ -1,42 +1,36 @@
 // The attempts at an exercise in counts: parts, rows and cells, slips by count and day, identical wrong answers.
 
-import { h, message, visible } from "../../shared/dom.js";
+import { byId, h, message, visible } from "../../shared/dom.js";
 import { daysCharts } from "./days_chart.js";
+import { pair } from "../../shared/pasted_block.js";
 import { layoutOf } from "../../student/kinds.js";
 import { cellName } from "../../student/messages.js";
-import {
-  byId,
-  count,
-  failed,
-  learnerName,
-  nothing,
-  percent,
-  query,
-  showExports,
-  span,
-  table,
-  tell,
-} from "./records.js";
+import { count, failed, learnerName, nothing, percent, query, showExports, span, table, tell } from "./records.js";
 import { regradeForm } from "./regrade.js";
 import { address, get } from "../tutor_service.js";
 
-const exercise = byId("main").dataset.exercise;
-const state = byId("state");
-const place = byId("statistics");
+const exercise = byId("main", HTMLElement).dataset.exercise ?? "";
+const state = byId("state", HTMLElement);
+const place = byId("statistics", HTMLElement);
 // The shares from which on a cell has the next colour; the number stands in it in any case.
 const BANDS = [0.25, 0.5, 0.75, 0.9];
 // So many slips and groups are shown, the others are folded.
 const SHOWN = 12;
 
+/** @typedef {{ title: string, isList: boolean, rows: Map<string, string>, columns: Map<string, string> }} PartNames */
+/** @typedef {{ answered: number, correct: number, share?: number }} Figures */
+
 let turn = 0;
-let names = null;
+/** @type {Map<string, PartNames>} */
+let names = new Map();
 
 async function show() {
   const mine = ++turn;
   showExports({ exercise, ...span() });
   place.setAttribute("aria-busy", "true");
   try {
-    names ??= await namesOf(exercise);
+    if (!names.size) names = await namesOf(exercise);
+    /** @type {Api.ExerciseStatistics} */
     const told = await get(`v1/exercises/${encodeURIComponent(exercise)}/statistics${query(span())}`);
     if (mine === turn) draw(told);
   } catch (error) {
@@ -47,26 +41,38 @@ async function show() {
   place.removeAttribute("aria-busy");
 }
 
-/** What parts, their rows and their cells are called where students fill them in, by the labels of reports. */
+/**
+ * What parts, their rows and their cells are called where students fill them in, by the labels of reports.
+ *
+ * @param {string} id
+ */
 async function namesOf(id) {
+  /** @type {Api.Exercise} */
   const { parts } = await get(`v1/exercises/${encodeURIComponent(id)}`);
   return new Map(parts.map((part) => [part.id, { title: part.title, ...cellNames(layoutOf(part).grids) }]));
 }
 
+/** @param {Front.Grid[]} grids */
 function cellNames(grids) {
   const [{ look, columns }] = grids;
+  /** @type {[string, string][]} */
   const rows = grids.flatMap((grid) =>
-    grid.rows.map(({ label, spoken, head }) => [label, grids.length > 1 ? spoken : head])
+    grid.rows.map(({ label, spoken, head }) => pair(label, grids.length > 1 ? spoken : head))
   );
   // A list has one column, which says nothing; those of a matrix have numbers.
+  /** @type {[string, string][]} */
   const heads = look === "matrix" ? [] : columns.map(({ label, head }) => [label, head]);
   return { isList: look === "list", rows: new Map(rows), columns: new Map(heads) };
 }
 
+/** @param {string} part */
 const titleOf = (part) => visible(names.get(part)?.title ?? part);
+/** @param {string} part @param {string} label */
 const rowName = (part, label) => visible(names.get(part)?.rows.get(label) || label);
+/** @param {string} part @param {string} label */
 const columnName = (part, label) => visible(names.get(part)?.columns.get(label) ?? cellName(label));
 
+/** @param {Api.ExerciseStatistics} statistics */
 function draw({ attempts, learners, parts, misconceptions, identical }) {
   if (!attempts) {
     tell(state, "");
@@ -108,9 +114,11 @@ function draw({ attempts, learners, parts, misconceptions, identical }) {
   );
 }
 
+/** @param {string} title @param {string} note @param {(Front.Child | Front.Child[])[]} content */
 const section = (title, note, content) =>
   h("section", {}, h("h2", {}, title), h("p", { class: "quiet" }, note), ...content);
 
+/** @param {Api.PartFigures} figures */
 function partShares({ part, rows, ...share }) {
   const told = share.share === undefined
     ? "nobody answered"
@@ -124,11 +132,15 @@ function partShares({ part, rows, ...share }) {
   );
 }
 
-/** The rows of a part with the share of each cell. */
+/**
+ * The rows of a part with the share of each cell.
+ *
+ * @param {string} part
+ * @param {Api.RowFigures[]} rows
+ */
 function shares(part, rows) {
-  const labels = rows.reduce((most, { cells }) => (cells.length > most.length ? cells : most), []).map(({ label }) =>
-    label
-  );
+  const [widest] = rows.toSorted((one, other) => other.cells.length - one.cells.length);
+  const labels = widest.cells.map(({ label }) => label);
   // In a list, the one cell is the whole row.
   const shown = names.get(part)?.isList ? [] : labels;
   const heads = [
@@ -146,6 +158,7 @@ function shares(part, rows) {
   return table(`Shares: ${titleOf(part)}`, heads, body);
 }
 
+/** @param {Figures | undefined} figures */
 function shareCell(figures) {
   if (!figures) return h("td", {});
   const told = figures.share === undefined ? "–" : percent(figures.share);
@@ -156,12 +169,18 @@ function shareCell(figures) {
   );
 }
 
+/** @param {Pick<Figures, "share">} figures */
 const band = ({ share }) => (share === undefined ? "none" : BANDS.filter((edge) => share >= edge).length);
 
-/** What draws some of all slips, by the same measures. */
+/**
+ * What draws some of all slips, by the same measures.
+ *
+ * @param {Api.MisconceptionFigures[]} misconceptions
+ */
 function slipsOf(misconceptions) {
   const charts = daysCharts(misconceptions.map(({ by_day: counts }) => counts));
   const most = misconceptions[0].attempts;
+  /** @type {(figures: Api.MisconceptionFigures) => (string | Node)[]} */
   const row = ({ part, code, sentence, attempts, by_day: counts }) => [
     sentence
       ? h("span", { class: "slip" }, h("span", {}, ...message(sentence)), h("code", {}, visible(code)))
@@ -173,11 +192,13 @@ function slipsOf(misconceptions) {
       String(attempts),
       h("meter", { min: 0, max: most, value: attempts, "aria-hidden": "true" }),
     ),
-    charts.get(counts),
+    charts.get(counts) ?? "",
   ];
-  return (shown) => table("Misconceptions", ["Misconception", "Part", "Attempts", "Over days"], shown.map(row));
+  return (/** @type {Api.MisconceptionFigures[]} */ shown) =>
+    table("Misconceptions", ["Misconception", "Part", "Attempts", "Over days"], shown.map(row));
 }
 
+/** @param {Api.IdenticalAnswers} identical */
 function group({ learners, attempts, wrong, among }) {
   const names = among.flatMap((learner, i) => [
     i ? ", " : "",
@@ -199,25 +220,39 @@ function group({ learners, attempts, wrong, among }) {
   );
 }
 
-/** Places as "DH table: row 2 α, d; row 4 d. Pose: row 1 column 4". */
+/**
+ * Places as "DH table: row 2 α, d; row 4 d. Pose: row 1 column 4".
+ *
+ * @param {string[]} places
+ */
 function placesInWords(places) {
+  /** @type {Map<string, Map<string, string[]>>} */
   const parts = new Map();
   for (const each of places) {
     const [part, row, cell] = each.split("/");
-    const rows = parts.get(part) ?? parts.set(part, new Map()).get(part);
-    rows.set(row, [...(rows.get(row) ?? []), columnName(part, cell)]);
+    const rows = parts.get(part) ?? new Map();
+    parts.set(part, rows.set(row, [...(rows.get(row) ?? []), columnName(part, cell)]));
   }
+  /** @type {(part: string, row: [string, string[]]) => string} */
   const ofRow = (
     part,
     [row, cells],
   ) => (names.get(part)?.isList ? rowName(part, row) : `${inWords(rowName(part, row))} ${cells.join(", ")}`);
+  /** @type {(part: [string, Map<string, string[]>]) => string} */
   const ofPart = ([part, rows]) => `${titleOf(part)}: ${[...rows].map((row) => ofRow(part, row)).join("; ")}`;
   return visible([...parts].map(ofPart).join(". "));
 }
 
+/** @param {string} row */
 const inWords = (row) => (row.includes(" ") ? row : `row ${row}`);
 
-/** The first of many, and the others folded below. */
+/**
+ * The first of many, and the others folded below.
+ *
+ * @template Item
+ * @param {Item[]} all
+ * @param {(items: Item[]) => HTMLElement} draw
+ */
 function folded(all, draw) {
   const [first, rest] = [all.slice(0, SHOWN), all.slice(SHOWN)];
   return [
@@ -226,10 +261,10 @@ function folded(all, draw) {
   ];
 }
 
-byId("filters").addEventListener("submit", (event) => {
+byId("filters", HTMLElement).addEventListener("submit", (event) => {
   event.preventDefault();
   show();
 });
-byId("filters").addEventListener("change", show);
-byId("regrade").append(regradeForm(exercise, show));
+byId("filters", HTMLElement).addEventListener("change", show);
+byId("regrade", HTMLElement).append(regradeForm(exercise, show));
 show();
