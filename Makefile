@@ -60,13 +60,15 @@ screenshots: $(dev) ## photograph every view into docs/screenshots
 coverage: $(dev) ## the same tests, and the lines that none of them runs (twice the time)
 	$(pytest) --cov
 
-lint: $(dev) ## ruff and mypy, without the tests
+lint: $(dev) ## ruff, mypy and the checks of the scripts, without the tests
 	$(ruff)
+	$(python) -m tests.front.deno
 	$(python) -m mypy
 
 format: $(dev) ## rewrite the code in the house style
 	$(python) -m ruff check --fix .
 	$(python) -m ruff format .
+	$(python) -m tests.front.deno --fix
 
 bench: $(dev) ## measure against the budgets
 	$(python) -m tests.benchmarks

@@ -45,7 +45,6 @@ CROWDED = {
     "service/api/document/examples": 21,
     "service/expressions/repairs": 56,  # one file for each repair
     "service/formats/shared": 14,
-    "service/web/static": 57,
     "tests": 15,
     "tests/attack": 17,
     "tests/attempts": 16,
@@ -69,6 +68,7 @@ SUITES = {
     "load",
     "worst",
     "browser",
+    "front",
 }
 
 

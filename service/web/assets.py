@@ -1,11 +1,13 @@
 """The static files of the page, each under a name that holds a hash of its content.
 
 A file that has changed has another name, so that a browser may keep each for ever. The names are
-made when the service starts: there is no build step, and in the source a module imports
-``"./dom.js"`` as it stands beside it.
+made when the service starts; there is no build step. The files are in rooms, and in the source a
+module imports ``"../shared/dom.js"`` by its path. All addresses are in one folder: a file can
+change its room, and two files of one name are refused.
 """
 
 import hashlib
+import os
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,9 +17,9 @@ from typing import Final
 
 FOLDER: Final = Path(__file__).parent / "static"
 _MEDIA_TYPES: Final = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
-# A file names another one in quotes, as beside it; a module may import one later, when it needs it.
+# A file names another one by its path, in quotes; a module may import one later, when it needs it.
 # A pattern that begins with plain characters is searched for ten times as fast.
-_NAMED: Final = re.compile(r'"\./([\w.-]+)"')
+_NAMED: Final = re.compile(r'"(\.\.?/[\w./-]+\.(?:js|css|svg))"')
 _LATER: Final = "import("
 
 
@@ -62,21 +64,39 @@ class Assets:
 
 
 def load_assets(folder: Path = FOLDER) -> Assets:
-    """The files of a folder. Raises LookupError where one names another that there is not."""
-    files = {file.name: file for file in folder.iterdir() if file.suffix in _MEDIA_TYPES}
+    """Return all files below a folder.
+
+    Raises LookupError if one names a file that does not exist, and ValueError if two have one name.
+    """
+    found = [file for file in folder.rglob("*") if file.suffix in _MEDIA_TYPES]
+    files = {file.name: file for file in found}
+    if len(files) < len(found):
+        raise ValueError(f"two static files have the same name: {sorted(map(str, found))}")
     texts = {name: file.read_text(encoding="utf-8") for name, file in files.items()}
     named = {name: list(_NAMED.finditer(text)) for name, text in texts.items()}
+    targets = {name: [_target(files, name, match) for match in named[name]] for name in files}
     assets: dict[str, Asset] = {}
-    # Those that are named come first: a name is part of the content that is hashed.
-    order = {name: [match[1] for match in found] for name, found in named.items()}
-    for name in TopologicalSorter(order).static_order():
-        if name not in files:
-            raise LookupError(f"a static file names {name!r}, which does not exist")
-        content = _NAMED.sub(lambda match: f'"./{assets[match[1]].name}"', texts[name]).encode()
+    # The named files come first: a name is part of the content that is hashed.
+    for name in TopologicalSorter(targets).static_order():
+        content = _NAMED.sub(lambda match: f'"./{assets[_name(match)].name}"', texts[name]).encode()
         needs = tuple(
-            match[1] for match in named[name] if not texts[name].endswith(_LATER, 0, match.start())
+            target
+            for target, match in zip(targets[name], named[name], strict=True)
+            if not texts[name].endswith(_LATER, 0, match.start())
         )
         stem, suffix = files[name].stem, files[name].suffix
         hashed = f"{stem}-{hashlib.sha256(content).hexdigest()[:12]}{suffix}"
         assets[name] = Asset(hashed, content, _MEDIA_TYPES[suffix], needs)
     return Assets(assets)
+
+
+def _name(match: re.Match[str]) -> str:
+    return match[1].rpartition("/")[2]
+
+
+def _target(files: Mapping[str, Path], name: str, match: re.Match[str]) -> str:
+    """Return the plain name of the file that a match in the file ``name`` means."""
+    path = Path(os.path.normpath(files[name].parent / match[1]))
+    if files.get(path.name) != path:
+        raise LookupError(f"the static file {name} names {path}, which does not exist")
+    return path.name

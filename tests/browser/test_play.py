@@ -116,3 +116,13 @@ def test_a_table_of_ones_own_is_written_and_shared(visit: Opening, service: str)
     friend.page.goto(link)
     expect(cell(friend.page, 2, 2)).to_have_value("d2")
     assert [url for url in friend.requests if "robot=" in url.partition("#")[0]] == []
+
+
+def test_an_element_that_is_moved_on_its_page_is_there_once(visit: Opening, service: str) -> None:
+    page = visit(viewport=SMALL).page
+    page.goto(f"{service}/play")
+    expect(page.get_by_role("heading", name="Free play")).to_have_count(1)
+    page.evaluate("document.querySelector('main').append(document.querySelector('dh-play'))")
+    expect(page.get_by_role("heading", name="Free play")).to_have_count(1)
+    cell(page, 1, 0).fill("2")
+    expect(page.locator(".stale")).to_have_count(0)

@@ -26,7 +26,7 @@ class Vendored:
     shipped: bool = True
 
 
-_STATIC: Final = "service/web/static"
+_STATIC: Final = "service/web/static/vendor"
 _SWAGGER: Final = "service/api/routes/swagger_ui"
 VENDORED: Final = (
     Vendored(

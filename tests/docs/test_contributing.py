@@ -8,7 +8,7 @@ ROOT = Path(__file__).parents[2]
 SERVICE = ROOT / "service"
 PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 # The folders that paths on the page begin in.
-STARTS = (ROOT, SERVICE, SERVICE / "expressions", SERVICE / "grading")
+STARTS = (ROOT, SERVICE, SERVICE / "expressions", SERVICE / "grading", SERVICE / "web" / "static")
 
 
 def on_the_map() -> Iterator[Path]:

@@ -1,0 +1,365 @@
+// <dh-play>: any table of any robot, with its 3D view, its pose, and its equivalent in the other convention.
+
+import { h, visible } from "../shared/dom.js";
+import { History } from "../shared/history.js";
+import { PlayTable } from "./play_table.js";
+import { card, quietButton, Results } from "./results.js";
+import { freshCells, jointCount, MOST_JOINTS, MOST_ROWS, robotOf, rowsOf, withKind, without } from "./rows.js";
+import { RobotView } from "../robot/robot_view.js";
+import { ROBOTS } from "./robots.js";
+import { Service } from "../shared/service.js";
+import { packed, unpacked } from "../shared/storage.js";
+
+const TOKENS = new URL("../shared/tokens.css", import.meta.url).href;
+const STYLE = new URL("../student/element.css", import.meta.url).href;
+const PLAY_STYLE = new URL("./play.css", import.meta.url).href;
+const HOME = new URL("../", import.meta.url).href;
+const NAME = "#robot=";
+const KEPT = "dh-grader:play";
+const FIRST = "Stanford arm, RRPRRR";
+const LETTERS = { standard: "Standard (distal)", modified: "Modified (proximal)" };
+
+/** @typedef {{ put(state: Front.Robot): void, focus(): void }} Place */
+
+export class DhPlay extends HTMLElement {
+  #saving = 0;
+  /** @type {Front.PlayRow[]} */
+  #rows = [];
+  // The table before the next change.
+  /** @type {Front.Robot} */
+  #before;
+  /** @type {Map<string, Place>} */
+  #places = new Map();
+  /** @type {History<Place, Front.Robot>} */
+  #history = new History();
+
+  constructor() {
+    super();
+    const sheets = [TOKENS, STYLE, PLAY_STYLE].map((href) => h("link", { rel: "stylesheet", href }));
+    this.service = new Service(HOME);
+    this.live = h("p", { class: "aloud", role: "status", "aria-live": "polite" });
+    this.main = h("div", { class: "exercise with-view play" });
+    this.attachShadow({ mode: "open" }).append(...sheets, this.main, this.live);
+    /** @type {(text: string, value?: string) => HTMLElement} */
+    const option = (text, value = text) => h("option", { value }, text);
+    this.robot = h(
+      "select",
+      { "aria-label": "Start from a robot", onchange: () => this.#chosen() },
+      option("Start from …", ""),
+      ...Object.keys(ROBOTS).map((name) => option(name)),
+    );
+    this.convention = h(
+      "select",
+      { "aria-label": "Convention", onchange: () => this.#change(this.state) },
+      ...Object.entries(LETTERS).map(([value, text]) => option(text, value)),
+    );
+    this.unit = h(
+      "select",
+      { "aria-label": "Plain numbers in angles are", onchange: () => this.#edited() },
+      option("radians"),
+      option("degrees"),
+    );
+    this.said = h("p", { class: "quiet saved" });
+    this.add = quietButton("Add a row", () => this.#addRow());
+    this.table = new PlayTable(this);
+    this.results = new Results(
+      (latex) => this.#copy(latex, "LaTeX of the pose copied"),
+      (rows) => this.#useConverted(rows),
+    );
+  }
+
+  connectedCallback() {
+    this.view = new RobotView({
+      service: this.service,
+      body: () => this.#body(),
+      announce: (text) => this.announce(text),
+      answered: (answer, isKept) => this.#answered(answer, isKept),
+      moved: (picture) => this.results.showPose(picture),
+    });
+    this.#build(this.view);
+    const shared = location.hash.startsWith(NAME) ? robotOf(unpacked(location.hash.slice(NAME.length))) : null;
+    if (shared) history.replaceState(null, "", location.pathname);
+    this.#show(shared ?? kept() ?? ROBOTS[FIRST]);
+    this.#before = this.state;
+    this.view.open();
+  }
+
+  disconnectedCallback() {
+    this.view?.close();
+  }
+
+  /** @param {RobotView} view */
+  #build(view) {
+    this.main.replaceChildren(
+      h(
+        "section",
+        { class: "about", tabindex: 0, "aria-labelledby": "title" },
+        h(
+          "header",
+          {},
+          h("h1", { id: "title" }, "Free play"),
+          h("p", { class: "quiet" }, "Write any DH table, see the robot that it builds, and move it."),
+        ),
+        view.element,
+      ),
+      h(
+        "div",
+        { class: "parts" },
+        h("div", { class: "tools" }, this.robot, this.said, quietButton("Copy link", () => this.#share())),
+        card(
+          [h("h2", {}, "Table"), this.results.freedoms],
+          h(
+            "div",
+            { class: "tools" },
+            this.convention,
+            h("label", { class: "unit" }, h("span", { "aria-hidden": "true" }, "Plain angles in "), this.unit),
+          ),
+          h("div", { class: "grids" }, this.table.element),
+          h(
+            "p",
+            { class: "reading" },
+            "Joint i turns by theta_i or slides by d_i. Other letters (a1, alpha1, d1, theta1, l1 …) stand for numbers that you choose below the view. Paste a whole table into one cell, or a block of cells.",
+          ),
+          h("div", { class: "tools" }, this.add),
+        ),
+        this.results.poseCard,
+        this.results.convertedCard,
+      ),
+    );
+  }
+
+  /** @param {string} text */
+  announce(text) {
+    this.live.textContent = visible(text);
+  }
+
+  /** @param {string} text */
+  #say(text) {
+    this.said.textContent = visible(text);
+    this.announce(text);
+  }
+
+  // The robot: `{convention, unit, rows: [{kind, cells}]}`.
+
+  /** @returns {Front.Robot} */
+  get state() {
+    return {
+      convention: this.convention.value === "modified" ? "modified" : "standard",
+      unit: this.unit.value === "degrees" ? "degrees" : "radians",
+      rows: this.#rows.map(({ kind }, i) => ({ kind, cells: this.table.texts[i] })),
+    };
+  }
+
+  /** @param {Front.Robot} robot */
+  #show({ convention, unit, rows }) {
+    this.convention.value = convention;
+    this.unit.value = unit;
+    this.#rows = rows;
+    this.table.show({ rows, convention });
+    this.add.disabled = rows.length >= MOST_ROWS;
+    this.results.title.textContent = `The same in the ${
+      convention === "standard" ? "modified (proximal)" : "standard (distal)"
+    } convention`;
+    this.view?.refit();
+    this.changed();
+  }
+
+  /** What every request says of the table; null if it has no joint. */
+  #body() {
+    const { convention, unit, rows } = this.state;
+    const structure = rows.map(({ kind }) => kind).filter((kind) => kind !== "F").join("");
+    if (!structure) return null;
+    return { table: { rows: this.table.texts, convention, structure, formulas: true }, angle_unit: unit };
+  }
+
+  changed() {
+    this.view?.changed();
+    clearTimeout(this.#saving);
+    this.#saving = setTimeout(() => keep(this.state), 250);
+  }
+
+  // What changes the table. Each change is a step that can be taken back.
+
+  /**
+   * Note that the table was changed; what is typed into one cell is one step.
+   *
+   * @param {Front.PlayCell | null} [cell]
+   */
+  #edited(cell = null) {
+    const before = this.#before;
+    this.#before = this.state;
+    this.#history.note([{ target: this.#place(cell?.place.at ?? [0, 0]), before, after: this.#before }], cell !== null);
+    this.changed();
+  }
+
+  /**
+   * What puts a table of the past back, and the cursor where it was changed.
+   *
+   * @param {[number, number]} at
+   */
+  #place([i, j]) {
+    const key = `${i} ${j}`;
+    const known = this.#places.get(key);
+    if (known) return known;
+    /** @type {Place} */
+    const place = {
+      put: (state) => this.#show(state),
+      focus: () => this.#focus(i, j),
+    };
+    this.#places.set(key, place);
+    return place;
+  }
+
+  /**
+   * Put the cursor into a cell, or into the last row if the table is shorter now.
+   *
+   * @param {number} i
+   * @param {number} [j]
+   */
+  #focus(i, j = 0) {
+    this.table.rows[Math.min(i, this.#rows.length - 1)].cells[j].input.focus();
+  }
+
+  /** @param {Front.Direction} direction */
+  undone(direction) {
+    const place = this.#history[direction]();
+    if (!place) return this.announce(direction === "undo" ? "Nothing to undo" : "Nothing to redo");
+    this.#before = this.state;
+    return place.focus();
+  }
+
+  /** @param {Front.PlayCell} cell */
+  typed(cell) {
+    this.#edited(cell);
+  }
+
+  /**
+   * Put texts into cells, as one step.
+   *
+   * @param {[Front.PlayCell, string][]} pairs
+   */
+  filled(pairs) {
+    for (const [cell, text] of pairs) cell.put(text);
+    this.#edited();
+    if (pairs.length > 1) this.#say(`${pairs.length} cells are filled; Ctrl+Z takes it back`);
+  }
+
+  /**
+   * Show another table, as one step.
+   *
+   * @param {Front.Robot} state
+   */
+  #change(state) {
+    this.#show(state);
+    this.#edited();
+  }
+
+  #chosen() {
+    const robot = ROBOTS[this.robot.value];
+    this.robot.value = "";
+    if (!robot) return;
+    this.view?.forget();
+    this.#change(robot);
+    this.announce("The table is filled in.");
+  }
+
+  #addRow() {
+    const { rows, ...rest } = this.state;
+    const joints = jointCount(rows);
+    const kind = joints < MOST_JOINTS ? "R" : "F";
+    this.#change({ ...rest, rows: [...rows, { kind, cells: freshCells(kind, joints + 1) }] });
+    this.#focus(rows.length);
+  }
+
+  /** @param {number} i */
+  removed(i) {
+    const { rows, ...rest } = this.state;
+    if (rows.length === 1) return this.#say("A table has a row at least");
+    this.#change({ ...rest, rows: without(rows, i) });
+    this.#focus(i);
+    return this.announce(`Row ${i + 1} is removed.`);
+  }
+
+  /** @param {number} i @param {string} kind */
+  kindChanged(i, kind) {
+    const { rows, ...rest } = this.state;
+    this.#change({ ...rest, rows: withKind(rows, i, kind) });
+    this.table.rows[i].choice.focus();
+  }
+
+  /** @param {string} text */
+  async pasted(text) {
+    try {
+      const { convention, unit } = this.state;
+      const table = { rows: text, structure: "R".repeat(MOST_JOINTS), formulas: true, convention };
+      const { table: read } = await this.service.frames({ table, angle_unit: unit });
+      if (read?.error || !read?.formulas?.cells.length) {
+        return this.#say(`Not read as a table: ${read?.error?.message ?? "it has no rows"}`);
+      }
+      this.view?.forget();
+      this.#change({ ...this.state, rows: rowsOf(read.formulas.cells.map((row) => row.map((cell) => cell.text))) });
+      return this.#say("The pasted table is filled in; Ctrl+Z takes it back");
+    } catch (error) {
+      return this.#say(error.message);
+    }
+  }
+
+  // What the service says.
+
+  /** @param {Api.Frames} answer @param {boolean} isKept */
+  #answered({ table }, isKept) {
+    if (!table) return;
+    this.table.showReadings(table);
+    this.results.show(table, this.state.convention, isKept);
+  }
+
+  /** @param {Api.ConvertedRow[]} converted */
+  #useConverted(converted) {
+    const { rows, unit, convention } = this.state;
+    // A fixed row more stands before or after those of the joints.
+    const kinds = rows.map(({ kind }) => kind);
+    while (kinds.length < converted.length) converted[0].label === "b" ? kinds.unshift("F") : kinds.push("F");
+    this.#change({
+      convention: convention === "standard" ? "modified" : "standard",
+      unit,
+      rows: converted.map(({ cells }, i) => ({ kind: kinds[i], cells: cells.map((cell) => cell.text) })),
+    });
+    this.announce("The table is now in the other convention.");
+  }
+
+  #share() {
+    return this.#copy(
+      this.service.address("play") + NAME + packed(this.state),
+      "Link copied: it holds the table",
+      true,
+    );
+  }
+
+  /** @param {string} text @param {string} told @param {boolean} [isLink] */
+  async #copy(text, told, isLink = false) {
+    try {
+      await navigator.clipboard.writeText(text);
+      this.#say(told);
+    } catch {
+      if (isLink) history.replaceState(null, "", new URL(text).hash);
+      this.#say(isLink ? "The link is in the address bar" : "The browser does not let this page copy");
+    }
+  }
+}
+
+function kept() {
+  try {
+    return robotOf(JSON.parse(localStorage.getItem(KEPT) ?? "null"));
+  } catch {
+    return null;
+  }
+}
+
+/** @param {Front.Robot} state */
+function keep(state) {
+  try {
+    localStorage.setItem(KEPT, JSON.stringify(state));
+  } catch {
+    // The table then lasts as long as the page.
+  }
+}

@@ -1,0 +1,49 @@
+// The colours of the figures, for the 3D view: light and dark.
+
+/** The first of the two; the other one has the same names. */
+export const LIGHT = {
+  rod: 0xc3cad4,
+  turning: 0x7fb0e6,
+  sliding: 0xefc877,
+  ground: 0xdfe3e9,
+  grip: 0x98a2b0,
+  axis: 0x7b8696,
+  chain: 0x8e44ad,
+  ink: "#1c2430",
+  paper: "#ffffff",
+  x: 0xc62828,
+  y: 0x1f7a34,
+  z: 0x1d4fc4,
+};
+const DARK = {
+  rod: 0x5b6678,
+  turning: 0x4f8ccc,
+  sliding: 0xc99a44,
+  ground: 0x2b3340,
+  grip: 0x7c8798,
+  axis: 0x8b97a8,
+  chain: 0xd19cf0,
+  ink: "#e8ecf2",
+  paper: "#12161d",
+  x: 0xff8080,
+  y: 0x6fd68a,
+  z: 0x8ab4ff,
+};
+
+/**
+ * Whether an element's text is light, on a dark ground.
+ *
+ * @param {Element} element
+ */
+export function isDark(element) {
+  const [red, green, blue] = (getComputedStyle(element).color.match(/[\d.]+/g) ?? ["0", "0", "0"]).map(Number);
+  return red + green + blue > 384;
+}
+
+/**
+ * The colours that suit an element's own.
+ *
+ * @param {Element} element
+ * @returns {Front.Palette}
+ */
+export const paletteOf = (element) => (isDark(element) ? DARK : LIGHT);

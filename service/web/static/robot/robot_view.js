@@ -1,0 +1,369 @@
+// The view of a robot that moves, 3D where the browser can: what is asked of the service, and when. The
+// picture stands in `stage.js`, all around it in `view_panels.js`; it draws what the service computes.
+
+import { h, message } from "../shared/dom.js";
+import { column, pictureOf, Sweep } from "./motion.js";
+import { Stage } from "./stage.js";
+import { FrameSwitches, JointSliders, PoseNumbers, SymbolFields } from "./view_panels.js";
+
+const STYLE = new URL("./robot_view.css", import.meta.url).href;
+const AFTER_A_KEY = 250;
+const RETRY = 3000;
+
+export class RobotView {
+  /** @type {Api.Frames | null} */
+  #answer = null;
+  /** @type {Record<string, number>} */
+  #values = {};
+  /** @type {Record<string, number>} */
+  #symbols = {};
+  /** @type {Sweep | null} */
+  #sweep = null;
+  #turn = 0;
+  #pending = 0;
+  #isWaiting = false;
+  #dragging = false;
+  #refit = false;
+  #timer = 0;
+  #closed = false;
+  /** @type {Front.Picture | undefined} */
+  picture;
+  /** @type {string | null | undefined} */
+  structure = null;
+
+  /**
+   * `host`: `service`; `body()`, what every request says, or null; `descriptions`, of symbols by name; `announce`;
+   * `answered`, which hears of each answer, and whether the picture of the one before stays; `moved`, of each picture.
+   *
+   * @param {Front.ViewHost} host
+   */
+  constructor(host) {
+    this.host = host;
+    this.stage = new Stage((theme) => this.#drawing(theme));
+    this.told = h("p", { class: "told" });
+    this.numbers = new PoseNumbers();
+    this.sliders = new JointSliders(this);
+    this.symbols = new SymbolFields((name, value) => this.#chosen(name, value), host.descriptions);
+    this.frames = new FrameSwitches(() => this.#draw());
+    this.robot = this.#switch("Robot", true);
+    this.beside = this.#switch("Side by side", false, () => this.stage.reset());
+    this.home = h(
+      "button",
+      { type: "button", class: "quiet-button", onclick: () => this.goHome() },
+      "Home configuration",
+    );
+    this.over = h("div", { class: "switches" }, this.robot.label, this.beside.label);
+    this.element = h(
+      "section",
+      { class: "robot-view", "aria-label": "3D view" },
+      h("link", { rel: "stylesheet", href: STYLE }),
+      this.stage.element,
+      this.told,
+      this.sliders.element,
+      h("div", { class: "switches" }, this.home, this.over),
+      this.frames.element,
+      this.numbers.element,
+      this.symbols.element,
+    );
+  }
+
+  /** Load what draws, and draw. */
+  async open() {
+    await this.stage.open();
+    await this.#refresh();
+  }
+
+  close() {
+    this.#closed = true;
+    clearTimeout(this.#timer);
+    this.stage.close();
+    this.element.remove();
+  }
+
+  /** @param {string} text @param {boolean} on @param {() => void} [changed] */
+  #switch(text, on, changed) {
+    const box = h("input", { type: "checkbox", checked: on, onchange: () => (this.#draw(), changed?.()) });
+    return { box, label: h("label", {}, box, " ", text) };
+  }
+
+  // What the service says.
+
+  /** The table has changed: ask again after a pause. */
+  changed() {
+    this.#sweep = null;
+    // What is on its way is about the table as it was.
+    this.#turn += 1;
+    clearTimeout(this.#timer);
+    this.#isWaiting = true;
+    this.#busy(0);
+    this.#timer = setTimeout(() => this.#refresh(), AFTER_A_KEY);
+  }
+
+  /** Have the next picture shown whole. */
+  refit() {
+    this.#refit = true;
+  }
+
+  /** Forget the numbers of joints and symbols: they belong to another robot. */
+  forget() {
+    this.#values = {};
+    this.#symbols = {};
+    // Another robot may have the same joints: their numbers are not known all the same.
+    this.structure = null;
+    this.frames.showAll();
+  }
+
+  /** @param {number[][] | null} sets @param {Api.FramesRequest | null} [body] */
+  async #request(sets, body = this.host.body()) {
+    this.#busy(1);
+    try {
+      return await this.host.service.frames({ ...body, symbols: this.#symbols, ...(sets ? { joints: sets } : {}) });
+    } finally {
+      this.#busy(-1);
+    }
+  }
+
+  /**
+   * Say to whoever cannot see it that the picture is about to change.
+   *
+   * @param {number} step
+   */
+  #busy(step) {
+    this.#pending += step;
+    this.element.setAttribute("aria-busy", String(this.#isWaiting || this.#pending > 0));
+  }
+
+  /**
+   * Ask for the picture at the joint values as they are.
+   *
+   * @returns {Promise<void>}
+   */
+  async #refresh() {
+    const turn = ++this.#turn;
+    const body = this.host.body();
+    this.#dragging = false;
+    this.#isWaiting = false;
+    this.#busy(0);
+    if (!body) return this.#show(null);
+    try {
+      const values = this.#answer && this.#current;
+      const answer = await this.#request(values && this.#isSame(body) ? [values] : null);
+      if (turn !== this.#turn || this.#closed) return undefined;
+      // While a cell is typed, its table cannot be read: the robot of before is better than none.
+      if (!answer.mechanism && isUnread(answer) && this.picture && this.#isSame(body)) return this.#keep(answer);
+      const missing = answer.joints.some(({ variable }) => !(variable in this.#values));
+      this.#remember(answer, body);
+      // Joint values that were moved before the joints changed are asked for once more.
+      if (!missing && !(values && this.#isSame(body)) && this.#moved(answer)) return this.#refresh();
+      this.#show(answer);
+    } catch (error) {
+      if (turn !== this.#turn || this.#closed) return undefined;
+      this.told.replaceChildren(...message(error.message));
+      if (error.kind !== "refused") this.#timer = setTimeout(() => this.#refresh(), RETRY);
+    }
+    return undefined;
+  }
+
+  /**
+   * Tell what cannot be read, beside the picture of what could be.
+   *
+   * @param {Api.Frames} answer
+   */
+  #keep(answer) {
+    this.#stale(true);
+    this.#showTold(answer);
+    this.host.answered?.(answer, true);
+  }
+
+  /** @param {boolean} isStale */
+  #stale(isStale) {
+    for (const each of [this.stage, this.numbers, this.sliders]) each.element.classList.toggle("stale", isStale);
+    this.sliders.element.inert = this.home.disabled = isStale;
+  }
+
+  /** @param {Api.FramesRequest} body */
+  #isSame(body) {
+    return this.structure === (body.table?.structure ?? body.exercise);
+  }
+
+  /** @param {Api.Frames} answer @param {Api.FramesRequest} body */
+  #remember(answer, body) {
+    this.structure = body.table?.structure ?? body.exercise;
+    this.#answer = answer;
+    for (const { variable, home } of answer.joints) this.#values[variable] ??= home;
+    this.host.answered?.(answer, false);
+  }
+
+  /** @param {Api.Frames} answer */
+  #moved(answer) {
+    return answer.joints.some(({ variable, home }) => this.#values[variable] !== home);
+  }
+
+  get #current() {
+    return this.#answer?.joints.map(({ variable }) => this.#values[variable]) ?? [];
+  }
+
+  /**
+   * The picture as the service draws it, for a browser without WebGL.
+   *
+   * @param {Api.Theme} figure
+   */
+  async #drawing(figure) {
+    const body = this.host.body();
+    if (!body || !this.#answer) return null;
+    return (await this.#request([this.#current], { ...withoutFormulas(body), figure })).figure;
+  }
+
+  /** @param {Api.Frames | null} answer */
+  #show(answer) {
+    this.#answer = answer;
+    this.element.classList.toggle("empty", !answer);
+    this.#stale(false);
+    if (!answer) return;
+    this.picture = pictureOf(answer);
+    this.sliders.show(answer.joints, this.#values);
+    this.symbols.show(answer.symbols);
+    this.#showTold(answer);
+    // A drawing shows all that there is, as one.
+    this.over.hidden = this.stage.isFlat || !(answer.mechanism && answer.table);
+    if (!this.stage.isFlat) this.frames.show(this.picture.frames?.length ?? 0);
+    this.#showScene(answer, this.picture);
+    this.#showNumbers();
+  }
+
+  /** @param {Api.Frames} answer @param {Front.Picture} picture */
+  #showScene({ joints, mechanism, table }, picture) {
+    const { frames } = picture;
+    const kinds = new Map(joints.map(({ joint, kind }) => [joint, kind]));
+    // The sizes of parts stay while joints move.
+    /** @type {Front.Subject} */
+    const subject = {
+      kinds: joints.map(({ kind }) => kind),
+      rowKinds: table?.row_joints.map((joint) => kinds.get(joint) ?? null) ?? [],
+      convention: this.host.body()?.table?.convention ?? "standard",
+      size: mechanism?.size ?? sizeOf(frames ?? []),
+      azimuth: mechanism?.azimuth ?? -60,
+      elevation: mechanism?.elevation ?? 25,
+      solid: !mechanism,
+      beside: () => this.beside.box.checked,
+      robot: () => this.robot.box.checked || !frames,
+      shown: (i) => this.frames.isShown(i),
+    };
+    this.stage.show(subject, picture);
+    if (this.#refit) this.stage.reset();
+    this.#refit = false;
+  }
+
+  // Joints and symbols.
+
+  /**
+   * Fetch the sweep of a joint, unless it is there.
+   *
+   * @param {number} i
+   */
+  prepare(i) {
+    const body = this.host.body();
+    // Where the table has other joints since, their values are still to come.
+    if (!this.#answer || !body || !this.#isSame(body)) return;
+    const values = this.#current;
+    const others = JSON.stringify([body, this.#symbols, values.with(i, 0)]);
+    if (this.#sweep?.index === i && this.#sweep.others === others) return;
+    // The table as it is now: by the sweep's later requests it may have other joints.
+    const asked = withoutFormulas(body);
+    const sweep = new Sweep((sets) => this.#request(sets, asked), values, i, this.#answer.joints[i], others);
+    this.#sweep = sweep;
+    // A picture at the very place where the slider was left is better than one from the sweep.
+    sweep.load(() => sweep === this.#sweep && this.#dragging && this.#follow()).catch(() =>
+      sweep === this.#sweep && (this.#sweep = null)
+    );
+  }
+
+  /** @param {number} i @param {number} value */
+  dragged(i, value) {
+    if (!this.#answer) return;
+    this.#values[this.#answer.joints[i].variable] = value;
+    this.#turn += 1;
+    this.#dragging = true;
+    this.sliders.put(i, value);
+    this.prepare(i);
+    this.#follow();
+  }
+
+  released() {
+    this.#refresh();
+  }
+
+  /** Draw the joint that is moved where its slider is. */
+  #follow() {
+    const sweep = this.#sweep;
+    if (!sweep?.isReady || this.#closed) return;
+    this.picture = sweep.at(this.#current[sweep.index]);
+    this.#draw();
+    this.#showNumbers();
+  }
+
+  goHome() {
+    if (!this.#answer) return;
+    for (const { variable, home } of this.#answer.joints) this.#values[variable] = home;
+    this.#sweep = null;
+    this.#refresh();
+    this.host.announce?.("Home configuration");
+  }
+
+  #draw() {
+    if (this.picture) this.stage.move(this.picture);
+  }
+
+  /** @param {string} name @param {number} value */
+  #chosen(name, value) {
+    this.#symbols = { ...this.#symbols, [name]: value };
+    this.changed();
+  }
+
+  /** @param {Api.Frames} answer */
+  #showTold({ table }) {
+    const [cell] = table?.unread ?? [];
+    const place = cell ? `Row ${cell.row}, ${cell.column}: ` : "";
+    const reason = table?.error?.message ?? (cell && `${place}${cell.error.message}`);
+    const lost = table?.lost_freedoms.map((each) => each.message) ?? [];
+    const isKept = this.stage.element.classList.contains("stale");
+    const ends = reason && isKept
+      ? " The picture is the one of before."
+      : reason && table?.frames[0]?.length
+      ? " The frames end before it."
+      : "";
+    this.told.replaceChildren(...message([reason && reason + ends, ...lost].filter(Boolean).join(" ")));
+    this.told.hidden = !this.told.textContent;
+  }
+
+  #showNumbers() {
+    if (!this.picture) return;
+    this.numbers.show(this.picture);
+    this.host.moved?.(this.picture);
+  }
+}
+
+/** @param {Api.Frames} answer */
+const isUnread = ({ table }) => Boolean(table?.error || table?.unread.length);
+
+/**
+ * A sweep and a drawing need no formulas.
+ *
+ * @param {Api.FramesRequest} body
+ */
+function withoutFormulas({ table, ...body }) {
+  return table ? { ...body, table: { ...table, formulas: false } } : body;
+}
+
+/**
+ * A size for the parts of a chain without a mechanism.
+ *
+ * @param {Front.Frame[]} frames
+ */
+function sizeOf(frames) {
+  const origins = frames.map((frame) => column(frame, 3));
+  const spans = [0, 1, 2].map((i) =>
+    Math.max(0, ...origins.map((each) => each[i])) - Math.min(0, ...origins.map((each) => each[i]))
+  );
+  return 0.9 * Math.hypot(...spans) || 1;
+}

@@ -1,0 +1,258 @@
+// The stage of the 3D view: a camera that goes around, and what is drawn. Nothing is drawn again before
+// something has changed.
+
+import {
+  Color,
+  DirectionalLight,
+  HemisphereLight,
+  MOUSE,
+  PerspectiveCamera,
+  Scene,
+  SRGBColorSpace,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from "../vendor/three-0.185.1.module.min.js";
+import { OrbitControls } from "../vendor/three-0.185.1.orbit-controls.js";
+import { column } from "./motion.js";
+import { paletteOf } from "./palette.js";
+import { ChainShape, FramesShape, MechanismShape } from "./robot_shapes.js";
+import { Shapes, vector } from "./shapes.js";
+
+const FIELD_OF_VIEW = 28;
+const STEEPEST = 1.55;
+// A processor that draws has to leave out what a graphics card does for nothing: it draws coarsely while
+// something moves, and finely after so many milliseconds without.
+const AT_REST = 200;
+const FINE = 2;
+
+export class RobotScene {
+  // Both are there from the first call of `show` on.
+  /** @type {Front.Picture} */
+  #picture;
+  /** @type {Front.Subject} */
+  #subject;
+  #asked = 0;
+  #fitted = false;
+  // How far beside the robot a table's own chain is drawn.
+  aside = new Vector3();
+
+  /**
+   * `stage` is the element that the canvas fills; `inSoftware` says that no graphics card draws.
+   *
+   * @param {HTMLElement} stage
+   * @param {boolean} [inSoftware]
+   */
+  constructor(stage, inSoftware = false) {
+    this.stage = stage;
+    this.size = new Vector2(1, 1);
+    this.inSoftware = inSoftware;
+    this.renderer = new WebGLRenderer({ antialias: !inSoftware, alpha: true });
+    this.renderer.outputColorSpace = SRGBColorSpace;
+    this.renderer.autoClear = false;
+    this.canvas = this.renderer.domElement;
+    this.camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
+    this.camera.up.set(0, 0, 1);
+    const lamp = new DirectionalLight(new Color(1, 1, 1), 2.1);
+    lamp.position.set(0.5, 1, 0.6);
+    this.camera.add(lamp);
+    // What lies over the solids is drawn after them, whatever is nearer.
+    this.solids = new Scene();
+    this.over = new Scene();
+    this.solids.add(this.camera, new HemisphereLight(0xffffff, 0x8890a0, 1.9));
+    stage.append(this.canvas);
+    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.mouseButtons.MIDDLE = MOUSE.PAN;
+    // A page scrolls on past a view that nobody has touched.
+    this.controls.enableZoom = false;
+    this.canvas.addEventListener("pointerdown", () => (this.controls.enableZoom = true), { capture: true });
+    this.canvas.addEventListener("focusout", () => (this.controls.enableZoom = false));
+    this.controls.addEventListener("change", () => this.draw());
+    this.resizing = new ResizeObserver(() => this.#resize());
+    this.resizing.observe(stage);
+    this.stop = new AbortController();
+    const recolour = () => this.recolour();
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", recolour, { signal: this.stop.signal });
+    this.themes = new MutationObserver(recolour);
+    this.themes.observe(document.documentElement, { attributes: true });
+    this.canvas.addEventListener("webglcontextrestored", () => this.draw());
+  }
+
+  /**
+   * Say what is drawn: `{kinds, rowKinds, convention, size, azimuth, elevation, solid, beside, shown, robot}`.
+   *
+   * @param {Front.Subject} subject
+   * @param {Front.Picture} picture
+   */
+  show(subject, picture) {
+    this.#subject = subject;
+    this.#picture = picture;
+    this.#build();
+    if (!this.#fitted) this.reset();
+    this.move(picture);
+  }
+
+  #build() {
+    this.#clear();
+    const { kinds, rowKinds, size, convention, solid } = this.#subject;
+    const { frames, mechanism } = this.#picture;
+    this.palette = paletteOf(this.stage);
+    const [below, above] = (this.shapes = [
+      new Shapes(this.palette, this.solids, this.size),
+      new Shapes(this.palette, this.over, this.size),
+    ]);
+    this.mechanism = mechanism && new MechanismShape(below, kinds, size, mechanism);
+    const count = frames?.length ?? 0;
+    this.chain = count > 1 ? new ChainShape(solid ? below : above, rowKinds, convention, size, count, solid) : null;
+    this.frames = count ? new FramesShape(above, count, 0.2 * size) : null;
+    if (this.mechanism) this.solids.add(this.mechanism.group);
+    if (this.chain) (solid ? this.solids : this.over).add(this.chain.group);
+    if (this.frames) this.over.add(this.frames.group);
+    for (const each of this.shapes) each.finish();
+  }
+
+  #clear() {
+    for (const part of [this.mechanism, this.chain, this.frames]) part?.group.removeFromParent();
+    for (const each of this.shapes ?? []) each.dispose();
+  }
+
+  recolour() {
+    const palette = paletteOf(this.stage);
+    if (!this.#picture || palette === this.palette) return;
+    this.#build();
+    this.move(this.#picture);
+  }
+
+  /**
+   * Move everything to another picture of the same subject.
+   *
+   * @param {Front.Picture} picture
+   */
+  move(picture) {
+    this.#picture = picture;
+    const { shown, robot, beside } = this.#subject;
+    if (this.mechanism && picture.mechanism) this.mechanism.put(picture.mechanism);
+    if (this.mechanism) this.mechanism.group.visible = robot();
+    if (picture.frames) {
+      this.chain?.put(picture.frames);
+      this.frames?.put(picture.frames, shown);
+    }
+    const aside = beside() ? this.aside : new Vector3();
+    this.chain?.group.position.copy(aside);
+    this.frames?.group.position.copy(aside);
+    this.draw();
+  }
+
+  /** The view from the beginning, with everything in it. */
+  reset() {
+    const { azimuth, elevation, beside } = this.#subject;
+    const [turn, height] = [azimuth, elevation].map((angle) => (angle * Math.PI) / 180);
+    const towards = new Vector3(Math.cos(height) * Math.cos(turn), Math.cos(height) * Math.sin(turn), Math.sin(height));
+    const across = new Vector3(-Math.sin(turn), Math.cos(turn), 0);
+    const { mechanism, frames } = this.#picture;
+    const robot = mechanism
+      ? [mechanism.base, mechanism.tool, ...mechanism.centres, ...mechanism.links.flat()].map(vector)
+      : [];
+    const chain = (frames ?? []).map((frame) => vector(column(frame, 3)));
+    const widths = [...robot, ...chain].map((point) => point.dot(across));
+    const width = Math.max(...widths, 0) - Math.min(...widths, 0);
+    this.aside = across.clone().multiplyScalar(width + 0.45 * this.#subject.size);
+    const points = [...robot, ...chain.map((point) => (beside() ? point.add(this.aside) : point))];
+    const low = points.reduce((least, point) => least.min(point), points[0]?.clone() ?? new Vector3());
+    const high = points.reduce((most, point) => most.max(point), low.clone());
+    const middle = low.clone().add(high).multiplyScalar(0.5);
+    const up = new Vector3().crossVectors(towards, across);
+    const room = 0.29 * this.#subject.size;
+    const half = Math.tan(((FIELD_OF_VIEW / 2) * Math.PI) / 180);
+    const needed = points.map((point) => {
+      const from = point.clone().sub(middle);
+      const sides = [Math.abs(from.dot(up)) + room, (Math.abs(from.dot(across)) + room) / this.camera.aspect];
+      return from.dot(towards) + Math.max(...sides) / half;
+    });
+    this.distance = Math.max(...needed, this.#subject.size);
+    this.camera.near = this.distance / 100;
+    this.camera.far = this.distance * 10;
+    this.camera.updateProjectionMatrix();
+    this.controls.target.copy(middle);
+    this.controls.minDistance = this.distance / 10;
+    this.controls.maxDistance = this.distance * 4;
+    this.camera.position.copy(middle).addScaledVector(towards, this.distance);
+    this.controls.update();
+    this.#fitted = true;
+    this.draw();
+  }
+
+  /**
+   * Go around by angles in radians, and nearer by a factor.
+   *
+   * @param {number} right
+   * @param {number} up
+   * @param {number} [nearer]
+   */
+  turn(right, up, nearer = 1) {
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    const size = offset.length();
+    const azimuth = Math.atan2(offset.y, offset.x) + right;
+    const elevation = Math.max(-STEEPEST, Math.min(STEEPEST, Math.asin(offset.z / size) + up));
+    offset.set(Math.cos(elevation) * Math.cos(azimuth), Math.cos(elevation) * Math.sin(azimuth), Math.sin(elevation));
+    const { minDistance, maxDistance } = this.controls;
+    offset.multiplyScalar(Math.max(minDistance, Math.min(maxDistance, size / nearer)));
+    this.camera.position.copy(this.controls.target).add(offset);
+    this.controls.update();
+    this.draw();
+  }
+
+  #resize() {
+    const { clientWidth: width, clientHeight: height } = this.stage;
+    if (!width || !height) return;
+    this.renderer.setPixelRatio(this.#ratio(true));
+    this.renderer.setSize(width, height);
+    this.size.set(width, height);
+    const before = this.camera.aspect;
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    if (this.#picture && Math.abs(before - this.camera.aspect) > 0.02) this.reset();
+    this.#render();
+  }
+
+  /** Draw before the next picture of the screen. */
+  draw() {
+    if (!this.#asked) this.#asked = requestAnimationFrame(() => this.#render());
+  }
+
+  /**
+   * Pixels of the canvas to those of the page.
+   *
+   * @param {boolean} fine
+   */
+  #ratio(fine) {
+    if (!this.inSoftware) return Math.min(devicePixelRatio, 2);
+    return fine ? FINE : 1;
+  }
+
+  #render(fine = !this.inSoftware) {
+    cancelAnimationFrame(this.#asked);
+    clearTimeout(this.resting);
+    this.#asked = 0;
+    if (this.inSoftware && !fine) this.resting = setTimeout(() => this.#render(true), AT_REST);
+    if (this.renderer.getPixelRatio() !== this.#ratio(fine)) this.renderer.setPixelRatio(this.#ratio(fine));
+    for (const each of this.shapes ?? []) each.put();
+    this.renderer.clear();
+    this.renderer.render(this.solids, this.camera);
+    this.renderer.clearDepth();
+    this.renderer.render(this.over, this.camera);
+  }
+
+  dispose() {
+    cancelAnimationFrame(this.#asked);
+    clearTimeout(this.resting);
+    this.stop.abort();
+    this.themes.disconnect();
+    this.resizing.disconnect();
+    this.controls.dispose();
+    this.#clear();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+    this.canvas.remove();
+  }
+}

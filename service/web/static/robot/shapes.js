@@ -1,0 +1,216 @@
+// What the 3D view is made of: rods, joints, frames and labels, from shared shapes of size 1. A part is
+// a place in the scene; all parts of one shape are drawn at once, which is what pictures cost most.
+
+import {
+  BoxGeometry,
+  Color,
+  ConeGeometry,
+  CylinderGeometry,
+  Group,
+  InstancedMesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  Object3D,
+  SphereGeometry,
+  Vector3,
+} from "../vendor/three-0.185.1.module.min.js";
+import { Labels } from "./labels.js";
+
+const UP = new Vector3(0, 1, 0);
+/** @type {["x" | "y" | "z", number[]][]} */
+const AXES = [["x", [1, 0, 0]], ["y", [0, 1, 0]], ["z", [0, 0, 1]]];
+const SHAPES = {
+  cylinder: new CylinderGeometry(1, 1, 1, 28),
+  thin: new CylinderGeometry(1, 1, 1, 8),
+  cone: new ConeGeometry(1, 1, 10),
+  box: new BoxGeometry(1, 1, 1),
+  sphere: new SphereGeometry(1, 12, 8),
+};
+
+/** @param {number[]} numbers */
+export const vector = (numbers) => new Vector3(...numbers);
+
+/** All parts of one shape, in any colours. */
+class Batch {
+  #parts = 0;
+  /** @type {InstancedMesh | null} */
+  #mesh = null;
+  #count = 0;
+
+  /** @param {keyof typeof SHAPES} shape @param {boolean} flat */
+  constructor(shape, flat) {
+    this.geometry = SHAPES[shape];
+    this.material = flat ? new MeshBasicMaterial() : new MeshLambertMaterial();
+  }
+
+  /** @param {string | number} colour */
+  part(colour) {
+    this.#parts += 1;
+    const part = new Object3D();
+    part.userData = { batch: this, colour: new Color(colour) };
+    return part;
+  }
+
+  begin() {
+    this.#count = 0;
+  }
+
+  /** @param {Object3D} part */
+  add({ matrixWorld, userData: { colour } }) {
+    this.mesh.setMatrixAt(this.#count, matrixWorld);
+    this.mesh.setColorAt(this.#count, colour);
+    this.#count += 1;
+  }
+
+  end() {
+    const { mesh } = this;
+    mesh.count = this.#count;
+    mesh.instanceMatrix.needsUpdate = true;
+    if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
+  }
+
+  /** What draws the parts that there are by now. */
+  get mesh() {
+    if (!this.#mesh) {
+      this.#mesh = new InstancedMesh(this.geometry, this.material, this.#parts);
+      this.#mesh.frustumCulled = false;
+    }
+    return this.#mesh;
+  }
+
+  dispose() {
+    this.#mesh?.removeFromParent();
+    this.#mesh?.dispose();
+    this.material.dispose();
+  }
+}
+
+/** The parts of one scene. */
+export class Shapes {
+  /** @type {Map<string, Batch>} */
+  #batches = new Map();
+  /** @type {Labels | null} */
+  #labels = null;
+
+  /**
+   * `stage` holds the size of the stage in pixels.
+   *
+   * @param {Front.Palette} palette
+   * @param {Front.Scene} scene
+   * @param {Front.Vector2} stage
+   */
+  constructor(palette, scene, stage) {
+    this.palette = palette;
+    this.scene = scene;
+    this.stage = stage;
+  }
+
+  /** @param {keyof typeof SHAPES} shape @param {keyof Front.Palette} colour @param {boolean} [flat] */
+  mesh(shape, colour, flat = false) {
+    const key = `${shape} ${flat}`;
+    const batch = this.#batches.get(key) ?? new Batch(shape, flat);
+    this.#batches.set(key, batch);
+    return batch.part(this.palette[colour]);
+  }
+
+  get #all() {
+    return [...this.#batches.values(), ...(this.#labels ? [this.#labels] : [])];
+  }
+
+  /** Nothing is added from here on. */
+  finish() {
+    for (const batch of this.#all) this.scene.add(batch.mesh);
+  }
+
+  /** Put all parts that are visible where they are in the scene by now. */
+  put() {
+    for (const batch of this.#all) batch.begin();
+    this.scene.updateMatrixWorld();
+    this.scene.traverseVisible((each) => each.userData.batch?.add(each));
+    for (const batch of this.#all) batch.end();
+  }
+
+  /**
+   * A rod along `count` corners, with round elbows.
+   *
+   * @param {number} count
+   * @param {keyof Front.Palette} colour
+   * @param {boolean} [flat]
+   */
+  rods(count, colour, flat = false) {
+    const group = new Group();
+    for (let i = 0; i < count; i++) {
+      if (i) group.add(this.mesh("thin", colour, flat));
+      group.add(this.mesh("sphere", colour, flat));
+    }
+    return group;
+  }
+
+  /**
+   * Three arrows from the origin: x red, y green, z blue, each with its letter.
+   *
+   * @param {number} length
+   */
+  frame(length) {
+    const group = new Group();
+    for (const [name, axis] of AXES) {
+      const direction = vector(axis);
+      const shaft = this.mesh("thin", name, true);
+      lay(shaft, new Vector3(), direction.clone().multiplyScalar(0.82 * length), 0.022 * length);
+      const head = this.mesh("cone", name, true);
+      head.quaternion.setFromUnitVectors(UP, direction);
+      head.position.copy(direction).multiplyScalar(0.9 * length);
+      head.scale.set(0.065 * length, 0.2 * length, 0.065 * length);
+      const letter = this.label(name, name, 13);
+      letter.position.copy(direction).multiplyScalar(1.16 * length);
+      group.add(shaft, head, letter);
+    }
+    group.matrixAutoUpdate = false;
+    return group;
+  }
+
+  /** @param {string} text @param {keyof Front.Palette} colour @param {number} height */
+  label(text, colour, height) {
+    this.#labels ??= new Labels(this.palette, this.stage);
+    return this.#labels.part(text, colour, height);
+  }
+
+  dispose() {
+    for (const batch of this.#all) batch.dispose();
+  }
+}
+
+/**
+ * Lay a mesh whose shape is along y from one point to another.
+ *
+ * @param {Object3D} mesh
+ * @param {Vector3} from
+ * @param {Vector3} to
+ * @param {number} radius
+ */
+export function lay(mesh, from, to, radius) {
+  const step = to.clone().sub(from);
+  const length = step.length();
+  mesh.visible = length > 1e-9;
+  if (!mesh.visible) return;
+  mesh.position.copy(from).addScaledVector(step, 0.5);
+  mesh.quaternion.setFromUnitVectors(UP, step.divideScalar(length));
+  mesh.scale.set(radius, length, radius);
+}
+
+/**
+ * Lay the rods of `Shapes.rods` along corners.
+ *
+ * @param {Group} group
+ * @param {number[][]} corners
+ * @param {number} radius
+ */
+export function layRods(group, corners, radius) {
+  const points = corners.map(vector);
+  points.forEach((point, i) => {
+    const sphere = group.children[2 * i];
+    sphere.position.copy(point);
+    sphere.scale.setScalar(radius);
+    if (i) lay(group.children[2 * i - 1], points[i - 1], point, radius);
+  });
+}

@@ -1,0 +1,131 @@
+// Where the robot is shown: a 3D view with buttons and keys for whoever has no mouse, or, in a browser
+// without WebGL, a drawing by the service.
+
+import { h } from "../shared/dom.js";
+
+const TURN = Math.PI / 12;
+const NEARER = 1.25;
+const IN_SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+
+/** How the browser draws in 3D: "hardware", "software", or null where it does not at all. */
+function webGl() {
+  try {
+    const context = document.createElement("canvas").getContext("webgl2");
+    if (!context) return null;
+    const named = context.getExtension("WEBGL_debug_renderer_info");
+    const name = context.getParameter(named ? named.UNMASKED_RENDERER_WEBGL : context.RENDERER);
+    context.getExtension("WEBGL_lose_context")?.loseContext();
+    return IN_SOFTWARE.test(name) ? "software" : "hardware";
+  } catch {
+    return null;
+  }
+}
+
+export class Stage {
+  /** @type {Front.RobotScene | Front.FlatScene | null} */
+  #scene = null;
+  #closed = false;
+
+  /**
+   * `draw(theme)` gives the SVG of the picture as it is, for a browser without WebGL.
+   *
+   * @param {Front.DrawSvg} draw
+   */
+  constructor(draw) {
+    this.draw = draw;
+    this.room = h("div", { class: "stage" });
+    this.element = h("div", { class: "stage-frame" }, this.room);
+    this.isFlat = false;
+  }
+
+  /** Load what draws. */
+  async open() {
+    const drawnBy = webGl();
+    try {
+      if (!drawnBy) throw new Error("no WebGL");
+      const { RobotScene } = await import("./scene.js");
+      if (this.#closed) return;
+      const scene = new RobotScene(this.room, drawnBy === "software");
+      this.#scene = scene;
+      this.#controls(scene);
+    } catch {
+      const reason = drawnBy
+        ? "The 3D view could not be loaded."
+        : "This browser has no WebGL, which the 3D view needs.";
+      await this.#openFlat(reason);
+    }
+  }
+
+  /** @param {string} reason */
+  async #openFlat(reason) {
+    this.isFlat = true;
+    this.room.classList.add("flat");
+    this.room.replaceChildren(h("p", { class: "no-webgl" }, `${reason} The service draws the robot instead.`));
+    const { FlatScene } = await import("./flat_scene.js");
+    if (!this.#closed) this.#scene = new FlatScene(this.room, this.draw);
+  }
+
+  /** @param {Front.Subject} subject @param {Front.Picture} picture */
+  show(subject, picture) {
+    this.#scene?.show(subject, picture);
+  }
+
+  /** @param {Front.Picture} picture */
+  move(picture) {
+    this.#scene?.move(picture);
+  }
+
+  reset() {
+    this.#scene?.reset();
+  }
+
+  close() {
+    this.#closed = true;
+    this.#scene?.dispose();
+  }
+
+  /** @param {Front.RobotScene} scene */
+  #controls(scene) {
+    const { canvas } = scene;
+    canvas.tabIndex = 0;
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute(
+      "aria-label",
+      "The robot in 3D. Arrow keys go around it, plus and minus zoom, 0 shows all of it.",
+    );
+    canvas.addEventListener("keydown", (event) => this.#pressed(event, scene));
+    /** @type {(text: string, name: string, act: () => void) => HTMLElement} */
+    const button = (text, name, act) =>
+      h("button", { type: "button", title: name, "aria-label": name, onclick: act }, text);
+    /** @type {(right: number, up: number) => () => void} */
+    const turn = (right, up) => () => scene.turn(right * TURN, up * TURN);
+    this.element.append(
+      h(
+        "div",
+        { class: "stage-buttons", role: "group", "aria-label": "View" },
+        button("←", "View from further left", turn(-1, 0)),
+        button("→", "View from further right", turn(1, 0)),
+        button("↑", "View from higher", turn(0, 1)),
+        button("↓", "View from lower", turn(0, -1)),
+        button("+", "Zoom in", () => scene.turn(0, 0, NEARER)),
+        button("−", "Zoom out", () => scene.turn(0, 0, 1 / NEARER)),
+        button("⟲", "Reset view", () => scene.reset()),
+      ),
+    );
+  }
+
+  /** @param {KeyboardEvent} event @param {Front.RobotScene} scene */
+  #pressed(event, scene) {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    /** @type {Record<string, [number, number]>} */
+    const turns = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+    /** @type {Record<string, number>} */
+    const zooms = { "+": NEARER, "=": NEARER, "-": 1 / NEARER };
+    const [right, up] = turns[event.key] ?? [0, 0];
+    if (right || up) scene.turn(right * TURN, up * TURN);
+    else if (zooms[event.key]) scene.turn(0, 0, zooms[event.key]);
+    else if (event.key === "0" || event.key === "Home") scene.reset();
+    else return;
+    event.preventDefault();
+  }
+}

@@ -1,0 +1,151 @@
+// One cell: a native input, how its text is understood, and its mark after a check.
+
+import { h, visible } from "./dom.js";
+import { mathml } from "./markup.js";
+
+export const SIGNS = { correct: "✓", partial: "~", incorrect: "✗", unreadable: "?", missing: "–" };
+
+/** @template {Front.CellPlace} Place */
+export class Cell {
+  #before = "";
+
+  /**
+   * `place` says where the cell is, and its name aloud (`spoken`); `owner` hears of all that happens.
+   *
+   * @param {Place} place
+   * @param {Front.CellOwner<Place>} owner
+   */
+  constructor(place, owner) {
+    const { id, spoken } = place;
+    this.place = place;
+    this.owner = owner;
+    /** @type {Front.Reading | null} */
+    this.reading = null;
+    this.shown = h("div", { class: "shown", id: `${id}-shown` });
+    this.sign = h("span", { class: "sign" });
+    this.echo = h("span", { class: "echo", "aria-hidden": "true" });
+    this.input = h("input", {
+      type: "text",
+      id,
+      autocomplete: "off",
+      autocapitalize: "off",
+      autocorrect: "off",
+      spellcheck: "false",
+      "aria-label": spoken,
+      "aria-describedby": `${id}-shown`,
+      oninput: () => this.#typed(),
+      onscroll: () => this.#follow(),
+      onfocus: () => this.owner.entered(this),
+      onkeydown: (event) => this.owner.pressed(event, this),
+      onpaste: (event) => this.owner.pasted(event, this),
+      onbeforeinput: (event) => this.owner.beforeInput(event),
+    });
+    const entry = h("div", { class: "entry" }, this.echo, this.input, this.sign);
+    this.element = h("td", {}, entry, this.shown);
+  }
+
+  get text() {
+    return this.input.value;
+  }
+
+  /**
+   * Put another text here, without a step for undo.
+   *
+   * @param {string} text
+   */
+  put(text) {
+    this.input.value = text;
+    this.#changed();
+  }
+
+  #typed() {
+    const before = this.#before;
+    this.#changed();
+    this.owner.typed(this, before);
+  }
+
+  #changed() {
+    this.#before = this.text;
+    this.mark(null);
+    this.#underline(null);
+    this.owner.changed(this);
+  }
+
+  /**
+   * Show how the text is understood: an answer of the preview, or null for an empty cell.
+   *
+   * @param {Front.Reading | null} reading
+   */
+  understood(reading) {
+    this.reading = reading;
+    const error = reading?.error;
+    this.element.classList.toggle("unread", Boolean(error));
+    this.input.toggleAttribute("aria-invalid", false);
+    if (error) this.input.setAttribute("aria-invalid", "true");
+    else this.input.removeAttribute("aria-invalid");
+    this.#underline(error?.span ?? null);
+    this.shown.replaceChildren(...this.#readingShown(reading));
+    this.owner.understood(this);
+  }
+
+  /** @param {Front.Reading | null} reading */
+  #readingShown(reading) {
+    if (!reading) return [];
+    if (!reading.error) return [mathml(reading.mathml) ?? visible(reading.text)];
+    const told = h("span", { class: "aloud" }, visible(reading.error.message));
+    return [told, reading.error.suggestion ? this.repair(reading.error.suggestion) : "not read"];
+  }
+
+  /**
+   * The button that writes the repaired text.
+   *
+   * @param {string} suggestion
+   * @returns {HTMLElement}
+   */
+  repair(suggestion) {
+    return h(
+      "button",
+      { type: "button", class: "repair", onclick: () => this.owner.repaired(this, suggestion) },
+      h("span", { class: "aloud" }, "Write "),
+      h("span", { "aria-hidden": "true" }, "→ "),
+      h("bdi", {}, visible(suggestion)),
+    );
+  }
+
+  /**
+   * Underline [from, to) of the text, which is counted in code points.
+   *
+   * @param {[number, number] | null} span
+   */
+  #underline(span) {
+    if (!span) return this.echo.replaceChildren();
+    const characters = Array.from(this.text);
+    /** @type {(from?: number, to?: number) => string} */
+    const piece = (from, to) => characters.slice(from, to).join("");
+    const to = Math.max(span[1], span[0] + 1);
+    this.echo.replaceChildren(piece(0, span[0]), h("u", {}, piece(span[0], to) || " "), piece(to));
+    this.#follow();
+  }
+
+  #follow() {
+    this.echo.scrollLeft = this.input.scrollLeft;
+  }
+
+  /**
+   * Mark the cell as its report says; null takes the mark away.
+   *
+   * @param {Api.CellReport | null} report
+   */
+  mark(report) {
+    const { spoken } = this.place;
+    const verdict = report?.verdict;
+    if (verdict) this.element.dataset.verdict = verdict;
+    else delete this.element.dataset.verdict;
+    this.sign.replaceChildren(
+      ...(verdict
+        ? [h("span", { "aria-hidden": "true" }, SIGNS[verdict]), h("span", { class: "aloud" }, verdict)]
+        : []),
+    );
+    this.input.setAttribute("aria-label", verdict ? `${spoken}: ${verdict}` : spoken);
+  }
+}

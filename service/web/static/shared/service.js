@@ -1,0 +1,95 @@
+// The service over HTTP: each failure is one kind of error with words for the student.
+
+// Longer than any grading: whoever waits so long has no connection.
+const PATIENCE = 20_000;
+// A student has no key: that is the course's site's.
+const KEY_NEEDED = "Open this exercise from your course's site: here it needs a key.";
+
+/** A request that failed. `kind` is "offline", "busy", "refused" or "failed". */
+export class ServiceError extends Error {
+  /** @param {"offline" | "busy" | "refused" | "failed"} kind @param {string} text @param {number} [status] */
+  constructor(kind, text, status = 0) {
+    super(text);
+    this.kind = kind;
+    this.status = status;
+  }
+}
+
+export class Service {
+  /**
+   * `base` is the address of the service, with a slash at its end; `token` gives that of the learner, if any.
+   *
+   * @param {string} base
+   * @param {() => string | null} [token]
+   */
+  constructor(base, token = () => null) {
+    this.base = base;
+    this.token = token;
+  }
+
+  /** @param {string} path */
+  address(path) {
+    return new URL(path, this.base).href;
+  }
+
+  /** @param {string} id @returns {Promise<Api.Exercise>} */
+  exercise(id) {
+    return this.#ask(`v1/exercises/${encodeURIComponent(id)}`);
+  }
+
+  /** @param {Api.PreviewRequest} body @returns {Promise<Api.Preview>} */
+  preview(body) {
+    return this.#ask("v1/preview", body);
+  }
+
+  /** @param {Api.PreviewManyRequest} body @returns {Promise<Api.PreviewManyResponse>} */
+  previews(body) {
+    return this.#ask("v1/previews", body);
+  }
+
+  /** @param {string} id @param {Api.GradeRequest} body @returns {Promise<Api.Report>} */
+  grade(id, body) {
+    return this.#ask(`v1/exercises/${encodeURIComponent(id)}/grade`, body);
+  }
+
+  /** @param {Api.FramesRequest} body @returns {Promise<Api.Frames>} */
+  frames(body) {
+    return this.#ask("v1/frames", body);
+  }
+
+  /** @param {string} path @param {unknown} [body] */
+  async #ask(path, body) {
+    const headers = new Headers();
+    /** @type {RequestInit} */
+    const options = { credentials: "omit", headers, signal: AbortSignal.timeout(PATIENCE) };
+    if (body !== undefined) {
+      options.method = "POST";
+      headers.set("Content-Type", "application/json");
+      options.body = JSON.stringify(body);
+      // What is only read needs none, and is asked for without a question beforehand.
+      const token = this.token();
+      if (token) headers.set("Authorization", `Bearer ${token}`);
+    }
+    let answer, content;
+    try {
+      answer = await fetch(this.address(path), options);
+      content = await answer.json();
+    } catch {
+      throw answer === undefined || answer.ok
+        ? new ServiceError("offline", "The service cannot be reached. Your answers are kept in this browser.")
+        : failure(answer.status, {});
+    }
+    if (!answer.ok) throw failure(answer.status, content ?? {});
+    return content;
+  }
+}
+
+/** @param {number} status @param {Partial<Api.Problem>} problem */
+function failure(status, problem) {
+  if (status === 429 || status === 503) {
+    return new ServiceError("busy", "The service has a lot to do. Try again in a few seconds.", status);
+  }
+  const kind = status >= 500 ? "failed" : "refused";
+  if (problem.type?.endsWith("key-needed")) return new ServiceError(kind, KEY_NEEDED, status);
+  return new ServiceError(kind, problem.detail ?? `The service answered with the status ${status}.`, status);
+}

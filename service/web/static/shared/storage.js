@@ -1,0 +1,105 @@
+// Answers that survive a reload, and links that carry them. A browser that keeps nothing is no error.
+
+const PREFIX = "dh-grader";
+// The fragment of an address is never sent to a server.
+const NAME = "#answers=";
+const LONGEST = 60_000;
+
+/** The answers to an exercise of one service, in this browser. */
+export class Store {
+  /** @param {string} base @param {string} exercise */
+  constructor(base, exercise) {
+    this.name = `${PREFIX}:${base}:${exercise}`;
+  }
+
+  load() {
+    try {
+      return checked(JSON.parse(localStorage.getItem(this.name) ?? "null"));
+    } catch {
+      return null;
+    }
+  }
+
+  /**
+   * Keep the answers; false where the browser does not.
+   *
+   * @param {Front.Answers | null} answers
+   */
+  save(answers) {
+    try {
+      if (answers === null) localStorage.removeItem(this.name);
+      else localStorage.setItem(this.name, JSON.stringify(answers));
+      return true;
+    } catch {
+      return false;
+    }
+  }
+}
+
+/**
+ * The answers as a fragment.
+ *
+ * @param {Front.Answers} answers
+ */
+export function fragment(answers) {
+  return NAME + packed(answers);
+}
+
+/**
+ * A value as letters that may stand in an address.
+ *
+ * @param {unknown} value
+ */
+export function packed(value) {
+  const bytes = new TextEncoder().encode(JSON.stringify(value));
+  const text = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
+  return text.replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+}
+
+/**
+ * The value that was packed; null for any other text.
+ *
+ * @param {string} letters
+ * @returns {unknown}
+ */
+export function unpacked(letters) {
+  if (letters.length > LONGEST) return null;
+  try {
+    const text = atob(letters.replaceAll("-", "+").replaceAll("_", "/"));
+    const bytes = Uint8Array.from(text, (character) => character.charCodeAt(0));
+    return JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(bytes));
+  } catch {
+    return null;
+  }
+}
+
+/**
+ * The answers in a fragment, or null.
+ *
+ * @param {string} hash
+ */
+export function answersIn(hash) {
+  return hash.startsWith(NAME) ? checked(unpacked(hash.slice(NAME.length))) : null;
+}
+
+/**
+ * Answers of the right shape, whatever was stored or linked: `{unit, parts: {id: {cells, choice}}}`.
+ *
+ * @param {any} value
+ * @returns {Front.Answers | null}
+ */
+function checked(value) {
+  if (typeof value !== "object" || value === null || typeof value.parts !== "object" || value.parts === null) {
+    return null;
+  }
+  /** @type {(part: any) => boolean} */
+  const isPart = (part) =>
+    Array.isArray(part?.cells) && part.cells.every((/** @type {unknown} */ cell) => typeof cell === "string");
+  const given = Object.entries(value.parts);
+  if (!given.every(([, part]) => isPart(part))) return null;
+  // Made from entries, so that a part named __proto__ is a part like any other.
+  const parts = Object.fromEntries(
+    given.map(([id, { cells, choice }]) => [id, { cells, choice: typeof choice === "string" ? choice : "" }]),
+  );
+  return { unit: value.unit === "degrees" ? "degrees" : "radians", parts };
+}

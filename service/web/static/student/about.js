@@ -1,0 +1,34 @@
+// What an exercise asks: its title and source, its statement with the robot, and its symbols.
+
+import { h, visible } from "../shared/dom.js";
+import { html } from "../shared/markup.js";
+
+/**
+ * Return what is asked; beside the cells it scrolls by itself, also by keyboard.
+ *
+ * @param {Api.Exercise} exercise
+ * @param {"h1" | "h2"} level of the title
+ * @param {Front.RobotFigure | null} robot
+ */
+export function about({ title, source, statement, statement_html: markup, symbols }, level, robot) {
+  const header = h(
+    "header",
+    {},
+    h(level, { id: "title" }, visible(title)),
+    h("p", { class: "quiet" }, visible(source)),
+  );
+  const text = markup ? html(markup) : statement.trim().split(/\n\n+/).map((each) => h("p", {}, visible(each)));
+  const terms = symbols.flatMap(({ name, unit, description }) => [
+    h("dt", {}, h("code", {}, visible(name))),
+    h("dd", {}, visible(unit ? `${description} (${unit})` : description)),
+  ]);
+  const head = h(level === "h1" ? "h2" : "h3", {}, "Symbols");
+  return h(
+    "section",
+    { class: "about", tabindex: 0, "aria-labelledby": "title" },
+    header,
+    // The button stands before what it opens: it stays in sight, and Tab goes on into the view.
+    h("div", { class: "statement" }, robot?.button, robot?.figure, ...text),
+    terms.length ? h("section", { class: "symbols" }, head, h("dl", {}, ...terms)) : null,
+  );
+}

@@ -1,0 +1,47 @@
+// The bar below an exercise: the button that has it graded, the points, and what went wrong on the way.
+
+import { h, points, visible } from "../shared/dom.js";
+
+export class CheckBar {
+  /** @param {() => void} check */
+  constructor(check) {
+    this.button = h("button", { type: "button", class: "check", onclick: check }, "Check");
+    this.total = h("p", { class: "total" });
+    this.trouble = h("p", { class: "trouble-line", hidden: true });
+    this.element = h("div", { class: "bar" }, this.trouble, h("div", { class: "bar-line" }, this.button, this.total));
+  }
+
+  get isBusy() {
+    return this.button.getAttribute("aria-disabled") === "true";
+  }
+
+  set isBusy(isBusy) {
+    if (isBusy) this.button.setAttribute("aria-disabled", "true");
+    else this.button.removeAttribute("aria-disabled");
+  }
+
+  /**
+   * Show why the service does not answer, or nothing; return whether this was not shown before.
+   *
+   * @param {Error | null} error
+   */
+  failed(error) {
+    const text = error ? visible(error.message) : "";
+    const isNew = Boolean(error) && this.trouble.textContent !== text;
+    this.trouble.hidden = !error;
+    if (isNew) this.trouble.textContent = text;
+    return isNew;
+  }
+
+  /** @param {{ points: number, max_points: number }} report */
+  show({ points: earned, max_points: most }) {
+    const meter = h("meter", { min: 0, max: 1, value: most ? earned / most : 0, "aria-label": "Share of the points" });
+    this.total.replaceChildren(meter, h("strong", {}, points(earned, most)), " points");
+    this.total.classList.remove("outdated");
+  }
+
+  /** The points are about earlier answers. */
+  outdated() {
+    if (this.total.childNodes.length) this.total.classList.add("outdated");
+  }
+}

@@ -1,0 +1,399 @@
+// <dh-exercise exercise="scara">: an exercise to read, fill in and check, on any page.
+//
+// Attributes: exercise, its id; api, the address of the service (that of this script by default);
+// parts, the ids of those to show; feedback, the most that a report tells; token, the learner's, where
+// the service needs keys; theme, "light", "dark" or "auto" (by default that of the page). `linked`
+// belongs to the service's own page: the element takes answers from the address. The event `graded`
+// (bubbling, composed) has the report as its detail.
+
+import { h, points, visible } from "../shared/dom.js";
+import { History } from "../shared/history.js";
+import { about } from "./about.js";
+import { CheckBar } from "./check_bar.js";
+import { PartView } from "./part_view.js";
+import { Previewer } from "./previewer.js";
+import { RobotFigure } from "./robot_figure.js";
+import { Service } from "../shared/service.js";
+import { answersIn, fragment, Store } from "../shared/storage.js";
+
+const TOKENS = new URL("../shared/tokens.css", import.meta.url).href;
+const STYLE = new URL("./element.css", import.meta.url).href;
+const HOME = new URL("../", import.meta.url).href;
+const SAVED_AFTER = 250;
+
+export class DhExercise extends HTMLElement {
+  static observedAttributes = ["exercise", "api", "parts", "theme"];
+
+  /** @type {PartView[]} */
+  #parts = [];
+  #speaking = 0;
+  #saving = 0;
+  #loading = 0;
+  #onOnline = () => this.#online();
+
+  // Set when an exercise is loaded, and again for another one.
+
+  /** @type {Service} */
+  service;
+  /** @type {Api.Exercise} */
+  exercise;
+  /** @type {Previewer} */
+  previewer;
+  /** @type {Store} */
+  store;
+  /** @type {History<Front.PartCell, string>} */
+  history;
+  /** @type {RobotFigure | null} */
+  robot = null;
+  /** @type {HTMLSelectElement} */
+  unit;
+  /** @type {HTMLElement} */
+  saved;
+  /** @type {CheckBar} */
+  bar;
+
+  constructor() {
+    super();
+    const root = this.attachShadow({ mode: "open" });
+    this.live = h("p", { class: "aloud", role: "status", "aria-live": "polite" });
+    // Until there is an exercise, what the page itself holds is shown.
+    this.main = h("div", { class: "exercise" }, h("slot"));
+    this.state = h("div", { class: "state" });
+    this.received = h("div", { class: "card notice" });
+    const sheets = [TOKENS, STYLE].map((href) => h("link", { rel: "stylesheet", href }));
+    root.append(...sheets, h("div", { class: "outer" }, this.state, this.main, this.live));
+  }
+
+  connectedCallback() {
+    this.#begin();
+    addEventListener("online", this.#onOnline);
+  }
+
+  disconnectedCallback() {
+    removeEventListener("online", this.#onOnline);
+    this.robot?.close();
+    this.#loading += 1;
+  }
+
+  /** @param {string} _name @param {string | null} before @param {string | null} after */
+  attributeChangedCallback(_name, before, after) {
+    if (this.isConnected && before !== after) this.#begin();
+  }
+
+  /** Load once per turn, however many attributes change. */
+  #begin() {
+    const turn = ++this.#loading;
+    queueMicrotask(() => turn === this.#loading && this.isConnected && this.#load(turn));
+  }
+
+  /** @param {number} turn */
+  async #load(turn) {
+    const id = this.getAttribute("exercise");
+    if (!id) return this.#tell("No exercise is chosen", "Name one in the attribute “exercise”.");
+    const base = new URL(this.getAttribute("api") ?? HOME, document.baseURI).href.replace(/\/?$/, "/");
+    this.service = new Service(base, () => this.getAttribute("token"));
+    this.main.setAttribute("aria-busy", "true");
+    this.state.replaceChildren(
+      h("div", { class: "progress", role: "progressbar", "aria-label": "Loading the exercise" }),
+    );
+    try {
+      const exercise = await this.service.exercise(id);
+      if (turn === this.#loading) this.#show(exercise);
+    } catch (error) {
+      if (turn !== this.#loading) return undefined;
+      const title = error.status === 404 ? "There is no such exercise" : "The exercise could not be loaded";
+      this.#tell(title, error.message, error.status !== 404);
+    }
+    return this.main.removeAttribute("aria-busy");
+  }
+
+  /**
+   * A state without an exercise.
+   *
+   * @param {string} title
+   * @param {string} text
+   * @param {boolean} [again]
+   */
+  #tell(title, text, again = false) {
+    const button = again
+      ? h("button", { type: "button", class: "quiet-button", onclick: () => this.#begin() }, "Try again")
+      : null;
+    this.state.replaceChildren(
+      h(
+        "div",
+        { class: "card trouble", role: "alert" },
+        h("p", {}, h("strong", {}, title)),
+        h("p", {}, visible(text)),
+        button,
+      ),
+    );
+  }
+
+  #online() {
+    if (this.exercise) this.failed(null);
+    else this.#begin();
+  }
+
+  // What the parts need of their exercise.
+
+  /** What every request about entries says. */
+  context() {
+    return { exercise: this.exercise.id, angle_unit: this.angleUnit };
+  }
+
+  /**
+   * Say something to a screen reader, after a pause in which nothing else is said.
+   *
+   * @param {string} text
+   * @param {number} [pause]
+   */
+  announce(text, pause = 0) {
+    clearTimeout(this.#speaking);
+    this.#speaking = setTimeout(() => (this.live.textContent = visible(text)), pause);
+  }
+
+  /**
+   * Show that the service does not answer; null when it does.
+   *
+   * @param {Error | null} error
+   */
+  failed(error) {
+    if (this.bar.failed(error)) this.announce(String(error?.message));
+  }
+
+  /** The answers have changed: keep them. */
+  edited() {
+    this.robot?.changed();
+    clearTimeout(this.#saving);
+    this.#saving = setTimeout(() => this.#save(), SAVED_AFTER);
+    this.bar.outdated();
+  }
+
+  #save() {
+    const empty = this.#parts.every((part) => part.isEmpty);
+    const kept = this.store.save(empty ? null : this.answers);
+    this.saved.textContent = empty
+      ? ""
+      : kept
+      ? "Kept in this browser"
+      : "This browser keeps nothing: a reload loses the answers";
+  }
+
+  get angleUnit() {
+    return /** @type {Api.AngleUnit} */ (this.unit.value);
+  }
+
+  /** All answers: `{unit, parts: {id: {cells, choice}}}`. */
+  get answers() {
+    const parts = Object.fromEntries(
+      this.#parts.filter((part) => !part.isEmpty).map((part) => [part.part.id, part.state]),
+    );
+    return { unit: this.angleUnit, parts };
+  }
+
+  /** @param {Front.Answers} answers */
+  #restore(answers) {
+    this.unit.value = answers.unit;
+    this.robot?.changed();
+    return this.#parts.flatMap((part) => {
+      const state = Object.hasOwn(answers.parts, part.part.id) ? answers.parts[part.part.id] : null;
+      return part.restore(state ?? { cells: [], choice: "" });
+    });
+  }
+
+  // The exercise on the page.
+
+  /** @param {Api.Exercise} exercise */
+  #show(exercise) {
+    this.robot?.close();
+    this.exercise = exercise;
+    this.robot = this.#robotFigure();
+    this.history = new History();
+    this.previewer = new Previewer(this.service, () => this.context(), (error) => this.failed(error));
+    this.store = new Store(this.service.base, exercise.id);
+    const wanted = this.getAttribute("parts")?.trim().split(/[\s,]+/);
+    // The service's own page has no other title.
+    const isOwn = this.hasAttribute("linked");
+    this.bar = new CheckBar(() => this.check());
+    this.#parts = exercise.parts
+      .filter((part) => !wanted || wanted.includes(part.id))
+      .map((part) => new PartView(part, this, isOwn ? "h2" : "h3"));
+    this.main.replaceChildren(
+      about(exercise, isOwn ? "h1" : "h2", this.robot),
+      h(
+        "div",
+        { class: "parts" },
+        this.#tools(),
+        this.received,
+        ...this.#parts.map((part) => part.element),
+        this.bar.element,
+      ),
+    );
+    this.received.hidden = true;
+    this.state.replaceChildren();
+    const shared = isOwn ? answersIn(location.hash) : null;
+    const own = this.store.load();
+    if (own) this.#restore(own);
+    if (shared) this.#takeShared(shared, own);
+    this.bar.outdated();
+    this.dispatchEvent(new CustomEvent("ready", { bubbles: true, composed: true }));
+  }
+
+  // The robot, drawn and in 3D.
+
+  #robotFigure() {
+    const { figure, symbols, title, id } = this.exercise;
+    if (!figure) return null;
+    const theme = this.getAttribute("theme");
+    const asked = theme === "light" || theme === "dark" ? `?theme=${theme}` : "";
+    const address = this.service.address(`v1/exercises/${encodeURIComponent(id)}/figure.svg${asked}`);
+    const host = {
+      service: this.service,
+      body: () => ({ ...this.context(), ...this.#tableToDraw() }),
+      descriptions: Object.fromEntries(symbols.map(({ name, description }) => [name, description])),
+      announce: (/** @type {string} */ text) => this.announce(text),
+    };
+    const failed = () => this.announce(this.saved.textContent = "The 3D view could not be loaded");
+    return new RobotFigure(address, title, host, (isOpen) => this.main.classList.toggle("with-view", isOpen), failed);
+  }
+
+  /** The table that the student filled in, if there is one: the last one that was changed. */
+  #tableToDraw() {
+    const tables = this.#parts.filter(({ part, isEmpty }) => part.kind === "dh_table" && !isEmpty);
+    const [table] = tables.sort((one, other) => other.changedAt - one.changedAt);
+    if (!table) return {};
+    const { shape } = table.part;
+    const own = "convention" in shape ? shape.convention : "standard";
+    const { rows, convention = own } = /** @type {{ rows: unknown, convention?: typeof own }} */ (table.answer);
+    return { table: { rows, convention: convention === "either" ? "standard" : convention } };
+  }
+
+  /**
+   * Answers that came by a link; the student's own can be had back.
+   *
+   * @param {Front.Answers} shared
+   * @param {Front.Answers | null} own
+   */
+  #takeShared(shared, own) {
+    const had = own ?? { unit: "radians", parts: {} };
+    this.history.note(this.#restore(shared));
+    const back = () => {
+      this.history.note(this.#restore(had));
+      this.edited();
+      this.received.hidden = true;
+    };
+    this.received.replaceChildren(
+      h("p", {}, "These answers came with the link."),
+      own ? h("button", { type: "button", class: "quiet-button", onclick: back }, "Back to my own") : "",
+    );
+    this.received.hidden = false;
+    history.replaceState(null, "", location.pathname + location.search);
+  }
+
+  #tools() {
+    this.saved = h("p", { class: "quiet saved" });
+    this.unit = h(
+      "select",
+      { "aria-label": "Plain numbers in angles are", onchange: () => this.#unitChanged() },
+      h("option", { value: "radians" }, "radians"),
+      h("option", { value: "degrees" }, "degrees"),
+    );
+    return h(
+      "div",
+      { class: "tools" },
+      h("label", { class: "unit" }, h("span", { "aria-hidden": "true" }, "Plain angles in "), this.unit),
+      this.saved,
+      h("button", { type: "button", class: "quiet-button", onclick: () => this.#share() }, "Copy link"),
+      h("button", { type: "button", class: "quiet-button", onclick: () => this.#clear() }, "Clear"),
+    );
+  }
+
+  #unitChanged() {
+    for (const part of this.#parts) for (const cell of part.cells) this.previewer.ask(cell);
+    this.edited();
+  }
+
+  #clear() {
+    this.history.note(this.#restore({ unit: this.angleUnit, parts: {} }));
+    for (const part of this.#parts) part.clearReport();
+    this.#save();
+    this.bar.outdated();
+    this.announce("All cells are empty. Ctrl+Z in a cell takes it back.");
+    this.saved.textContent = "Cleared; Ctrl+Z takes it back";
+    this.#parts[0]?.focus(this.#parts[0].cells[0]);
+  }
+
+  async #share() {
+    const address = this.service.address(`exercises/${encodeURIComponent(this.exercise.id)}`) + fragment(this.answers);
+    let told = "Link copied: it holds your answers";
+    try {
+      await navigator.clipboard.writeText(address);
+    } catch {
+      if (this.hasAttribute("linked")) {
+        history.replaceState(null, "", new URL(address).hash);
+        told = "The link is in the address bar";
+      } else {
+        told = "The browser does not let this page copy";
+      }
+    }
+    this.saved.textContent = told;
+    this.announce(told);
+  }
+
+  /** Have all parts graded that hold something, and show the report. */
+  async check() {
+    const filled = this.#parts.filter((part) => !part.isEmpty);
+    if (!filled.length) {
+      this.announce("Nothing is filled in yet.");
+      this.saved.textContent = "Nothing is filled in yet";
+      return;
+    }
+    if (this.bar.isBusy) return;
+    this.bar.isBusy = true;
+    const feedback = /** @type {Api.FeedbackLevel | null} */ (this.getAttribute("feedback"));
+    const body = {
+      answers: Object.fromEntries(filled.map((part) => [part.part.id, part.answer])),
+      angle_unit: this.angleUnit,
+      ...(feedback ? { feedback } : {}),
+    };
+    try {
+      const report = await this.service.grade(this.exercise.id, body);
+      this.failed(null);
+      this.#showReport(report, filled);
+    } catch (error) {
+      this.failed(error);
+    }
+    this.bar.isBusy = false;
+  }
+
+  /** @param {Api.Report} report @param {PartView[]} filled */
+  #showReport(report, filled) {
+    const shown = new Map(report.parts.map((part) => [part.part, part]));
+    for (const part of this.#parts) {
+      const told = filled.includes(part) ? shown.get(part.part.id) : null;
+      if (told) part.showReport(told);
+      else part.clearReport();
+    }
+    this.bar.show(this.#ofShown(report));
+    const titles = new Map(filled.map(({ part: { id, title } }) => [id, title]));
+    const told = report.parts.filter(({ part }) => titles.has(part)).map(
+      ({ part, verdict, points: earned, max_points: most }) =>
+        `${titles.get(part)}: ${verdict}, ${points(earned, most)} points.`,
+    );
+    this.announce(told.join(" "));
+    this.dispatchEvent(new CustomEvent("graded", { bubbles: true, composed: true, detail: report }));
+  }
+
+  /**
+   * Points of the parts that are shown.
+   *
+   * @param {Api.Report} report
+   */
+  #ofShown(report) {
+    const ids = new Set(this.#parts.map((part) => part.part.id));
+    const shown = report.parts.filter((part) => ids.has(part.part));
+    /** @type {(name: "points" | "max_points") => number} */
+    const sum = (name) => shown.reduce((total, part) => total + part[name], 0);
+    return { points: sum("points"), max_points: sum("max_points") };
+  }
+}

@@ -1,0 +1,122 @@
+// The grids of a part as tables: heads, rows of cells, and below each row the messages on it.
+
+import { h, points } from "../shared/dom.js";
+import { Cell, SIGNS } from "../shared/cell.js";
+
+/**
+ * The rows of a layout, in order, with their cells; `elements` are the tables.
+ *
+ * @param {Front.Layout} layout
+ * @param {Api.Part} part
+ * @param {Front.CellOwner<Front.PartPlace>} owner
+ * @param {string} idPrefix
+ */
+export function gridsOf(layout, part, owner, idPrefix) {
+  /** @type {RowView[]} */
+  const rows = [];
+  const elements = layout.grids.map((grid, i) => gridElement(grid, part, owner, `${idPrefix}-${i}`, rows));
+  return { rows, elements };
+}
+
+/**
+ * @param {Front.Grid} grid
+ * @param {Api.Part} part
+ * @param {Front.CellOwner<Front.PartPlace>} owner
+ * @param {string} id
+ * @param {RowView[]} rows
+ */
+function gridElement(grid, part, owner, id, rows) {
+  const heads = grid.columns.map((column) => headOf(column));
+  const isMatrix = grid.look === "matrix";
+  const head = h(
+    "tr",
+    {},
+    h("th", { scope: "col", class: "corner" }, h("span", { class: "aloud" }, "row")),
+    ...heads,
+    h("th", { scope: "col", class: "worth" }, h("span", { class: "aloud" }, "points")),
+  );
+  const body = h("tbody");
+  grid.rows.forEach((row, i) => {
+    const view = new RowView(row, grid, part, owner, `${id}-${i}`);
+    rows.push(view);
+    body.append(view.element, view.notes);
+  });
+  const caption = h("caption", { class: grid.title ? "named" : "aloud" }, grid.title || part.title);
+  const table = h("table", { class: grid.look }, caption, h("thead", { class: isMatrix ? "aloud" : null }, head), body);
+  return h("div", { class: "scroll" }, table);
+}
+
+/** @param {Front.Column} column */
+function headOf(column) {
+  const seen = h("span", { "aria-hidden": column.spoken ? "true" : null }, h("i", {}, column.head));
+  if (column.index) seen.append(h("sub", {}, column.index));
+  return h("th", { scope: "col" }, seen, column.spoken ? h("span", { class: "aloud" }, column.spoken) : null);
+}
+
+/** One row: `cells`, its mark, its points, and the row of messages below it. */
+export class RowView {
+  /**
+   * @param {Front.Row} row
+   * @param {Front.Grid} grid
+   * @param {Api.Part} part
+   * @param {Front.CellOwner<Front.PartPlace>} owner
+   * @param {string} id
+   */
+  constructor(row, grid, part, owner, id) {
+    this.grid = grid;
+    this.label = row.label;
+    this.name = row.spoken || part.title;
+    this.sign = h("span", { class: "sign" });
+    this.worth = h("td", { class: "worth" });
+    this.cells = grid.columns.map((column, j) => {
+      const where = [column.spoken, row.spoken && grid.look === "table" ? `row ${row.spoken}` : row.spoken];
+      return new Cell(
+        {
+          id: `${id}-${j}`,
+          part: part.id,
+          label: column.label,
+          row: this,
+          quantity: row.quantity ?? column.quantity,
+          spoken: where.filter(Boolean).join(", "),
+        },
+        owner,
+      );
+    });
+    const head = h("th", { scope: "row" }, h("span", {}, row.head), this.sign);
+    this.element = h("tr", {}, head, ...this.cells.map((cell) => cell.element), this.worth);
+    this.list = h("ul");
+    this.notes = h("tr", { class: "notes", hidden: true }, h("td", { colspan: grid.columns.length + 2 }, this.list));
+  }
+
+  /**
+   * Mark the row and its cells as the report says, with messages below; null takes all away.
+   *
+   * @param {Api.RowReport | null} report
+   * @param {HTMLElement[]} [items]
+   */
+  mark(report, items = []) {
+    this.setVerdict(report?.verdict ?? null);
+    this.worth.textContent = report?.max_points ? points(report.points, report.max_points) : "";
+    const cells = new Map(report?.cells.map((cell) => [cell.label, cell]));
+    for (const cell of this.cells) cell.mark(cells.get(cell.place.label) ?? null);
+    this.list.replaceChildren(...items);
+    this.notes.hidden = items.length === 0;
+  }
+
+  /** The row is no longer as it was checked. */
+  outdated() {
+    this.setVerdict(null);
+    this.worth.textContent = "";
+  }
+
+  /** @param {Api.Verdict | null} verdict */
+  setVerdict(verdict) {
+    if (verdict) this.element.dataset.verdict = verdict;
+    else delete this.element.dataset.verdict;
+    this.sign.replaceChildren(
+      ...(verdict
+        ? [h("span", { "aria-hidden": "true" }, SIGNS[verdict]), h("span", { class: "aloud" }, verdict)]
+        : []),
+    );
+  }
+}

@@ -1,0 +1,154 @@
+// The kinds of answers: which grids of cells one has, and the JSON that its cells are posted as.
+// A part is described by its shape (GET /v1/exercises/{id}); the cells of all its grids are one list
+// of rows, each with the label that it has in a report.
+
+/** @type {Record<string, Api.Quantity>} */
+const QUANTITIES = { a: "length", alpha: "angle", d: "length", theta: "angle" };
+/** @type {Record<string, string>} */
+export const SPOKEN = {
+  a: "a, link length",
+  alpha: "alpha, link twist",
+  d: "d, link offset",
+  theta: "theta, joint angle",
+};
+/** @type {Record<string, string>} */
+export const LETTERS = { a: "a", alpha: "α", d: "d", theta: "θ" };
+
+/** @template Value @param {Value[]} values @param {number} size */
+const chunks = (values, size) =>
+  Array.from({ length: Math.ceil(values.length / size) }, (_, i) => values.slice(i * size, (i + 1) * size));
+
+/**
+ * The layout of a part: `grids`, each with `title`, `look`, `columns` and `rows`; `answer(texts, choice)` makes the
+ * JSON of all texts in order; `choices` are the options beside the cells, by value.
+ *
+ * @param {Pick<Api.Part, "kind" | "shape">} part
+ * @returns {Front.Layout}
+ */
+export function layoutOf(part) {
+  // Each function takes the shape of its own form.
+  const form = /** @type {(shape: Api.Part["shape"], kind: string) => Front.Layout} */ (FORMS[part.shape.form]);
+  return form(part.shape, part.kind);
+}
+
+const FORMS = {
+  /** @param {Api.DhTableShape} shape @returns {Front.Layout} */
+  dh_table(shape) {
+    const either = shape.convention === "either";
+    return {
+      grids: [{
+        title: "",
+        look: "table",
+        columns: parameters(shape),
+        rows: shape.rows.map((label) => row(label, label === "e" ? "e, end effector" : label)),
+      }],
+      choices: either
+        ? {
+          "": "Convention: not said",
+          standard: "Convention: standard (distal)",
+          modified: "Convention: modified (proximal)",
+        }
+        : null,
+      answer: (texts, choice) => ({
+        rows: chunks(texts, shape.columns.length).map((values) => named(shape.columns, values)),
+        ...(choice ? { convention: choice } : {}),
+      }),
+    };
+  },
+
+  /** @param {Api.DhRowShape} shape @returns {Front.Layout} */
+  dh_row(shape) {
+    return {
+      grids: [{ title: "", look: "table", columns: parameters(shape), rows: [row("1", "")] }],
+      choices: { "": "It has this row:", none: "It has no DH row" },
+      answer: (texts, choice) => (choice === "none" ? { none: true } : named(shape.columns, texts)),
+    };
+  },
+
+  /** @param {Api.LinkTransformsShape} shape @returns {Front.Layout} */
+  link_transforms(shape) {
+    /** @type {Front.Grid[]} */
+    const grids = shape.matrices.map((name) => ({
+      title: name,
+      look: "matrix",
+      columns: numbered(shape.columns),
+      rows: shape.rows.map((label) => row(`${name}.${label}`, `${name} row ${label}`, label)),
+    }));
+    const width = shape.columns.length;
+    return { grids, choices: null, answer: (texts) => chunks(chunks(texts, width), shape.rows.length) };
+  },
+
+  /** @param {Api.MatrixShape} shape @returns {Front.Layout} */
+  matrix(shape) {
+    const rows = shape.rows.map((label) => row(label, `row ${label}`));
+    return {
+      grids: [{ title: "", look: "matrix", columns: numbered(shape.columns), rows }],
+      choices: null,
+      answer: (texts) => chunks(texts, shape.columns.length),
+    };
+  },
+
+  /** @param {Api.ListShape} shape @param {string} kind @returns {Front.Layout} */
+  list(shape, kind) {
+    const rows = shape.components.map(({ name, quantity }, i) => ({
+      ...row(shape.rows[i], name, name),
+      quantity,
+    }));
+    const letter = kind === "euler_angles" ? "angle" : "value";
+    return {
+      grids: [{
+        title: "",
+        look: "list",
+        columns: [{ label: "1", head: letter, spoken: "", quantity: "number" }],
+        rows,
+      }],
+      choices: null,
+      answer: (texts) => texts,
+    };
+  },
+
+  /** @param {Api.ScrewAxesShape} shape @returns {Front.Layout} */
+  screw_axes(shape) {
+    const heads = ["ω₁", "ω₂", "ω₃", "v₁", "v₂", "v₃"];
+    const letter = shape.frame === "body" ? "B" : "S";
+    /** @type {Front.Column[]} */
+    const columns = shape.columns.map((label, i) => ({ label, head: heads[i], spoken: heads[i], quantity: "number" }));
+    return {
+      grids: [{
+        title: "",
+        look: "table",
+        columns,
+        rows: shape.rows.map((label) => row(label, `${letter}${label}`, `${letter}${label}`)),
+      }],
+      choices: null,
+      answer: (texts) => chunks(texts, columns.length),
+    };
+  },
+};
+
+/**
+ * The columns of a DH table; in the modified convention a and α have the index before the row's.
+ *
+ * @param {{ columns: string[], convention: string }} shape
+ * @returns {Front.Column[]}
+ */
+function parameters(shape) {
+  const before = shape.convention === "modified" ? "i−1" : "i";
+  return shape.columns.map((label) => ({
+    label,
+    head: LETTERS[label],
+    index: label === "a" || label === "alpha" ? before : "i",
+    spoken: SPOKEN[label],
+    quantity: QUANTITIES[label],
+  }));
+}
+
+/** @param {string} label @param {string} spoken @param {string} [head] @returns {Front.Row} */
+const row = (label, spoken, head = label) => ({ label, spoken, head });
+
+/** @param {string[]} labels @returns {Front.Column[]} */
+const numbered = (labels) =>
+  labels.map((label) => ({ label, head: label, spoken: `column ${label}`, quantity: "number" }));
+
+/** @param {string[]} columns @param {string[]} values */
+const named = (columns, values) => Object.fromEntries(columns.map((column, i) => [column, values[i]]));

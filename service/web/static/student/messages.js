@@ -1,0 +1,73 @@
+// The messages of a report, as items of a list.
+
+import { h, message, visible } from "../shared/dom.js";
+import { SIGNS } from "../shared/cell.js";
+
+/** @type {Record<string, string>} */
+const NAMES = { alpha: "α", theta: "θ" };
+const YOURS = "yours";
+const EXPECTED = "expected";
+
+/**
+ * Return one message with its places, what to write instead, and a counterexample, as an item of a list.
+ *
+ * @param {Omit<Api.Feedback, "code" | "severity"> & { severity: string }} feedback
+ * @param {{ place?: string, verdict?: Api.Verdict, repair?: ((suggestion: string) => HTMLElement) | null }} [options]
+ */
+export function item(feedback, { place = "", verdict = "incorrect", repair = null } = {}) {
+  const isError = feedback.severity === "error";
+  const kind = isError ? verdict : "note";
+  const badge = h(
+    "span",
+    { class: "badge", "data-verdict": kind },
+    isError ? h("span", { "aria-hidden": "true" }, SIGNS[verdict]) : feedback.severity,
+    isError ? h("span", { class: "aloud" }, verdict) : null,
+  );
+  const where = [place, feedback.places ? placesInWords(feedback.places) : ""].filter(Boolean).join(": ");
+  const text = h("p", {}, where ? h("strong", {}, visible(where), ": ") : null, ...message(feedback.message));
+  const correction = feedback.correction;
+  if (correction) {
+    text.append(
+      " ",
+      ...(correction.latex === undefined
+        ? message(correction.text)
+        : ["It should be ", h("code", {}, visible(correction.text)), "."]),
+    );
+  }
+  if (feedback.values) text.append(" ", h("span", { class: "quiet" }, visible(counterexample(feedback.values))));
+  if (feedback.suggestion && repair) text.append(" ", repair(feedback.suggestion));
+  return h("li", {}, badge, text);
+}
+
+/**
+ * Places as "row 1 d, θ; row 2".
+ *
+ * @param {Api.Place[]} places
+ */
+function placesInWords(places) {
+  const rows = new Map();
+  for (const { row, cell } of places) {
+    if (!rows.has(row)) rows.set(row, []);
+    if (cell !== undefined) rows.get(row).push(cellName(cell));
+  }
+  return [...rows].map(([row, cells]) => `row ${row}${cells.length ? ` ${cells.join(", ")}` : ""}`).join("; ");
+}
+
+/**
+ * The name of a cell by its label in a report.
+ *
+ * @param {string} label
+ */
+export function cellName(label) {
+  return NAMES[label] ?? (/^\d+$/.test(label) ? `column ${label}` : label);
+}
+
+/** @param {Record<string, string | number>} values */
+function counterexample(values) {
+  const given = Object.entries(values).filter(([name]) => name !== YOURS && name !== EXPECTED);
+  const told = [];
+  if (given.length) told.push(`with ${given.map(([name, value]) => `${name} = ${value}`).join(", ")}`);
+  if (YOURS in values) told.push(`yours gives ${values[YOURS]}`);
+  if (EXPECTED in values) told.push(`not ${values[EXPECTED]}`);
+  return `(${told.join(", ")})`;
+}

@@ -1,0 +1,91 @@
+// What the student types, shown as it is understood: asked for in batches, one request at a time.
+
+const BATCH = 100;
+const REMEMBERED = 1000;
+// Where the service cannot be reached, the next try waits so many milliseconds.
+const RETRY = 3000;
+
+export class Previewer {
+  /** @type {Map<Front.PartCell, string>} */
+  #waiting = new Map();
+  /** @type {Map<string, Api.Preview>} */
+  #known = new Map();
+  #busy = false;
+  #timer = 0;
+
+  /**
+   * `context` gives exercise and angle unit; `failed` hears of each failure, and of its end.
+   *
+   * @param {Pick<Front.PreviewService, "previews">} service
+   * @param {() => Front.Context} context
+   * @param {(error: Error | null) => void} failed
+   */
+  constructor(service, context, failed) {
+    this.service = service;
+    this.context = context;
+    this.failed = failed;
+  }
+
+  /**
+   * Ask how a cell's text is read; its `understood` gets the answer unless it has changed since.
+   *
+   * @param {Front.PartCell} cell
+   */
+  ask(cell) {
+    const text = cell.text;
+    const known = this.#known.get(this.#key(cell, text));
+    this.#waiting.delete(cell);
+    if (text.trim() === "") return cell.understood(null);
+    if (known) return cell.understood(known);
+    this.#waiting.set(cell, text);
+    clearTimeout(this.#timer);
+    // What changes at once is sent together: a pasted table. Not by a timer, which fires only when the
+    // browser has drawn what was typed; while an answer is on its way, the next ones wait for it.
+    queueMicrotask(() => this.#send());
+  }
+
+  /** Whether an answer is still to come. */
+  get busy() {
+    return this.#busy || this.#waiting.size > 0;
+  }
+
+  /** @param {Front.PartCell} cell @param {string} text */
+  #key(cell, text) {
+    return `${cell.place.part}\n${cell.place.quantity}\n${this.context().angle_unit}\n${text}`;
+  }
+
+  async #send() {
+    if (this.#busy || this.#waiting.size === 0) return;
+    const [{ place: { part } }] = this.#waiting.keys();
+    const batch = [...this.#waiting].filter(([cell]) => cell.place.part === part).slice(0, BATCH);
+    for (const [cell] of batch) this.#waiting.delete(cell);
+    const context = this.context();
+    const entries = batch.map(([cell, text]) => ({ text, quantity: cell.place.quantity }));
+    this.#busy = true;
+    let pause = 0;
+    try {
+      const { results } = await this.service.previews({ ...context, part, entries });
+      this.failed(null);
+      batch.forEach(([cell, text], i) => this.#show(cell, text, results[i], context));
+    } catch (error) {
+      this.failed(error);
+      if (error.kind !== "refused") {
+        for (const [cell, text] of batch) {
+          if (cell.text === text && !this.#waiting.has(cell)) this.#waiting.set(cell, text);
+        }
+        pause = RETRY;
+      }
+    }
+    this.#busy = false;
+    if (this.#waiting.size) this.#timer = setTimeout(() => this.#send(), pause);
+  }
+
+  /** @param {Front.PartCell} cell @param {string} text @param {Api.Preview} result @param {Front.Context} context */
+  #show(cell, text, result, context) {
+    if (context.angle_unit !== this.context().angle_unit) return;
+    const [oldest] = this.#known.keys();
+    if (this.#known.size >= REMEMBERED) this.#known.delete(oldest);
+    this.#known.set(this.#key(cell, text), result);
+    if (cell.text === text) cell.understood(result);
+  }
+}

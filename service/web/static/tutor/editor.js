@@ -1,0 +1,148 @@
+// The editor of exercise files: the checks of the command line as the author types.
+
+import { byId, h, message, visible } from "../shared/dom.js";
+import { html } from "../shared/markup.js";
+import { post, refusal } from "./tutor_service.js";
+
+// After so many milliseconds without a key the text is checked.
+const PAUSE = 300;
+/** @type {Record<string, string>} */
+const LEVELS = { unusable: "cannot be used", failed: "failed", warning: "warning" };
+
+const area = byId("text", HTMLTextAreaElement);
+const name = byId("id", HTMLInputElement);
+const numbers = byId("numbers", HTMLElement);
+const saved = byId("saved", HTMLElement);
+const found = byId("findings", HTMLElement);
+const shown = byId("preview", HTMLElement);
+
+/** @typedef {{ level: string, field?: string, text: string, line?: number }} Finding */
+/** @typedef {{ title: string, source: string, statement_html: string, parts: string[], figure?: string }} Preview */
+/** @typedef {{ findings: Finding[], summary: string, preview?: Preview }} Checked */
+
+let mark = byId("main", HTMLElement).dataset.mark;
+let kept = area.value;
+let timer = 0;
+let busy = false;
+let picture = "";
+
+const body = () => ({ id: name.value.trim(), text: area.value });
+
+function edited() {
+  const lines = area.value.split("\n").length;
+  if (numbers.childElementCount !== lines) {
+    numbers.replaceChildren(...Array.from({ length: lines }, (_, i) => h("span", {}, String(i + 1))));
+  }
+  clearTimeout(timer);
+  timer = setTimeout(check, PAUSE);
+}
+
+/** Ask for the findings; one request at a time, and the last text is never left out. */
+async function check() {
+  if (busy) return;
+  busy = true;
+  const asked = body();
+  try {
+    show(await (await post("../tutor/check", JSON.stringify(asked))).json());
+  } catch (error) {
+    found.replaceChildren(h("h2", {}, "Findings"), h("p", { class: "level-unusable" }, refusal(error)));
+  }
+  busy = false;
+  const now = body();
+  if (now.text !== asked.text || now.id !== asked.id) timer = setTimeout(check, PAUSE);
+}
+
+/** @param {Checked} checked */
+function show({ findings, summary, preview }) {
+  const marked = new Set(findings.map(({ line }) => line).filter(Boolean));
+  [...numbers.children].forEach((each, i) => each.classList.toggle("marked", marked.has(i + 1)));
+  const verdict = findings.some(({ level }) => level !== "warning") ? "incorrect" : "correct";
+  const told = { incorrect: "✗ ", correct: "✓ " }[verdict];
+  found.replaceChildren(
+    h("h2", {}, "Findings"),
+    h("p", { class: `verdict ${verdict}` }, h("span", { "aria-hidden": "true" }, told), visible(summary)),
+    findings.length ? h("ul", {}, ...findings.map(item)) : h("p", { class: "quiet" }, "Nothing to mend."),
+  );
+  if (preview) showPreview(preview);
+  else shown.classList.add("outdated");
+}
+
+/** @param {Finding} finding */
+function item({ level, field, text, line }) {
+  const place = line ? h("button", { type: "button", class: "line", onclick: () => go(line) }, `line ${line}`) : null;
+  return h(
+    "li",
+    {},
+    h("span", { class: `level level-${level}` }, LEVELS[level] ?? level),
+    place,
+    field ? h("code", {}, visible(field)) : null,
+    h("p", {}, ...message(text)),
+  );
+}
+
+/**
+ * Select a line of the text.
+ *
+ * @param {number} line
+ */
+function go(line) {
+  const lines = area.value.split("\n");
+  const from = lines.slice(0, line - 1).reduce((length, each) => length + each.length + 1, 0);
+  area.focus();
+  area.setSelectionRange(from, from + lines[line - 1].length);
+  area.scrollTop = (line - 4) * parseFloat(getComputedStyle(area).lineHeight);
+}
+
+/** @param {Preview} preview */
+function showPreview({ title, source, statement_html: statement, parts, figure }) {
+  URL.revokeObjectURL(picture);
+  picture = figure ? URL.createObjectURL(new Blob([figure], { type: "image/svg+xml" })) : "";
+  shown.classList.remove("outdated");
+  shown.replaceChildren(
+    h("h2", {}, "What students see"),
+    h("h3", {}, visible(title)),
+    h("p", { class: "quiet" }, visible(source)),
+    picture ? h("figure", {}, h("img", { src: picture, alt: `Drawing of the robot: ${visible(title)}` })) : "",
+    h("div", { class: "statement" }, ...html(statement)),
+    h("ol", {}, ...parts.map((part) => h("li", {}, visible(part)))),
+  );
+}
+
+function download() {
+  const address = URL.createObjectURL(new Blob([area.value], { type: "application/toml" }));
+  h("a", { href: address, download: `${name.value.trim() || "exercise"}.toml` }).click();
+  setTimeout(() => URL.revokeObjectURL(address), 1000);
+  kept = area.value;
+  saved.textContent = "Downloaded";
+}
+
+async function save() {
+  const asked = body();
+  try {
+    const answer = await post("../tutor/files", JSON.stringify({ ...asked, before: mark }));
+    ({ mark } = await answer.json());
+    kept = asked.text;
+    saved.textContent = `${asked.id}.toml is written`;
+  } catch (error) {
+    saved.textContent = refusal(error);
+  }
+}
+
+area.addEventListener("input", () => {
+  saved.textContent = "";
+  edited();
+});
+area.addEventListener("scroll", () => (numbers.scrollTop = area.scrollTop));
+// Tab leaves the text, as everywhere; TOML needs none.
+name.addEventListener("input", () => {
+  // Another name is another file.
+  mark = "";
+  edited();
+});
+byId("download", HTMLButtonElement).addEventListener("click", download);
+document.getElementById("save")?.addEventListener("click", save);
+name.form?.addEventListener("submit", (event) => event.preventDefault());
+addEventListener("beforeunload", (event) => {
+  if (area.value !== kept) event.preventDefault();
+});
+edited();

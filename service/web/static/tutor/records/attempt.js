@@ -1,0 +1,250 @@
+// One recorded attempt: what was handed in, its report and those before it, and the points of a tutor.
+
+import { byId, h, number, points, visible } from "../../shared/dom.js";
+import { RecordedReport } from "./recorded_report.js";
+import { earned, failed, learnerName, moment, percent, tell } from "./records.js";
+import { address, get, send } from "../tutor_service.js";
+
+const id = byId("main", HTMLElement).dataset.attempt ?? "";
+const path = `v1/attempts/${encodeURIComponent(id)}`;
+const state = byId("state", HTMLElement);
+const place = byId("attempt", HTMLElement);
+// So many attempts of a learner are listed, the newest.
+const MOST_LISTED = "20";
+
+async function load() {
+  try {
+    /** @type {Api.AttemptDetail} */
+    const found = await get(path);
+    const { exercise: name, learner } = found.attempt;
+    /** @type {Api.Exercise | null} */
+    const exercise = await get(`v1/exercises/${encodeURIComponent(name)}`).catch(() => null);
+    // Also, a browser that shows a key here shows it from then on to all that is beside /v1/attempts.
+    const { attempts } = await get(
+      `v1/attempts?${new URLSearchParams({ exercise: name, learner, limit: MOST_LISTED })}`,
+    );
+    show(found, exercise, attempts);
+    tell(state, "");
+  } catch (error) {
+    place.replaceChildren();
+    failed(error, state);
+  }
+}
+
+/** @param {Api.AttemptDetail} found @param {Api.Exercise | null} exercise @param {Api.AttemptSummary[]} attempts */
+function show(found, exercise, attempts) {
+  const { attempt } = found;
+  const title = visible(exercise?.title ?? attempt.exercise);
+  byId("title", HTMLElement).textContent = title;
+  document.title = `${title} · DH Grader`;
+  const drawn = new RecordedReport(exercise, found.submission);
+  drawn.show(found.report);
+  const about = h("section", { class: "card facts", "aria-label": "Facts" });
+  const given = new PointsGiven(attempt, (changed) => update(changed));
+  /** @type {(now: Api.AttemptDetail) => void} */
+  const update = (now) => {
+    about.replaceChildren(facts(now, exercise, attempts));
+    given.show(now);
+  };
+  update(found);
+  place.replaceChildren(about, h("div", { class: "handed-in" }, reports(found, drawn), drawn.element), given.element);
+}
+
+/**
+ * The choice between the report that counts and those that a regrade has replaced.
+ *
+ * @param {Api.AttemptDetail} found
+ * @param {RecordedReport} drawn
+ */
+function reports({ report, earlier_reports: earlier }, drawn) {
+  if (!earlier.length) return null;
+  const all = [
+    { report, text: `Newest report: ${points(report.points, report.max_points)}` },
+    ...earlier.toReversed().map((each) => ({
+      report: each.report,
+      text: `Until ${moment(each.replaced_at).textContent}: ${
+        points(each.report.points, each.max_points)
+      }, version ${each.version}`,
+    })),
+  ];
+  const options = all.map(({ text }, i) => h("option", { value: i }, visible(text)));
+  /** @type {HTMLSelectElement} */
+  const choice = h(
+    "select",
+    { id: "which-report", onchange: () => drawn.show(all[choice.selectedIndex].report) },
+    ...options,
+  );
+  return h("p", { class: "field" }, h("label", { for: "which-report" }, "Report"), choice);
+}
+
+/** @param {Api.AttemptDetail} found @param {Api.Exercise | null} exercise @param {Api.AttemptSummary[]} attempts */
+function facts({ attempt, submission, report }, exercise, attempts) {
+  const { learner, ordinal, at, is_late: late, version, grader } = attempt;
+  /** @type {(query: Record<string, string>, ...text: Front.Child[]) => HTMLElement} */
+  const list = (query, ...text) => h("a", { href: address(`tutor/attempts?${new URLSearchParams(query)}`) }, ...text);
+  const isOld = exercise && exercise.version !== version;
+  /** @type {([string, Front.Child] | false)[]} */
+  const pairs = [
+    ["Learner", list({ learner }, learnerName(learner))],
+    ["Exercise", list({ exercise: attempt.exercise }, h("code", {}, attempt.exercise))],
+    ["Handed in", h("span", {}, moment(at), late ? ", late" : "")],
+    [
+      "Attempt",
+      ordinal === undefined
+        ? `does not count: ${isEmpty(submission.answers) ? "it is empty" : "nothing could be read"}`
+        : `no. ${ordinal}`,
+    ],
+    attempts.length > 1 &&
+    ["All attempts", h("ul", { class: "all-attempts" }, ...attempts.toReversed().map(ofLearner))],
+    ["Points", h("strong", {}, earned(attempt))],
+    attempt.awarded !== undefined && ["instead of", points(attempt.points, attempt.max_points)],
+    late && report.points > 0 &&
+    ["by its report", `${points(report.points, report.max_points)}, ${lateShare(attempt.points / report.points)}`],
+    ["Plain angles in", String(submission.angle_unit ?? "radians")],
+    ["Graded by", h("span", {}, `exercise ${version}${isOld ? " (not the one of today)" : ""}, program ${grader}`)],
+  ];
+  const shown = pairs.filter((pair) => pair !== false);
+  return h("dl", {}, ...shown.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
+}
+
+/**
+ * How much of its report's points a late attempt earns.
+ *
+ * @param {number} share
+ */
+function lateShare(share) {
+  if (share > 0.999) return "all of it although late";
+  return `${Math.abs(share - 0.5) < 0.001 ? "half" : percent(share)} of it for being late`;
+}
+
+/**
+ * Whether an answer, or what an answer is made of, holds no letter at all.
+ *
+ * @param {unknown} answer
+ * @returns {boolean}
+ */
+function isEmpty(answer) {
+  if (answer && typeof answer === "object") return Object.values(answer).every(isEmpty);
+  return String(answer ?? "").trim() === "";
+}
+
+/**
+ * One of the learner's attempts at the exercise: a link, but for the one that is shown.
+ *
+ * @param {Api.AttemptSummary} attempt
+ */
+function ofLearner({ id: other, ordinal }) {
+  const name = ordinal === undefined ? "–" : String(ordinal);
+  const spoken = ordinal === undefined ? "one that does not count" : `no. ${ordinal}`;
+  if (other === id) return h("li", {}, h("strong", { "aria-current": "true", "aria-label": `${spoken}, shown` }, name));
+  return h(
+    "li",
+    {},
+    h(
+      "a",
+      { href: address(`tutor/attempts/${encodeURIComponent(other)}${location.search}`), "aria-label": spoken },
+      name,
+    ),
+  );
+}
+
+/** The form for other points than the report's, and those that were given. */
+class PointsGiven {
+  /**
+   * `changed` gets the attempt anew after each change.
+   *
+   * @param {Api.AttemptSummary} attempt
+   * @param {(attempt: Api.AttemptDetail) => void} changed
+   */
+  constructor({ max_points: most }, changed) {
+    this.changed = changed;
+    this.points = h("input", {
+      id: "points",
+      type: "number",
+      min: 0,
+      max: most,
+      step: "any",
+      required: true,
+      inputmode: "decimal",
+    });
+    this.reason = h("input", { id: "reason", type: "text", maxlength: 1000, required: true, autocomplete: "off" });
+    this.author = h("input", { id: "author", type: "text", maxlength: 150, autocomplete: "name" });
+    this.withdrawal = h("button", { type: "submit", value: "withdraw" }, "Withdraw them");
+    this.told = h("p", { class: "state-line", role: "status" });
+    this.list = h("ul", { class: "given" });
+    this.element = h(
+      "section",
+      { class: "card override", "aria-labelledby": "override-title" },
+      h("h2", { id: "override-title" }, "Other points"),
+      h(
+        "form",
+        { onsubmit: (event) => this.#give(event) },
+        field("Points", this.points, `of ${number(most)}`),
+        field("Reason", this.reason, "kept, and not shown to the learner"),
+        field("Your name", this.author, "if others give points, too"),
+        h("p", { class: "choices" }, h("button", { type: "submit" }, "Give these points"), this.withdrawal),
+      ),
+      this.told,
+      this.list,
+    );
+  }
+
+  /** @param {Api.AttemptDetail} found */
+  show({ attempt, overrides }) {
+    // Those of the report would stand here rounded.
+    this.points.value = String(attempt.awarded ?? "");
+    this.withdrawal.hidden = attempt.awarded === undefined;
+    this.list.replaceChildren(...overrides.toReversed().map(override));
+    this.list.hidden = !overrides.length;
+  }
+
+  /** @param {SubmitEvent} event */
+  async #give(event) {
+    event.preventDefault();
+    const isWithdrawal = event.submitter === this.withdrawal;
+    /** @type {Api.OverrideRequest} */
+    const body = { reason: this.reason.value };
+    if (!isWithdrawal) body.points = this.points.valueAsNumber;
+    if (this.author.value.trim()) body.author = this.author.value;
+    try {
+      const { awarded } = await send(`${path}/override`, body);
+      this.changed(await get(path));
+      this.reason.value = "";
+      tell(
+        this.told,
+        isWithdrawal ? "Withdrawn: the report's points count." : `The attempt has ${number(awarded)} points.`,
+      );
+    } catch (error) {
+      failed(error, this.told);
+    }
+  }
+}
+
+/** @param {string} label @param {HTMLInputElement} input @param {string} hint */
+function field(label, input, hint) {
+  const described = `${input.id}-hint`;
+  input.setAttribute("aria-describedby", described);
+  return h(
+    "p",
+    { class: "field" },
+    h("label", { for: input.id }, label),
+    input,
+    h("span", { class: "quiet", id: described }, hint),
+  );
+}
+
+/** @param {Api.AttemptOverride} given */
+function override({ points: given, reason, author, at }) {
+  return h(
+    "li",
+    {},
+    h("strong", {}, given === undefined ? "Withdrawn" : `${number(given)} points`),
+    ": ",
+    h("bdi", {}, visible(reason)),
+    h("span", { class: "quiet" }, " ", h("bdi", {}, visible(author)), ", ", moment(at)),
+  );
+}
+
+// The list as it was left: its filters and its page.
+byId("back-to-list", HTMLAnchorElement).search = location.search;
+load();

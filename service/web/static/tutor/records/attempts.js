@@ -1,0 +1,225 @@
+// The list of recorded attempts: filters, pages, and all of a learner deleted.
+
+import { byId, h } from "../../shared/dom.js";
+import {
+  count,
+  earned,
+  failed,
+  fieldOf,
+  learnerName,
+  moment,
+  nothing,
+  query,
+  showExports,
+  span,
+  table,
+  tell,
+} from "./records.js";
+import { address, get, send } from "../tutor_service.js";
+
+const FIELDS = ["exercise", "learner", "since", "until", "counted"];
+const form = byId("filters", HTMLFormElement);
+const state = byId("state", HTMLElement);
+const list = byId("list", HTMLElement);
+
+// The cursors of the pages up to the one that is shown; the first page has none. They stand in the address.
+let cursors = [""];
+let turn = 0;
+
+/** @param {string} text */
+const oneLine = (text) => text.trim().replace(/\s+/g, " ");
+const filter = () => ({ exercise: fieldOf("exercise").value, learner: oneLine(fieldOf("learner").value), ...span() });
+
+async function show() {
+  const mine = ++turn;
+  const wanted = { ...filter(), counted: fieldOf("counted").value };
+  showExports(filter());
+  list.setAttribute("aria-busy", "true");
+  try {
+    const page = await get(`v1/attempts${query({ ...wanted, cursor: cursors.at(-1) })}`);
+    if (mine === turn) draw(page, wanted);
+  } catch (error) {
+    if (mine !== turn) return;
+    list.replaceChildren();
+    failed(error, state);
+  }
+  list.removeAttribute("aria-busy");
+}
+
+/** @param {Api.AttemptList} page @param {Front.Filter} wanted */
+function draw({ attempts, next }, wanted) {
+  if (!attempts.length) {
+    tell(state, "");
+    const isNarrowed = Object.values(wanted).some(Boolean);
+    list.replaceChildren(
+      isNarrowed ? nothing("No attempt is like this", "Take a filter away.") : nothing(
+        "Nobody has handed in yet",
+        "Attempts appear here when a course records them: POST /v1/exercises/{id}/attempts.",
+      ),
+    );
+    return;
+  }
+  const page = cursors.length;
+  const more = next || page > 1 ? `Page ${page}: ` : "";
+  tell(state, `${more}${count(attempts.length, "attempt")}${next ? ", and there are older ones" : ""}.`);
+  list.replaceChildren(
+    wanted.exercise
+      ? h(
+        "p",
+        { class: "ways-on" },
+        h(
+          "a",
+          { href: address(`tutor/statistics/${encodeURIComponent(wanted.exercise)}`) },
+          "Statistics and regrade of this exercise",
+        ),
+      )
+      : "",
+    table("Attempts", ["When", "Learner", "Points", "No.", "Exercise", "Remarks"], attempts.map(row)),
+    pages(next),
+  );
+}
+
+/** @param {Api.AttemptSummary} attempt */
+function row(attempt) {
+  const { id, exercise, learner, ordinal, at, is_late: late, awarded } = attempt;
+  const remarks = [
+    ordinal === undefined && "nothing readable",
+    late && "late",
+    awarded !== undefined && "points by a tutor",
+  ];
+  // The attempt's page leads back to the list as it is now.
+  const open = h(
+    "a",
+    { href: address(`tutor/attempts/${encodeURIComponent(id)}`) + location.search },
+    moment(at),
+    h("span", { class: "aloud" }, " by ", learnerName(learner)),
+  );
+  return [
+    open,
+    learnerName(learner),
+    earned(attempt),
+    String(ordinal ?? "–"),
+    h("code", {}, exercise),
+    remarks.filter(Boolean).join(", "),
+  ];
+}
+
+/** @param {string | undefined} next */
+function pages(next) {
+  if (!next && cursors.length === 1) return "";
+  /** @type {(changed: string[]) => () => Promise<void>} */
+  const turnTo = (changed) => async () => {
+    cursors = changed;
+    keepAddress();
+    await show();
+    const wide = list.querySelector(".wide");
+    if (wide instanceof HTMLElement) wide.focus();
+  };
+  return h(
+    "nav",
+    { class: "pages", "aria-label": "Pages of the list" },
+    cursors.length > 1
+      ? h("button", { type: "button", onclick: turnTo(cursors.slice(0, -1)) }, "Newer attempts")
+      : null,
+    next ? h("button", { type: "button", onclick: turnTo([...cursors, next]) }, "Older attempts") : null,
+  );
+}
+
+/**
+ * The filters have changed: the first page.
+ *
+ * @param {Event} [event]
+ */
+function changed(event) {
+  event?.preventDefault();
+  cursors = [""];
+  keepAddress();
+  return show();
+}
+
+/** Put filters and page into the address, which can be kept, and which the browser comes back to. */
+function keepAddress() {
+  const pairs = [...FIELDS.map((name) => [name, fieldOf(name).value]), ...cursors.map((cursor) => ["cursor", cursor])];
+  const given = new URLSearchParams(pairs.filter(([, value]) => value));
+  history.replaceState(null, "", location.pathname + (given.size ? `?${given}` : ""));
+}
+
+// All of a learner deleted.
+
+// Not there for a key that is restricted to some exercises.
+const forgetForm = document.getElementById("forget");
+const forgetState = () => byId("forget-state", HTMLElement);
+
+/** @param {Event} event */
+async function lookUp(event) {
+  event.preventDefault();
+  const learner = oneLine(fieldOf("forgotten").value);
+  try {
+    /** @type {Api.ForgottenData} */
+    const found = await send("v1/learners/forget", { learner });
+    if (!found.attempts) return tell(forgetState(), `Nothing is recorded of ${learner}.`);
+    tell(forgetState(), "");
+    return confirm(found);
+  } catch (error) {
+    return failed(error, forgetState());
+  }
+}
+
+/** @param {Api.ForgottenData} found */
+const amounts = ({ attempts, earlier_reports: earlier, overrides }) =>
+  [
+    count(attempts, "attempt"),
+    earlier && count(earlier, "earlier report"),
+    overrides && `points given ${overrides === 1 ? "once" : `${overrides} times`}`,
+  ]
+    .filter(Boolean)
+    .join(", ");
+
+/** @param {Api.ForgottenData} found */
+function confirm(found) {
+  const close = () => dialog.close();
+  /** @type {HTMLDialogElement} */
+  const dialog = h(
+    "dialog",
+    { "aria-labelledby": "forget-title", onclose: () => dialog.remove() },
+    h("h2", { id: "forget-title" }, "Forget ", learnerName(found.learner), "?"),
+    h("p", {}, `This deletes ${amounts(found)}, for ever. Backups are not touched.`),
+    h(
+      "p",
+      { class: "choices" },
+      h(
+        "button",
+        { type: "button", class: "danger", onclick: () => forget(found.learner).then(close) },
+        "Delete all of ",
+        learnerName(found.learner),
+      ),
+      h("button", { type: "button", autofocus: true, onclick: close }, "Keep it"),
+    ),
+  );
+  document.body.append(dialog);
+  dialog.showModal();
+}
+
+/** @param {string} learner */
+async function forget(learner) {
+  try {
+    /** @type {Api.ForgottenData} */
+    const deleted = await send("v1/learners/forget", { learner, apply: true });
+    const later = deleted.erased === false
+      ? " Another program is reading the database: the text is overwritten in its files when that has ended."
+      : "";
+    tell(forgetState(), `Deleted of ${learner}: ${amounts(deleted)}.${later}`);
+    fieldOf("forgotten").value = "";
+    await changed();
+  } catch (error) {
+    failed(error, forgetState());
+  }
+}
+
+const asked = new URLSearchParams(location.search);
+for (const name of FIELDS) if (asked.has(name)) fieldOf(name).value = asked.get(name) ?? "";
+cursors.push(...asked.getAll("cursor"));
+form.addEventListener("submit", changed);
+form.addEventListener("change", changed);
+forgetForm?.addEventListener("submit", lookUp);
+show();

@@ -1,0 +1,176 @@
+// A recorded submission with its report, drawn as the student saw it; nothing in it can be changed.
+
+import { h, points, visible } from "../../shared/dom.js";
+import { cellsOf } from "./answer_cells.js";
+import { item } from "../../student/messages.js";
+import { PartView } from "../../student/part_view.js";
+import { Previewer } from "../../student/previewer.js";
+import { send } from "../tutor_service.js";
+
+const SHEETS = ["../../shared/tokens.css", "../../student/element.css", "./recorded.css"].map((name) =>
+  new URL(name, import.meta.url).href
+);
+
+/** A part whose cells are read and not written. */
+class RecordedPart extends PartView {
+  // Whether its answer fits into its cells, as soon as that is known.
+  /** @type {Promise<boolean> | undefined} */
+  filled;
+
+  /** @param {Api.Part} part @param {Front.PartHost} host */
+  constructor(part, host) {
+    super(part, host, "h2");
+    this.reading.remove();
+    if (this.choice) this.choice.disabled = true;
+    for (const cell of this.cells) {
+      cell.input.readOnly = true;
+      cell.repair = (suggestion) => h("span", { class: "quiet" }, "→ ", h("bdi", {}, visible(suggestion)));
+    }
+  }
+
+  /** @override */
+  pasted() {
+    return Promise.resolve();
+  }
+
+  /** @override */
+  beforeInput() {}
+
+  /** @override */
+  repaired() {}
+}
+
+/** @typedef {{ answers?: Record<string, unknown>, angle_unit?: Api.AngleUnit }} Submission */
+
+/** The submission, and one report on it at a time. */
+export class RecordedReport {
+  /**
+   * `exercise` is what students see of it, or null where it is gone; `submission` what was sent.
+   *
+   * @param {Api.Exercise | null} exercise
+   * @param {Submission} submission
+   */
+  constructor(exercise, submission) {
+    this.exercise = exercise;
+    this.submission = submission;
+    /** @type {Front.PreviewService} */
+    const service = { previews: (body) => send("v1/previews", body), preview: (body) => send("v1/preview", body) };
+    /** @type {() => Front.Context} */
+    const context = () => ({ exercise: exercise?.id ?? "", angle_unit: submission.angle_unit ?? "radians" });
+    // What a part asks of its exercise.
+    /** @type {Front.PartHost} */
+    this.host = {
+      service,
+      context,
+      previewer: new Previewer(service, context, () => {}),
+      history: { note() {}, undo: () => null, redo: () => null },
+      announce() {},
+      edited() {},
+      check() {},
+      failed() {},
+    };
+    this.parts = new Map((exercise?.parts ?? []).map((part) => [part.id, new RecordedPart(part, this.host)]));
+    this.body = h("div", { class: "parts" });
+    this.element = h("div", { class: "recorded" });
+    this.element.attachShadow({ mode: "open" }).append(
+      ...SHEETS.map((href) => h("link", { rel: "stylesheet", href })),
+      this.body,
+    );
+  }
+
+  /**
+   * Draw a report: parts that the exercise has no more are told without their cells.
+   *
+   * @param {Api.Report} report
+   */
+  show(report) {
+    this.body.replaceChildren(...report.parts.map((part) => this.#part(part)));
+  }
+
+  /** @param {Api.PartReport} report */
+  #part(report) {
+    const view = this.parts.get(report.part);
+    const answer = this.submission.answers?.[report.part];
+    const element = view?.element ?? bare(report);
+    if (view) {
+      // What fills the cells takes their marks away.
+      view.filled ??= this.#fill(view, answer);
+      view.filled.then((isFilled) => {
+        view.showReport(report);
+        element.classList.toggle("without-cells", !isFilled && !report.rows.length);
+      });
+    }
+    const isLeftOut = answer === undefined || answer === null;
+    element.classList.toggle("left-out", isLeftOut);
+    if (!isLeftOut && !element.querySelector(".as-sent")) element.append(asSent(answer));
+    return element;
+  }
+
+  /**
+   * Put the answer into its cells; whether it fits.
+   *
+   * @param {RecordedPart} view
+   * @param {unknown} answer
+   */
+  async #fill(view, answer) {
+    const read = typeof answer === "string" ? await this.#entries(view.part.id, answer) : answer;
+    const state = cellsOf(view.layout, read);
+    if (state) view.restore(state);
+    // The letters stand below in any case.
+    else view.element.querySelector(".as-sent")?.toggleAttribute("open", true);
+    return state !== null;
+  }
+
+  /**
+   * The entries of a table or matrix that was sent as one text, as the service reads it.
+   *
+   * @param {string} part
+   * @param {string} text
+   */
+  async #entries(part, text) {
+    try {
+      const { rows } = await this.host.service.preview({ ...this.host.context(), part, text });
+      return rows?.map((row) => row.map(({ entry }) => entry)) ?? "";
+    } catch {
+      return "";
+    }
+  }
+}
+
+/**
+ * The report on a part that the exercise does not have any more.
+ *
+ * @param {Api.PartReport} report
+ */
+function bare({ part, verdict, points: earned, max_points: most, feedback, rows }) {
+  const messages = [
+    ...feedback,
+    ...rows.flatMap((row) => [...row.feedback, ...row.cells.flatMap((cell) => cell.feedback)]),
+  ];
+  return h(
+    "section",
+    { class: "card part" },
+    h(
+      "header",
+      {},
+      h("h2", {}, visible(part)),
+      h("span", { class: "badge", "data-verdict": verdict }, verdict),
+      h("span", { class: "points" }, `${points(earned, most)} points`),
+    ),
+    h("p", { class: "quiet" }, "The exercise does not have this part any more."),
+    h("ul", { class: "messages", hidden: !messages.length }, ...messages.map((each) => item(each, { verdict }))),
+  );
+}
+
+/** @param {unknown} answer */
+function asSent(answer) {
+  const text = typeof answer === "string" ? answer : JSON.stringify(answer, null, 1);
+  // Its lines stay lines, and nothing in them is unseen.
+  const lines = text.split("\n").map(visible).join("\n");
+  return h(
+    "details",
+    { class: "as-sent" },
+    h("summary", {}, "As it was sent"),
+    h("pre", { tabindex: 0 }, h("code", {}, lines)),
+  );
+}

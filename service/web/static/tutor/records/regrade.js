@@ -1,0 +1,125 @@
+// The regrade of an exercise: first who would change and why, then the same for good.
+
+import { h, message, number, points } from "../../shared/dom.js";
+import { count, failed, learnerName, table, tell } from "./records.js";
+import { address, pause, sendPatiently } from "../tutor_service.js";
+
+// So many changes are shown one by one.
+const MOST_SHOWN = 200;
+// While others are at the last attempts, this asks again after so many seconds.
+const OTHERS = 1;
+
+/**
+ * The form; `done` is called when reports have been written.
+ *
+ * @param {string} exercise
+ * @param {() => void} done
+ */
+export function regradeForm(exercise, done) {
+  const state = h("p", { class: "state-line", role: "status" });
+  const bar = h("progress", { max: 1, value: 0, hidden: true, "aria-label": "Attempts graded anew" });
+  const changes = h("div", {});
+  const look = h("button", { type: "button", onclick: () => run(false) }, "Look what would change");
+  const write = h("button", { type: "button", hidden: true, onclick: () => run(true) }, "Write the new reports");
+  const stop = h("button", { type: "button", hidden: true, onclick: () => (isStopped = true) }, "Stop");
+  let isStopped = false;
+
+  /** @param {boolean} apply */
+  async function run(apply) {
+    isStopped = false;
+    look.disabled = write.disabled = true;
+    stop.hidden = bar.hidden = false;
+    bar.removeAttribute("value");
+    tell(state, apply ? "Writing …" : "Grading …");
+    const focused = document.activeElement instanceof HTMLElement ? document.activeElement : look;
+    try {
+      const { graded, changed, left } = await allSteps(apply);
+      told(apply, graded, changed, left);
+      write.hidden = apply ? !left : !graded;
+      if (apply) done();
+    } catch (error) {
+      failed(error, state);
+    }
+    look.disabled = write.disabled = false;
+    stop.hidden = bar.hidden = true;
+    if (document.activeElement === document.body) (focused.hidden ? look : focused).focus();
+  }
+
+  /**
+   * Step by step until nothing is left; the service does about a second of work in each.
+   *
+   * @param {boolean} apply
+   */
+  async function allSteps(apply) {
+    const changed = [];
+    let graded = 0;
+    let cursor;
+    for (;;) {
+      const step = await sendPatiently(`v1/exercises/${encodeURIComponent(exercise)}/regrade`, {
+        apply,
+        ...(cursor ? { cursor } : {}),
+      });
+      graded += step.regraded;
+      changed.push(...step.changes);
+      bar.value = graded / Math.max(graded + step.left, 1);
+      cursor = step.next;
+      if (!cursor || isStopped) return { graded, changed, left: cursor ? step.left : 0 };
+      if (!step.regraded) await pause(OTHERS);
+    }
+  }
+
+  /** @param {boolean} apply @param {number} graded @param {Api.AttemptChange[]} changed @param {number} left */
+  function told(apply, graded, changed, left) {
+    const kept = changed.filter(({ awarded }) => awarded !== undefined).length;
+    const ofWhich = kept ? `, of which ${kept} would keep the points of a tutor` : "";
+    const stopped = left ? ` Stopped: ${count(left, "attempt")} left.` : "";
+    if (apply) tell(state, `Regraded: ${count(graded, "attempt")}. The reports before are kept.${stopped}`);
+    else if (!graded) tell(state, "All attempts were graded by this version of the exercise and of the program.");
+    else {tell(
+        state,
+        `${
+          count(graded, "attempt")
+        } by another version; ${changed.length} would change${ofWhich}. Nothing is written yet.${stopped}`,
+      );}
+    changes.replaceChildren(...(changed.length ? [list(changed)] : []));
+  }
+
+  /** @param {Api.AttemptChange[]} changed */
+  function list(changed) {
+    const rows = changed.slice(0, MOST_SHOWN).map((
+      { id, learner, ordinal, before, after, max_points: most, awarded, reasons },
+    ) => [
+      h(
+        "a",
+        { href: address(`tutor/attempts/${encodeURIComponent(id)}`) },
+        learnerName(learner),
+        h("span", { class: "aloud" }, `, attempt ${ordinal ?? "that does not count"}`),
+      ),
+      String(ordinal ?? "–"),
+      `${points(before, most).split(" / ")[0]} → ${points(after, most)}`,
+      h(
+        "span",
+        {},
+        ...message(reasons.join("; ") || "what a late attempt earns"),
+        awarded === undefined ? "" : `; a tutor's ${number(awarded)} stays`,
+      ),
+    ]);
+    const more = changed.length - rows.length;
+    const all = table("Changes", ["Learner", "No.", "Points", "Why"], rows);
+    return h("div", {}, all, more > 0 ? h("p", { class: "quiet" }, `and ${more} more`) : null);
+  }
+
+  return h(
+    "div",
+    {},
+    h(
+      "p",
+      { class: "quiet" },
+      "After a correction: attempts that another version of the exercise or of the program has graded are graded anew. Points that tutors gave stay, and so do the reports before.",
+    ),
+    h("p", { class: "choices" }, look, write, stop),
+    bar,
+    state,
+    changes,
+  );
+}

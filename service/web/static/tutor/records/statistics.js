@@ -1,0 +1,270 @@
+// The attempts at an exercise in counts: parts, rows and cells, slips by count and day, identical wrong answers.
+
+import { byId, h, message, visible } from "../../shared/dom.js";
+import { daysCharts } from "./days_chart.js";
+import { pair } from "../../shared/pasted_block.js";
+import { layoutOf } from "../../student/kinds.js";
+import { cellName } from "../../student/messages.js";
+import { count, failed, learnerName, nothing, percent, query, showExports, span, table, tell } from "./records.js";
+import { regradeForm } from "./regrade.js";
+import { address, get } from "../tutor_service.js";
+
+const exercise = byId("main", HTMLElement).dataset.exercise ?? "";
+const state = byId("state", HTMLElement);
+const place = byId("statistics", HTMLElement);
+// The shares from which on a cell has the next colour; the number stands in it in any case.
+const BANDS = [0.25, 0.5, 0.75, 0.9];
+// So many slips and groups are shown, the others are folded.
+const SHOWN = 12;
+
+/** @typedef {{ title: string, isList: boolean, rows: Map<string, string>, columns: Map<string, string> }} PartNames */
+/** @typedef {{ answered: number, correct: number, share?: number }} Figures */
+
+let turn = 0;
+/** @type {Map<string, PartNames>} */
+let names = new Map();
+
+async function show() {
+  const mine = ++turn;
+  showExports({ exercise, ...span() });
+  place.setAttribute("aria-busy", "true");
+  try {
+    if (!names.size) names = await namesOf(exercise);
+    /** @type {Api.ExerciseStatistics} */
+    const told = await get(`v1/exercises/${encodeURIComponent(exercise)}/statistics${query(span())}`);
+    if (mine === turn) draw(told);
+  } catch (error) {
+    if (mine !== turn) return;
+    place.replaceChildren();
+    failed(error, state);
+  }
+  place.removeAttribute("aria-busy");
+}
+
+/**
+ * What parts, their rows and their cells are called where students fill them in, by the labels of reports.
+ *
+ * @param {string} id
+ */
+async function namesOf(id) {
+  /** @type {Api.Exercise} */
+  const { parts } = await get(`v1/exercises/${encodeURIComponent(id)}`);
+  return new Map(parts.map((part) => [part.id, { title: part.title, ...cellNames(layoutOf(part).grids) }]));
+}
+
+/** @param {Front.Grid[]} grids */
+function cellNames(grids) {
+  const [{ look, columns }] = grids;
+  /** @type {[string, string][]} */
+  const rows = grids.flatMap((grid) =>
+    grid.rows.map(({ label, spoken, head }) => pair(label, grids.length > 1 ? spoken : head))
+  );
+  // A list has one column, which says nothing; those of a matrix have numbers.
+  /** @type {[string, string][]} */
+  const heads = look === "matrix" ? [] : columns.map(({ label, head }) => [label, head]);
+  return { isList: look === "list", rows: new Map(rows), columns: new Map(heads) };
+}
+
+/** @param {string} part */
+const titleOf = (part) => visible(names.get(part)?.title ?? part);
+/** @param {string} part @param {string} label */
+const rowName = (part, label) => visible(names.get(part)?.rows.get(label) || label);
+/** @param {string} part @param {string} label */
+const columnName = (part, label) => visible(names.get(part)?.columns.get(label) ?? cellName(label));
+
+/** @param {Api.ExerciseStatistics} statistics */
+function draw({ attempts, learners, parts, misconceptions, identical }) {
+  if (!attempts) {
+    tell(state, "");
+    const isNarrowed = Object.values(span()).some(Boolean);
+    place.replaceChildren(
+      nothing(
+        isNarrowed ? "Nobody handed in on these days" : "Nobody has handed in yet",
+        "Counts appear here with the first recorded attempt.",
+      ),
+    );
+    return;
+  }
+  tell(
+    state,
+    `${count(attempts, "attempt")} of ${count(learners, "learner")}. Who was wrong three times counts three times.`,
+  );
+  place.replaceChildren(
+    section(
+      "Right answers",
+      "Of the answers, one of each attempt. A part or a cell that could not be read is an answer that is not right; of a table that could not be read as a whole, no row is counted.",
+      parts.map(partShares),
+    ),
+    section(
+      "Misconceptions",
+      "The attempts that have each, the commonest first, and on which days (UTC). The sentence is what one of them was told.",
+      [
+        misconceptions.length ? folded(misconceptions, slipsOf(misconceptions)) : h("p", {}, "None was found."),
+      ],
+    ),
+    section(
+      "Identical wrong answers",
+      "Sent by several learners letter by letter. This is no proof that anybody copied.",
+      [
+        identical.length
+          ? folded(identical, (groups) => h("ul", { class: "groups" }, ...groups.map(group)))
+          : h("p", {}, "There are none."),
+      ],
+    ),
+  );
+}
+
+/** @param {string} title @param {string} note @param {(Front.Child | Front.Child[])[]} content */
+const section = (title, note, content) =>
+  h("section", {}, h("h2", {}, title), h("p", { class: "quiet" }, note), ...content);
+
+/** @param {Api.PartFigures} figures */
+function partShares({ part, rows, ...share }) {
+  const told = share.share === undefined
+    ? "nobody answered"
+    : `${percent(share.share)} right of ${count(share.answered, "answer")}`;
+  const body = rows.length ? shares(part, rows) : null;
+  return h(
+    "section",
+    { class: "card" },
+    h("header", {}, h("h3", {}, titleOf(part)), h("span", { class: "badge", "data-share": band(share) }, told)),
+    body,
+  );
+}
+
+/**
+ * The rows of a part with the share of each cell.
+ *
+ * @param {string} part
+ * @param {Api.RowFigures[]} rows
+ */
+function shares(part, rows) {
+  const [widest] = rows.toSorted((one, other) => other.cells.length - one.cells.length);
+  const labels = widest.cells.map(({ label }) => label);
+  // In a list, the one cell is the whole row.
+  const shown = names.get(part)?.isList ? [] : labels;
+  const heads = [
+    "Row",
+    ...shown.map((label) => columnName(part, label)),
+    shown.length ? "Whole row" : "Right",
+    "Answers",
+  ];
+  const body = rows.map(({ label, cells, ...whole }) => [
+    rowName(part, label),
+    ...shown.map((each) => shareCell(cells.find((cell) => cell.label === each))),
+    shareCell(whole),
+    h("td", { class: "answers" }, whole.answered.toLocaleString("en-GB")),
+  ]);
+  return table(`Shares: ${titleOf(part)}`, heads, body);
+}
+
+/** @param {Figures | undefined} figures */
+function shareCell(figures) {
+  if (!figures) return h("td", {});
+  const told = figures.share === undefined ? "–" : percent(figures.share);
+  return h(
+    "td",
+    { class: "share", "data-share": band(figures), title: `${figures.correct} of ${figures.answered}` },
+    told,
+  );
+}
+
+/** @param {Pick<Figures, "share">} figures */
+const band = ({ share }) => (share === undefined ? "none" : BANDS.filter((edge) => share >= edge).length);
+
+/**
+ * What draws some of all slips, by the same measures.
+ *
+ * @param {Api.MisconceptionFigures[]} misconceptions
+ */
+function slipsOf(misconceptions) {
+  const charts = daysCharts(misconceptions.map(({ by_day: counts }) => counts));
+  const most = misconceptions[0].attempts;
+  /** @type {(figures: Api.MisconceptionFigures) => (string | Node)[]} */
+  const row = ({ part, code, sentence, attempts, by_day: counts }) => [
+    sentence
+      ? h("span", { class: "slip" }, h("span", {}, ...message(sentence)), h("code", {}, visible(code)))
+      : h("code", {}, visible(code)),
+    titleOf(part),
+    h(
+      "span",
+      { class: "counted" },
+      String(attempts),
+      h("meter", { min: 0, max: most, value: attempts, "aria-hidden": "true" }),
+    ),
+    charts.get(counts) ?? "",
+  ];
+  return (/** @type {Api.MisconceptionFigures[]} */ shown) =>
+    table("Misconceptions", ["Misconception", "Part", "Attempts", "Over days"], shown.map(row));
+}
+
+/** @param {Api.IdenticalAnswers} identical */
+function group({ learners, attempts, wrong, among }) {
+  const names = among.flatMap((learner, i) => [
+    i ? ", " : "",
+    h("a", { href: address(`tutor/attempts?${new URLSearchParams({ exercise, learner })}`) }, learnerName(learner)),
+  ]);
+  const more = learners > among.length ? ` and ${learners - among.length} more` : "";
+  return h(
+    "li",
+    { class: "card" },
+    h(
+      "p",
+      {},
+      h("strong", {}, count(learners, "learner")),
+      attempts > learners ? ` in ${count(attempts, "attempt")}: ` : ": ",
+      ...names,
+      more,
+    ),
+    h("p", { class: "quiet" }, `Wrong in ${placesInWords(wrong)}`),
+  );
+}
+
+/**
+ * Places as "DH table: row 2 α, d; row 4 d. Pose: row 1 column 4".
+ *
+ * @param {string[]} places
+ */
+function placesInWords(places) {
+  /** @type {Map<string, Map<string, string[]>>} */
+  const parts = new Map();
+  for (const each of places) {
+    const [part, row, cell] = each.split("/");
+    const rows = parts.get(part) ?? new Map();
+    parts.set(part, rows.set(row, [...(rows.get(row) ?? []), columnName(part, cell)]));
+  }
+  /** @type {(part: string, row: [string, string[]]) => string} */
+  const ofRow = (
+    part,
+    [row, cells],
+  ) => (names.get(part)?.isList ? rowName(part, row) : `${inWords(rowName(part, row))} ${cells.join(", ")}`);
+  /** @type {(part: [string, Map<string, string[]>]) => string} */
+  const ofPart = ([part, rows]) => `${titleOf(part)}: ${[...rows].map((row) => ofRow(part, row)).join("; ")}`;
+  return visible([...parts].map(ofPart).join(". "));
+}
+
+/** @param {string} row */
+const inWords = (row) => (row.includes(" ") ? row : `row ${row}`);
+
+/**
+ * The first of many, and the others folded below.
+ *
+ * @template Item
+ * @param {Item[]} all
+ * @param {(items: Item[]) => HTMLElement} draw
+ */
+function folded(all, draw) {
+  const [first, rest] = [all.slice(0, SHOWN), all.slice(SHOWN)];
+  return [
+    draw(first),
+    rest.length ? h("details", { class: "source" }, h("summary", {}, `${rest.length} more`), draw(rest)) : null,
+  ];
+}
+
+byId("filters", HTMLElement).addEventListener("submit", (event) => {
+  event.preventDefault();
+  show();
+});
+byId("filters", HTMLElement).addEventListener("change", show);
+byId("regrade", HTMLElement).append(regradeForm(exercise, show));
+show();

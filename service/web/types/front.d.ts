@@ -1,0 +1,109 @@
+// The types that several scripts of the pages share; those of the HTTP interface are in api.d.ts.
+declare namespace Front {
+  // Elements: the name of an attribute that is a listener begins with "on" and says what its event is.
+  type Child = Node | string | null | undefined | false;
+  // deno-lint-ignore no-explicit-any
+  type Attributes = Record<string, string | number | boolean | null | undefined | ((event: any) => unknown)>;
+
+  // A part of an exercise: its grids of cells, and what stands in them.
+  type Column = { label: string; head: string; index?: string; spoken: string; quantity: Api.Quantity };
+  type Row = { label: string; spoken: string; head: string; quantity?: Api.Quantity };
+  type Grid = { title: string; look: "table" | "matrix" | "list"; columns: Column[]; rows: Row[] };
+  type Layout = {
+    grids: Grid[];
+    choices: Record<string, string> | null;
+    answer(texts: string[], choice: string): unknown;
+  };
+  type PartState = { cells: string[]; choice: string };
+  type Answers = { unit: Api.AngleUnit; parts: Record<string, PartState> };
+  type Context = { exercise: string; angle_unit: Api.AngleUnit };
+
+  // A cell: where it is, how its text is read, and who hears of what happens to it.
+  type CellPlace = { id: string; label: string; spoken: string };
+  type PartPlace = CellPlace & { part: string; quantity: Api.Quantity; row: RowView };
+  type PlayPlace = CellPlace & { at: [number, number] };
+  type Cell<Place extends CellPlace> = import("../static/shared/cell.js").Cell<Place>;
+  type PartCell = Cell<PartPlace>;
+  type PlayCell = Cell<PlayPlace>;
+  type RowView = import("../static/student/grid_view.js").RowView;
+  type Reading = {
+    text?: string;
+    mathml?: string;
+    notes?: Api.PreviewNote[];
+    error?: { message: string; span?: [number, number]; suggestion?: string };
+  };
+  interface CellOwner<Place extends CellPlace> {
+    entered(cell: Cell<Place>): void;
+    pressed(event: KeyboardEvent, cell: Cell<Place>): void;
+    pasted(event: ClipboardEvent, cell: Cell<Place>): void;
+    beforeInput(event: InputEvent): void;
+    typed(cell: Cell<Place>, before: string): void;
+    changed(cell: Cell<Place>): void;
+    understood(cell: Cell<Place>): void;
+    repaired(cell: Cell<Place>, suggestion: string): void;
+  }
+  type Change<Target, Value> = { target: Target; before: Value; after: Value };
+  type Direction = "undo" | "redo";
+  type PreviewService = {
+    preview(body: Api.PreviewRequest): Promise<Api.Preview>;
+    previews(body: Api.PreviewManyRequest): Promise<Api.PreviewManyResponse>;
+  };
+  // What a part asks of its exercise.
+  interface PartHost {
+    service: PreviewService;
+    previewer: import("../static/student/previewer.js").Previewer;
+    history: {
+      note(changes: Change<PartCell, string>[], typed?: boolean): void;
+      undo(): PartCell | null;
+      redo(): PartCell | null;
+    };
+    context(): Context;
+    announce(text: string, pause?: number): void;
+    failed(error: Error | null): void;
+    edited(): void;
+    check(): void;
+  }
+
+  // The 3D view: numbers by the service, drawn by three.js or shown as a drawing.
+  type Frame = number[][];
+  type Picture = { frames: Frame[] | null; mechanism: Api.DrawnConfiguration | null };
+  type Subject = {
+    kinds: Api.JointKind[];
+    rowKinds: (Api.JointKind | null)[];
+    convention: Api.Convention;
+    size: number;
+    azimuth: number;
+    elevation: number;
+    solid: boolean;
+    beside(): boolean;
+    robot(): boolean;
+    shown(i: number): boolean;
+  };
+  type DrawSvg = (theme: Api.Theme) => Promise<string | null | undefined>;
+  type RobotView = import("../static/robot/robot_view.js").RobotView;
+  type RobotFigure = import("../static/student/robot_figure.js").RobotFigure;
+  type RobotScene = import("../static/robot/scene.js").RobotScene;
+  type FlatScene = import("../static/robot/flat_scene.js").FlatScene;
+  type Shapes = import("../static/robot/shapes.js").Shapes;
+  type Scene = import("../static/vendor/three-0.185.1.module.min.js").Scene;
+  type Vector2 = import("../static/vendor/three-0.185.1.module.min.js").Vector2;
+  type Palette = typeof import("../static/robot/palette.js").LIGHT;
+  type ViewHost = {
+    service: import("../static/shared/service.js").Service;
+    body(): Api.FramesRequest | null;
+    descriptions?: Record<string, string>;
+    announce(text: string): void;
+    answered?(answer: Api.Frames, isKept: boolean): void;
+    moved?(picture: Picture): void;
+  };
+
+  // Free play.
+  type PlayRow = { kind: string; cells: string[] };
+  type Robot = { convention: Api.Convention; unit: Api.AngleUnit; rows: PlayRow[] };
+
+  // The pages of recorded attempts.
+  type Filter = { exercise?: string; learner?: string; since?: string; until?: string };
+  type FilterField = HTMLInputElement | HTMLSelectElement;
+  // A file in an archive: where its bytes are, and whether they are packed.
+  type ZipEntry = { from: number; size: number; packed: boolean };
+}

@@ -1,0 +1,88 @@
+"""The scripts of the pages: types, linter, formatter, unit tests, and their rooms."""
+
+import re
+from subprocess import CompletedProcess
+
+import pytest
+
+from service.app import app
+from tests.front import deno
+from tests.front.api_types import api_types
+
+LINES = 400
+FILES = 12
+# A script may import from its own room and from these.
+ROOMS = {
+    "vendor": set[str](),
+    "shared": set[str](),
+    "robot": {"shared", "vendor"},
+    "student": {"shared", "robot"},
+    "play": {"shared", "robot", "student"},
+    "tutor": {"shared", "student"},
+}
+
+
+def passes(result: CompletedProcess[str]) -> None:
+    if result.returncode:
+        pytest.fail(result.stdout, pytrace=False)
+
+
+def test_the_types_of_the_scripts_fit() -> None:
+    passes(deno.types())
+
+
+def test_the_linter_finds_nothing() -> None:
+    passes(deno.linter())
+
+
+def test_the_scripts_are_formatted() -> None:
+    passes(deno.formatter("--check"))
+
+
+def test_the_unit_tests_pass() -> None:
+    passes(deno.units())
+
+
+def test_the_types_of_the_interface_are_those_of_the_openapi_document() -> None:
+    written = (deno.TYPES / "api.d.ts").read_text(encoding="utf-8")
+    assert written == api_types(app.openapi()), (
+        "python -m tests.front.api_types > service/web/types/api.d.ts"
+    )
+
+
+def test_a_room_imports_only_from_rooms_below_it() -> None:
+    wrong = []
+    for script in deno.scripts():
+        room = script.relative_to(deno.STATIC).parts[0]
+        for path in re.findall(r'"(\.\.?/[\w./-]+)"', script.read_text(encoding="utf-8")):
+            target = (script.parent / path).resolve()
+            if target.is_file():
+                other = target.relative_to(deno.STATIC).parts[0]
+                wrong += [f"{script.name}: {path}"] * (other not in {room, *ROOMS[room]})
+    assert wrong == []
+
+
+def test_scripts_and_rooms_stay_easy_to_survey() -> None:
+    long = [
+        script.name
+        for script in deno.scripts()
+        if len(script.read_text(encoding="utf-8").splitlines()) > LINES
+    ]
+    folders = [folder for folder in deno.STATIC.rglob("*") if folder.is_dir()]
+    full = [
+        folder.name
+        for folder in folders
+        if sum(file.is_file() for file in folder.iterdir()) > FILES
+    ]
+    assert (long, full) == ([], [])
+
+
+def test_no_comment_names_another_script() -> None:
+    """A name in quotes is an import for the service, which would then be loaded at once."""
+    comments = re.compile(r"/\*.*?\*/|^\s*//[^\n]*", re.DOTALL | re.MULTILINE)
+    naming = [
+        script.name
+        for script in deno.scripts()
+        if any('.js"' in comment for comment in comments.findall(script.read_text("utf-8")))
+    ]
+    assert naming == []

@@ -1,0 +1,80 @@
+import assert from "node:assert/strict";
+import { beforeEach, test } from "node:test";
+import { answersIn, fragment, packed, Store, unpacked } from "../../../service/web/static/shared/storage.js";
+
+const ANSWERS = { unit: "degrees", parts: { table: { cells: ["a1", "θ₁ + π/2"], choice: "standard" } } };
+
+/** A browser's storage that keeps `room` characters. */
+function keep(room = Infinity) {
+  const kept = new Map();
+  const storage = {
+    getItem: (name) => kept.get(name) ?? null,
+    removeItem: (name) => kept.delete(name),
+    setItem(name, value) {
+      if (value.length > room) throw new DOMException("full", "QuotaExceededError");
+      kept.set(name, value);
+    },
+  };
+  Object.defineProperty(globalThis, "localStorage", { value: storage, configurable: true });
+  return kept;
+}
+
+beforeEach(() => keep());
+
+test("a value is packed as base64 of UTF-8, in letters for addresses", () => {
+  // printf '{"a":"θ?>"}' | base64 | tr '+/' '-_' | tr -d =
+  assert.equal(packed({ a: "θ?>" }), "eyJhIjoizrg_PiJ9");
+  assert.deepEqual(unpacked("eyJhIjoizrg_PiJ9"), { a: "θ?>" });
+});
+
+test("any other text is no value", () => {
+  for (const text of ["", "%%%", "eyJhIjoi", "_w", "a".repeat(60_001)]) assert.equal(unpacked(text), null);
+});
+
+test("answers go into a link and come back", () => {
+  assert.deepEqual(answersIn(fragment(ANSWERS)), ANSWERS);
+  assert.equal(answersIn("#robot=eyJhIjoxfQ"), null);
+  assert.equal(answersIn(""), null);
+});
+
+test("what has not the shape of answers is none", () => {
+  const wrong = [null, 1, [], {}, { parts: null }, { parts: { a: null } }, { parts: { a: { cells: "x" } } }, {
+    parts: { a: { cells: [1] } },
+  }, { parts: { a: { cells: ["x"] }, b: {} } }];
+  for (const value of wrong) assert.equal(answersIn(`#answers=${packed(value)}`), null, JSON.stringify(value));
+});
+
+test("what is left out of answers has a default, and what is more is dropped", () => {
+  const answers = answersIn(
+    `#answers=${packed({ unit: "gradians", parts: { a: { cells: [], choice: 1, more: 2 } } })}`,
+  );
+  assert.deepEqual(answers, { unit: "radians", parts: { a: { cells: [], choice: "" } } });
+});
+
+test("a part may have the name of something that all objects have", () => {
+  const text = '{"unit":"radians","parts":{"__proto__":{"cells":["1"]}}}';
+  const answers = answersIn(`#answers=${btoa(text).replaceAll("=", "")}`);
+  assert.deepEqual(Object.keys(answers.parts), ["__proto__"]);
+});
+
+test("answers are kept for each service and exercise", () => {
+  const kept = keep();
+  const store = new Store("https://a.example/", "scara");
+  assert.equal(store.save(ANSWERS), true);
+  assert.deepEqual(store.load(), ANSWERS);
+  assert.equal(new Store("https://b.example/", "scara").load(), null);
+  assert.equal(store.save(null), true);
+  assert.equal(kept.size, 0);
+});
+
+test("a browser that keeps nothing is no error", () => {
+  keep(10);
+  const store = new Store("https://a.example/", "scara");
+  assert.equal(store.save(ANSWERS), false);
+  assert.equal(store.load(), null);
+});
+
+test("what another program has left there is no answer", () => {
+  keep().set("dh-grader:https://a.example/:scara", "{");
+  assert.equal(new Store("https://a.example/", "scara").load(), null);
+});
