@@ -62,7 +62,7 @@ class ExpressionError(TextError):
         self.suggestion = suggestion
         self.tried = 0
 
-    def again(self) -> "ExpressionError":
+    def without_traceback(self) -> "ExpressionError":
         """Return an equal error without a traceback, to raise a memoized error."""
         error = ExpressionError(self.code, self.message, self.span, self.suggestion)
         error.tried = self.tried

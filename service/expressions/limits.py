@@ -1,4 +1,4 @@
-"""Bounds on the cost of one expression, checked before the work that they bound."""
+"""Bounds on the cost of one expression. Each is checked before the work that it limits."""
 
 from dataclasses import dataclass
 

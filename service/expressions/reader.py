@@ -182,7 +182,7 @@ def read(
     memoized = _memoized if len(text) <= _LONG else _memoized_long
     result = memoized(text, *options, _ATTEMPTS if repairs else 0)
     if isinstance(result, ExpressionError):
-        raise result.again()
+        raise result.without_traceback()
     return result
 
 

@@ -81,7 +81,7 @@ class Binary:
 
 @dataclass(slots=True)
 class Call:
-    """A function of its arguments."""
+    """A function call."""
 
     function: str
     arguments: tuple["Node", ...]

@@ -113,7 +113,7 @@ def figure(subject: Subject, theme: Theme = Theme.AUTO) -> str:
 
 
 def default_view(mechanism: MovableMechanism, numbers: Mapping[str, float]) -> View:
-    """Return the default view of a mechanism, if the author has not chosen one."""
+    """Return the default view of a mechanism, used unless the author chooses another one."""
     return best_view(_at_home(mechanism, numbers), mechanism.extent)
 
 

@@ -13,7 +13,7 @@ from service.grids.scripts.named_columns import describes_columns, read_columns
 from service.grids.scripts.program_text import without_title
 from service.grids.scripts.robot_script import describes_robot, read_script
 from service.grids.scripts.robot_table import RobotTable
-from service.grids.scripts.session import printed
+from service.grids.scripts.session import session_outputs
 
 # Formats with sure signs (tags, commands, brackets) come first, then separators, then blanks.
 FORMATS: Final[tuple[GridFormat, ...]] = (
@@ -54,7 +54,7 @@ def pasted_source(text: str, *, named: bool = False) -> SourceText:
 
     Raises GridError if the text is empty or exceeds the limits.
     """
-    return printed(_limited(text), named=named)
+    return session_outputs(_limited(text), named=named)
 
 
 def _limited(text: str) -> SourceText:

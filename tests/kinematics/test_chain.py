@@ -222,7 +222,7 @@ POSES = {name: function_of_letters(robot.pose) for name, robot in CLOSED_FORMS.i
 
 @given(values=VALUES)
 def test_the_tip_of_the_cartesian_arm_is_at_its_displacements(values: list[float]) -> None:
-    """Spong, Hutchinson, Vidyasagar, problem 3-7: the tip is at (d3, d2, d1)."""
+    """Source: Spong, Hutchinson, Vidyasagar, problem 3-7."""
     d1, d2, d3 = values[:3]
     table = numeric([(0, -QUARTER, d1, 0), (0, -QUARTER, d2, -QUARTER), (0, 0, d3, 0)])
     np.testing.assert_allclose(pose(table, STANDARD)[:3, 3], [d3, d2, d1], atol=1e-12)

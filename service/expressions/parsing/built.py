@@ -14,7 +14,7 @@ _OPERATORS: Final[dict[str, Operator]] = {
 }  # fmt: skip
 
 
-def built(name: str, arguments: Sequence[Node], start: int, end: int) -> Node:
+def build_function(name: str, arguments: Sequence[Node], start: int, end: int) -> Node:
     """Return the tree of a function of ``BUILT``. The number of arguments must be right."""
     if name in RECIPROCALS:
         one = Number(1.0, "1", start, start)

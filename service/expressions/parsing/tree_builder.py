@@ -8,7 +8,7 @@ from typing import Final
 
 from service.expressions.errors import Note, UnreadableError, shortened
 from service.expressions.limits import LIMITS
-from service.expressions.parsing.built import built
+from service.expressions.parsing.built import build_function
 from service.expressions.parsing.lexing.literal_notes import on_call, on_shorthand, on_sum
 from service.expressions.parsing.lexing.tokens import Token
 from service.expressions.tree import (
@@ -182,7 +182,7 @@ class Builder:
         self._add_note(on_call(name, arguments[0], self.turning, degrees=self.degrees))
         call: Node = Call(name, arguments, start, end)
         if name in BUILT:
-            call = built(name, arguments, start, end)
+            call = build_function(name, arguments, start, end)
             self.grouped.add(id(call))
         if power is None:
             return call

@@ -2,7 +2,7 @@
 
 import re
 
-from service.expressions.repairs.failure import Failure, Repair, absent, error, for_causes
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, undeclared
 
 _REASONS = {
     "e": "Write a power of Euler's number as exp(x).",
@@ -18,7 +18,7 @@ def repair(failure: Failure) -> Repair:
     reason = _REASONS.get(failure.details["run"])
     if reason is None:
         return None
-    message = f"{absent(failure)} {reason}"
+    message = f"{undeclared(failure)} {reason}"
     (start, end), suggestion = failure.span, None
     power = _POWER.match(failure.source, end) if failure.details["run"] == "e" else None
     if power is not None:

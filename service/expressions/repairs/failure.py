@@ -99,7 +99,7 @@ def error(
     return ExpressionError(code, message, span or failure.span, suggestion)
 
 
-def absent(failure: Failure) -> str:
+def undeclared(failure: Failure) -> str:
     """Return the sentence that the name at the failure is not declared."""
     name = quoted(failure.written)
     if failure.vocabulary.of_books:
@@ -116,10 +116,10 @@ __all__ = [
     "Failure",
     "Repair",
     "RepairRule",
-    "absent",
     "error",
     "for_causes",
     "position",
     "quoted",
     "refusal",
+    "undeclared",
 ]  # fmt: skip

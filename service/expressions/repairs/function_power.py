@@ -1,4 +1,4 @@
-"""sin^-1(x), which some read as asin(x) and others as 1/sin(x), and sin^k(x)."""
+"""Powers of functions: sin^-1(x), which may mean asin(x) or 1/sin(x), and sin^k(x)."""
 
 import re
 

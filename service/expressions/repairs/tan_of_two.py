@@ -1,4 +1,4 @@
-"""tan2(y, x) for atan2(y, x)."""
+"""tan2(y, x) instead of atan2(y, x)."""
 
 import re
 

@@ -2,7 +2,14 @@
 
 import re
 
-from service.expressions.repairs.failure import Failure, Repair, absent, error, for_causes, quoted
+from service.expressions.repairs.failure import (
+    Failure,
+    Repair,
+    error,
+    for_causes,
+    quoted,
+    undeclared,
+)
 from service.expressions.vocabulary.functions import ARITY, REFUSED
 
 _RENAMED = {
@@ -29,7 +36,7 @@ def repair(failure: Failure) -> Repair:
     if len(run) == 1 and _OF_NUMBERS.match(failure.source, failure.span[1]):
         if not failure.vocabulary.joints:
             return None
-        message = f"{absent(failure)} Write the shorthand without brackets, as in c12."
+        message = f"{undeclared(failure)} Write the shorthand without brackets, as in c12."
         return error(failure, "unknown_function", message)
     renamed = _RENAMED.get(run)
     if renamed is None or not failure.details["called"]:

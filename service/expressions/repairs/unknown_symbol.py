@@ -5,7 +5,7 @@ from typing import Final
 
 from service.expressions.characters import greek
 from service.expressions.parsing.lexing.words import Piece, split
-from service.expressions.repairs.failure import Failure, Repair, absent, error, for_causes
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, undeclared
 from service.expressions.repairs.nearest_name import nearest
 from service.expressions.vocabulary.symbols import Kind, Symbol, Vocabulary, normal_form
 
@@ -21,7 +21,7 @@ _LISTED: Final = 8
 def repair(failure: Failure) -> Repair:
     """Suggest the most similar declared name, or list the names that may be meant."""
     run, vocabulary = failure.details["run"], failure.vocabulary
-    message = absent(failure)
+    message = undeclared(failure)
     if (product := _product(run, vocabulary)) is not None:
         message += f" For a product, write {product}."
         return error(failure, "unknown_symbol", message)

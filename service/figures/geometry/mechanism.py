@@ -124,7 +124,7 @@ def _moved(body: Matrices, points: Numbers) -> Numbers:
 
 
 def mechanism_of(reference: Reference, numbers: Mapping[str, float]) -> MovableMechanism:
-    """Return the mechanism for the numbers of all symbols, and the joint values to draw it at."""
+    """Return the mechanism for these numbers of all symbols; joints are placed for this pose."""
     values: SymbolValues = as_samples(numbers, 1)
     path = path_of(reference, values, 1)
     bodies = motions(reference, values, 1)[:, 0]

@@ -1,4 +1,4 @@
-"""Bounds on the cost of one pasted text, checked before the work that they bound."""
+"""Bounds on the cost of one pasted text. Each is checked before the work that it limits."""
 
 from dataclasses import dataclass
 

@@ -18,7 +18,7 @@ from service.grids.cutting.source_text import SourceText
 from service.grids.matrices.lists import unquoted
 from service.grids.scripts.program_text import MAKERS
 from service.grids.scripts.robot_table import RobotTable
-from service.grids.scripts.script import arguments, called, shown, statements, unread_script
+from service.grids.scripts.script import arguments, excerpt, split_call, statements, unread_script
 
 _DICTIONARY: Final = re.compile(
     r"\{\s{0,40}(?:'[^'\n]{1,40}'|\"[^\"\n]{1,40}\"|[A-Za-z]\w{0,20})\s?:"
@@ -67,7 +67,7 @@ def _items(statement: SourceText) -> list[_Item]:
     """Return the items of a statement that is a dictionary, or assigns one to a name."""
     name = _NAME.match(statement.text)
     value = statement.cut(name.end() if name else 0, len(statement.text)).strip()
-    call = called(value)
+    call = split_call(value)
     if call and call[0] == _FRAME:
         value = (arguments(call[1]) or [call[1]])[0]
     if not value.text.startswith("{") or strict_pairs(value)[0] != len(value.text):
@@ -84,7 +84,7 @@ def _items(statement: SourceText) -> list[_Item]:
 
 def _list(value: SourceText) -> list[SourceText] | None:
     """Return the values in a list such as ``[1, 2]`` or ``np.array([1, 2])``, or None."""
-    call = called(value)
+    call = split_call(value)
     if call and call[0] in MAKERS:
         value = call[1].strip()
     if value.text[:1] not in {"[", "("} or strict_pairs(value)[0] != len(value.text):
@@ -99,7 +99,7 @@ def _by_column(
     for item, column in zip(items, columns, strict=True):
         if len(column) != len(longest):
             raise unread_script(
-                f"The column {shown(item.key)} has {counted(len(column))}, another has "
+                f"The column {excerpt(item.key)} has {counted(len(column))}, another has "
                 f"{len(longest)}. Write one for each joint.",
                 item.value,
             )

@@ -15,7 +15,7 @@ from service.expressions.errors import counted
 from service.grids.cutting.grid import GridError
 from service.grids.cutting.source_text import SourceText
 from service.grids.matrices.lists import unquoted
-from service.grids.scripts.script import arguments, called, shown, unread_script
+from service.grids.scripts.script import arguments, excerpt, split_call, unread_script
 
 PARAMETERS: Final = ("a", "alpha", "d", "theta")
 
@@ -94,7 +94,7 @@ def read_link(source: SourceText, vector: Vector) -> RobotLink | None:
     ``vector`` returns the values of a row in brackets or of a named row. Raises GridError if the
     row of the link is not certain.
     """
-    call = called(source)
+    call = split_call(source)
     if call is None or call[0] not in _CLASSES:
         return None
     name, inside = call
@@ -146,8 +146,8 @@ class _Given:
     def of_vector(values: Sequence[SourceText], source: SourceText) -> "_Given":
         if not len(PARAMETERS) <= len(values) <= len(_OF_VECTOR):
             raise unread_script(
-                f"`{shown(source)}` has {counted(len(values))}. A link is [theta d a alpha], with "
-                "0 or 1 for the joint type and an offset behind them.",
+                f"`{excerpt(source)}` has {counted(len(values))}. A link is [theta d a alpha], "
+                "with 0 or 1 for the joint type and an offset behind them.",
                 source,
             )
         return _Given(dict(zip(_OF_VECTOR, values, strict=False)), has_vector=True)
@@ -181,7 +181,7 @@ class _Given:
 
 
 def _joint(given: _Given, link: SourceText) -> JointType:
-    """Return the joint type by the arguments of ``Link``. Raises GridError if they do not say."""
+    """Return the joint type in the arguments of ``Link``. Raises GridError if it is unclear."""
     named = given.named
     types = {JointType(word) for word in given.words & {"revolute", "prismatic"}}
     if "sigma" in named:
@@ -196,7 +196,7 @@ def _joint(given: _Given, link: SourceText) -> JointType:
         }
     if len(types) > 1 or (not types and by_name and (named or given.words)):
         raise unread_script(
-            f"`{shown(link)}` leaves open whether the joint is revolute or prismatic. Write "
+            f"`{excerpt(link)}` leaves open whether the joint is revolute or prismatic. Write "
             "`Revolute(…)` or `Prismatic(…)`.",
             link,
         )
@@ -215,7 +215,7 @@ def _truth(named: Mapping[str, SourceText], name: str) -> bool:
 
 def _unknown(source: SourceText) -> GridError:
     return unread_script(
-        f"`{shown(source)}` is not understood here. Write a, alpha, d, theta and offset of each "
+        f"`{excerpt(source)}` is not understood here. Write a, alpha, d, theta and offset of each "
         "link, each once.",
         source,
     )
@@ -231,7 +231,7 @@ def transform_link(
     """
     if len(values) != len(_OF_TRANSFORM):
         raise unread_script(
-            f"`{shown(source)}` has {counted(len(values))}. setFixedTransform takes [a alpha d "
+            f"`{excerpt(source)}` has {counted(len(values))}. setFixedTransform takes [a alpha d "
             "theta].",
             source,
         )
@@ -239,7 +239,7 @@ def transform_link(
     is_written = has_variable(cells["theta"].text) or _JOINT_LENGTH.search(cells["d"].text)
     if joint is None and not is_written:
         raise unread_script(
-            f"`{shown(source)}` holds no joint variable. Paste the line with the type of this "
+            f"`{excerpt(source)}` holds no joint variable. Paste the line with the type of this "
             "joint, too: `rigidBodyJoint('jnt1', 'revolute')`.",
             source,
         )
@@ -282,7 +282,7 @@ def _moved(link: RobotLink, variable: SourceText, column: str) -> SourceText:
     changed = offset is not None or link.flip
     if not has_variable(variable.text) or (changed and not _ALONE.fullmatch(variable.text)):
         raise unread_script(
-            f"The toolbox ignores `{shown(variable)}`, for {_SHOWN[column]} is the variable of "
+            f"The toolbox ignores `{excerpt(variable)}`, for {_SHOWN[column]} is the variable of "
             "this joint. Write 0 there, and a constant as offset.",
             variable,
         )

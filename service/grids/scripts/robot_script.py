@@ -25,7 +25,7 @@ from service.grids.scripts.robot_links import (
     transform_link,
 )
 from service.grids.scripts.robot_table import RobotTable
-from service.grids.scripts.script import arguments, called, shown, statements, unread_script
+from service.grids.scripts.script import arguments, excerpt, split_call, statements, unread_script
 from service.grids.scripts.script_names import (
     NUMBERED,
     ScriptNames,
@@ -158,7 +158,7 @@ class _Script:
         self, statement: SourceText, found: re.Match[str], value: SourceText, *, has_call: bool
     ) -> None:
         name = found["name"]
-        call = called(value) if "(" in value.text else None
+        call = split_call(value) if "(" in value.text else None
         if call and call[0] == _JOINT:
             self.joints[_squeezed(found[0].rstrip("= \t"))] = _joint_type(call[1])
             return
@@ -198,10 +198,10 @@ class _Script:
                 raise _unclear(statement)
             self.names.name_links(statement, appended["name"], 0, links)
             return
-        call = called(statement)
+        call = split_call(statement)
         if call and call[0] in _SHOWS:
             statement = call[1].strip()
-            call = called(statement)
+            call = split_call(statement)
         if call and call[0] == _TRANSFORM:
             self._place(statement, arguments(call[1]))
             return
@@ -215,7 +215,7 @@ class _Script:
 
     def _makes_robot(self, source: SourceText) -> bool:
         """Return True, and store the robot's links, if ``source`` builds the robot."""
-        call = called(source)
+        call = split_call(source)
         if call is None or call[0] not in _ROBOTS:
             return False
         first, *rest = arguments(call[1]) or [call[1]]
@@ -230,8 +230,8 @@ class _Script:
             links = self.names.links_of_matrix(first, modified="modified" in words)
         if links is None:
             raise unread_script(
-                f"The links `{shown(first)}` are not in this text. Paste the lines that make them, "
-                "too.",
+                f"The links `{excerpt(first)}` are not in this text. Paste the lines that make "
+                "them, too.",
                 first,
             )
         if self.robot is not None and list(map(id, self.robot)) != list(map(id, links)):
@@ -313,14 +313,14 @@ def _is_declared(name: str, value: str) -> bool:
 
 def _has_frames(source: SourceText) -> GridError:
     return unread_script(
-        f"`{shown(source)}` is no link. Delete it, or paste the DH table with a row for it.",
+        f"`{excerpt(source)}` is no link. Delete it, or paste the DH table with a row for it.",
         source,
     )
 
 
 def _unclear(source: SourceText) -> GridError:
     return unread_script(
-        f"`{shown(source)}` is not understood here. Write each link as `L(1) = Link(…)`, and the "
+        f"`{excerpt(source)}` is not understood here. Write each link as `L(1) = Link(…)`, and the "
         "robot as `SerialLink(L)`.",
         source,
     )

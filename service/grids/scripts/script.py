@@ -56,7 +56,7 @@ def _outside_blocks(source: SourceText) -> Iterator[SourceText]:
         yield line.cut(0, 0).spelled("\n")
 
 
-def called(source: SourceText) -> tuple[str, SourceText] | None:
+def split_call(source: SourceText) -> tuple[str, SourceText] | None:
     """Return a function's name and the text of its arguments; None if the text is not one call.
 
     Module names before the function's name, as in ``rtb.RevoluteDH(…)``, are left out. Raises
@@ -79,7 +79,7 @@ def unread_script(message: str, source: SourceText) -> GridError:
     return GridError("unread_script", message, source.whole)
 
 
-def shown(source: SourceText) -> str:
+def excerpt(source: SourceText) -> str:
     """Return the beginning of a piece of a script, as it is quoted in a message."""
     text = " ".join("".join(c if c.isprintable() else " " for c in source.text).split())
     return text if len(text) <= _SHOWN else text[: _SHOWN - 1] + "…"

@@ -12,7 +12,7 @@ from service.grids.cutting.pairs import split
 from service.grids.cutting.source_text import SourceText
 from service.grids.matrices import matlab
 from service.grids.scripts.robot_links import RobotLink, read_link, vector_link
-from service.grids.scripts.script import shown, unread_script
+from service.grids.scripts.script import excerpt, unread_script
 
 # A name, one of its elements, or all of them: L, L(2), L{2}, L[1], L(:), DH(2,:).
 NAMED: Final = re.compile(
@@ -62,7 +62,7 @@ class ScriptNames:
             value = self._elements[name, number]
             if value is None:
                 raise unread_script(
-                    f"The script gives `{shown(cell)}` two values. Write its value here.", cell
+                    f"The script gives `{excerpt(cell)}` two values. Write its value here.", cell
                 )
             return value
         rows = self._matrix(cell.cut(0, len(name))) if name in self._values else None
@@ -78,7 +78,7 @@ class ScriptNames:
         first = len(known) + 1 if number == 0 else number or 1
         if known if number is None else first in known or len(links) > 1:
             raise unread_script(
-                f"`{shown(statement)}` gives a link a second value. Keep the one that counts.",
+                f"`{excerpt(statement)}` gives a link a second value. Keep the one that counts.",
                 statement,
             )
         known.update(enumerate(links, first))

@@ -22,7 +22,7 @@ _CONTINUED: Final = re.compile(r"^[ \t]*\.\.\.(?:[ \t]|$)", re.MULTILINE)
 _ASKED: Final = re.compile(r"\s*(?:\w{1,20}[(\[]\s*)?([A-Za-z_]{1,10}\d{1,4})(?![\w.*@+-])")
 
 
-def printed(source: SourceText, *, named: bool = False) -> SourceText:
+def session_outputs(source: SourceText, *, named: bool = False) -> SourceText:
     """Return the outputs of a session, and the matrices in inputs that have no output.
 
     With ``named``, a name that an input shows becomes a line above its output.

@@ -1,7 +1,7 @@
 """The right answer to a part, with one module for each kind.
 
 A module ``<kind>.py`` has a function ``answer(part, work)``, which returns the right answer, and
-``lazy(part, exercise)``, which returns answers that need no knowledge. It is found by its name.
+``lazy(part, exercise)``, which returns answers that need no knowledge. Modules are found by name.
 """
 
 from collections.abc import Callable, Mapping

@@ -48,5 +48,5 @@ def _simplified(length: sympy.Expr) -> sympy.Expr:
 
 
 def lazy(_part: DhRowSpec, _exercise: Exercise) -> list[object]:
-    """Return a row of zeros. The answer that there is no row is not included: it may be right."""
+    """Return a row of zeros. "No row" is not included, because this guess may be right."""
     return [dict.fromkeys(COLUMNS, "0")]
