@@ -1,4 +1,7 @@
-"""Formula as typed -> syntax tree -> numbers, text, LaTeX, MathML. Knows nothing of robots."""
+"""Formula as typed -> syntax tree -> numbers, text, LaTeX, MathML.
+
+This package knows nothing about robots.
+"""
 
 from service.expressions.errors import ExpressionError, Note
 from service.expressions.evaluation.decimals import Decimals, decimals_of

@@ -1,12 +1,12 @@
-"""Errors and notes on a text that is read.
+"""Errors and notes that reading a text may give.
 
     TextError            code, message, span
-    ├─ ExpressionError   a formula that cannot be read, and its repaired text where one is near
-    └─ GridError         a pasted text that is no table or matrix (service/grids)
+    ├─ ExpressionError   a formula that cannot be read, and its repaired text, if any
+    └─ GridError         a pasted text that is not a table or matrix (service/grids)
 
-    UnreadableError      the place where the reader stopped; it never leaves the package, for
-                         ``repairs.explain`` makes an ExpressionError of it
-    Note                 no error: a text was read, but others might read it otherwise
+    UnreadableError      the place where the reader stopped; internal, because
+                         ``repairs.explain`` turns it into an ExpressionError
+    Note                 not an error: the text was read, but it has another possible reading
 
 Spans are [from, to) in the text that the student typed.
 """
@@ -16,7 +16,7 @@ from typing import Any, Final, Literal
 
 Span = tuple[int, int]
 
-# A message is short.
+# Longer quotations in messages are shortened.
 _LONGEST_QUOTATION: Final = 40
 
 Cause = Literal[
@@ -38,7 +38,7 @@ class Note:
 
 
 class TextError(Exception):
-    """A text that cannot be read. ``code`` is stable, so that a class can be counted."""
+    """A text cannot be read. ``code`` is stable, so that errors of the same kind can be counted."""
 
     def __init__(self, code: str, message: str, span: Span, *details: object) -> None:
         super().__init__(code, message, span, *details)
@@ -51,10 +51,10 @@ class TextError(Exception):
 
 
 class ExpressionError(TextError):
-    """A formula that cannot be read.
+    """A formula cannot be read.
 
-    ``suggestion`` is the whole repaired text where one is near, else None; ``tried`` counts the
-    symbols of all texts that were read in search of it.
+    ``suggestion`` is the whole repaired text, or None. ``tried`` is the number of symbols in all
+    texts that were read to find it.
     """
 
     def __init__(self, code: str, message: str, span: Span, suggestion: str | None = None) -> None:
@@ -62,18 +62,17 @@ class ExpressionError(TextError):
         self.suggestion = suggestion
         self.tried = 0
 
-    def again(self) -> "ExpressionError":
-        """An equal error without a traceback, so that a remembered one can be raised."""
+    def without_traceback(self) -> "ExpressionError":
+        """Return an equal error without a traceback, to raise a memoized error."""
         error = ExpressionError(self.code, self.message, self.span, self.suggestion)
         error.tried = self.tried
         return error
 
 
 class UnreadableError(Exception):
-    """The place where the reader stopped.
+    """The reader stopped at ``span``.
 
-    ``cause`` names what the reader found there, ``details`` holds what the repairs of that cause
-    need besides.
+    ``cause`` is the kind of problem. ``details`` are further values for the repairs of this cause.
     """
 
     def __init__(self, cause: Cause, span: Span, **details: Any) -> None:
@@ -84,17 +83,17 @@ class UnreadableError(Exception):
 
 
 def shortened(text: str) -> str:
-    """``text``, or the beginning of a long one."""
+    """Return ``text``, or the beginning of a long one."""
     return text if len(text) <= _LONGEST_QUOTATION else f"{text[:_LONGEST_QUOTATION]}…"
 
 
 def counted(values: int) -> str:
-    """A number of values in words."""
+    """Return "one value", "2 values" and so on."""
     return "one value" if values == 1 else f"{values} values"
 
 
 def quoted(text: str) -> str:
-    """``text`` as a message quotes it: shortened, and with the numbers of unprintable letters."""
+    """Return ``text`` as messages quote it: shortened, or as code points if it is unprintable."""
     text = shortened(text)
     if all(letter.isprintable() for letter in text):
         return f"`{text}`"

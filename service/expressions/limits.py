@@ -1,4 +1,4 @@
-"""Bounds on the cost of one expression, checked before the work that they bound."""
+"""Bounds on the cost of one expression. Each is checked before the work that it limits."""
 
 from dataclasses import dataclass
 
@@ -7,11 +7,11 @@ from dataclasses import dataclass
 class Limits:
     """Bounds on one expression.
 
-    ``characters`` as typed, ``nodes`` of its tree, and ``depth`` of its nesting, for which a run of
-    sums or products is one level. ``tree_depth`` is that of the tree itself, where each term of a
-    sum is a level: whatever works on a tree by recursion takes up to three calls a level, far from
-    Python's 1,000. A longer text than ``repaired`` is not repaired, and not searched for slips;
-    ``notes`` are told of one text.
+    ``characters`` bounds the typed text, ``nodes`` the size of its tree, and ``depth`` its nesting,
+    where a run of sums or products is one level. ``tree_depth`` bounds the depth of the tree, where
+    each term of a sum is a level: recursive functions on trees use up to three calls for each
+    level, and Python allows 1,000. A text longer than ``repaired`` characters is neither repaired
+    nor searched for slips. A text has at most ``notes`` notes.
 
     The longest entry of a seven-joint arm's pose, expanded and not simplified, has 2,500 characters
     in LaTeX and 270 nodes.

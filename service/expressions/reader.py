@@ -30,29 +30,28 @@ from service.time_slices import checkpoint
 
 AngleUnit = Literal["radians", "degrees"]
 
-# The numbers of texts that are remembered: of up to 40 characters, of up to 160, 640, and of more.
-# A character may take 100 bytes of memory, so the texts of each group take about 16 MB at most.
+# The cached texts: of up to 40 characters, of up to 160, of up to 640, and longer ones. A character
+# may take 100 bytes of memory, so each group takes about 16 MB at most.
 _LENGTHS: Final = (40, 160, 640)
-_REMEMBERED: Final = (4096, 1024, 256, 64)
-# The grading asks for a tree soon after reading, if at all.
-_TREES: Final = 128
-_SETS_OF_SYMBOLS: Final = 1024
-# The operators of a left operand that stands without brackets, in one run with its operator.
+_CACHED_TEXTS: Final = (4096, 1024, 256, 64)
+# Grading needs a tree soon after reading, if at all.
+_CACHED_TREES: Final = 128
+_CACHED_SYMBOL_SETS: Final = 1024
+# For each operator: the operators of a left operand that needs no brackets and extends its run.
 _RUNS: Final = {"+": "+-", "-": "+-", "*": "*/", "/": "*/", "^": "^"}
 _DECIMAL: Final = re.compile(r"\d\.|\.\d")
-# How many repaired texts may be tried for one that cannot be read, and how many symbols they may
-# have together: two of the longest that are repaired.
+# The number of repaired texts that may be tried for one unreadable text, and the number of symbols
+# in all of them (about two texts of the longest that are repaired).
 _ATTEMPTS: Final = 6
 _TRIED_SYMBOLS: Final = 1200
-# A JSON number is one whatever the symbols are called: 1e-7 is no product of 1 and e.
+# A JSON number is read without symbols: 1e-7 is never a product of 1 and e.
 _NO_SYMBOLS: Final = Vocabulary([])
 
 
 class ReadingOptions(NamedTuple):
     """How a text is read.
 
-    ``degrees`` tells whether angles are in degrees, and ``is_angle`` whether the whole entry is
-    then such an angle.
+    With ``degrees``, angles are in degrees; then ``is_angle`` is True if the whole entry is one.
     """
 
     vocabulary: Vocabulary
@@ -63,12 +62,12 @@ class ReadingOptions(NamedTuple):
 class Expression:
     """A text that was read. Immutable.
 
-    ``notes`` are on how it was read, ``symbols`` holds the canonical names used, and
-    ``has_decimal`` tells whether a decimal number was written.
+    ``notes`` describe ambiguous readings, ``symbols`` are the canonical names used, and
+    ``has_decimal`` is True if the text contains a decimal number.
 
-    Thousands of texts are remembered, each as a program and a handful of other objects. Their trees
-    are not: together they are a million objects, and the garbage collector would look at every one
-    of them in each of its rounds. A tree is built anew from the text when it is asked for.
+    Thousands of expressions are memoized, each as a program and a few other objects, but without
+    their trees: these would be a million objects, which the garbage collector would visit in each
+    round. The tree is parsed from the text again when it is needed.
     """
 
     __slots__ = (
@@ -84,13 +83,13 @@ class Expression:
         symbols: frozenset[str],
         options: ReadingOptions | None = None,
     ) -> None:
-        """With the ``options`` that read ``source`` as ``tree``, the tree itself is not kept."""
+        """Store ``tree`` only without ``options``; with them, ``source`` can be parsed again."""
         self.source: Final = source
         self.notes: Final = notes
         self.symbols: Final = symbols
         self.has_decimal: Final = "." in source and _DECIMAL.search(source) is not None
         self._program: Final = compile_tree(tree)
-        # The options as one tuple would be one more object for each text.
+        # Storing the options as one tuple would need one more object for each text.
         self._vocabulary: Final = options and options.vocabulary
         self._is_angle: Final = options is not None and options.is_angle
         self._degrees: Final = options is not None and options.degrees
@@ -98,7 +97,7 @@ class Expression:
 
     @property
     def tree(self) -> Node:
-        """The syntax tree, with the units that degrees imply. It must not be changed."""
+        """The syntax tree, with units on numbers that are degrees. It must not be changed."""
         if self._tree is not None:
             return self._tree
         assert self._vocabulary is not None
@@ -106,18 +105,18 @@ class Expression:
 
     @property
     def typed(self) -> TypedFormula:
-        """The text with its tree, as a spelling is found in it."""
+        """The text with its tree, from which the student's spelling can be found."""
         return TypedFormula(self.source, self.tree, self._degrees)
 
     def evaluate(
         self, values: SymbolValues, memo: dict[str, Any] | None = None
     ) -> SampleArray | float:
-        """The value for each sample, of shape (samples,), or a float where no symbol is used.
+        """Return the value for each sample, ``(samples,)``, or a float if no symbol is used.
 
-        ``values`` gives each symbol of ``symbols`` as an array of shape (samples,), angles in
-        radians. Where the expression is undefined the value is nan or infinite; nothing warns.
-        Expressions evaluated at the same ``values`` may share a ``memo``. The result must not be
-        changed: it may be one of ``values``, or kept in the memo.
+        ``values`` maps each symbol of ``symbols`` to an array ``(samples,)``, angles in radians.
+        Undefined values are nan or infinite, without warnings. Expressions evaluated at the same
+        ``values`` may share a ``memo``. The result must not be changed: it may be one of
+        ``values``, or in the memo.
         """
         program = self._program
         if isinstance(program, float):
@@ -129,15 +128,15 @@ class Expression:
         return result
 
     def text(self) -> str:
-        """Normal text, which reads back to the same tree."""
+        """Return the formula as normal text, which reads back to the same tree."""
         return to_text(self.tree)
 
     def latex(self) -> str:
-        """LaTeX for math mode, as typed and not rearranged."""
+        """Return the formula in LaTeX for math mode, as typed and not rearranged."""
         return to_latex(self.tree)
 
     def mathml(self) -> str:
-        """One presentation ``<math>`` element, as typed and not rearranged."""
+        """Return the formula as one presentation ``<math>`` element, as typed, not rearranged."""
         return to_mathml(self.tree)
 
     def __repr__(self) -> str:
@@ -149,7 +148,7 @@ def evaluate_all(
     values: Mapping[str, SampleArray],
     memo: dict[str, Any],
 ) -> list[SampleArray | float]:
-    """The results of each ``evaluate``, in less time; nan where there is no expression."""
+    """Return the result of ``evaluate`` for each expression, and nan for None, in less time."""
     with np.errstate(all="ignore"):
         programs = [math.nan if each is None else each._program for each in expressions]
         return [each if isinstance(each, float) else each(values, memo) for each in programs]
@@ -163,12 +162,12 @@ def read(
     angle_unit: AngleUnit = "radians",
     repairs: bool = True,
 ) -> Expression:
-    """The expression that ``source`` is, in the names of ``vocabulary``.
+    """Read ``source`` as an expression in the names of ``vocabulary``.
 
-    With ``angle_unit`` in degrees, bare numbers are degrees inside sin, cos and tan, and in the
-    whole entry if ``quantity`` is "angle". The result, or the error, is remembered. Without
-    ``repairs``, no repaired text is tried; trying them costs more than all else.
-    Raises ExpressionError, and nothing else, whatever the text or number.
+    With ``angle_unit`` "degrees", bare numbers are degrees inside sin, cos and tan, and in the
+    whole entry if ``quantity`` is "angle". The result or the error is memoized. Without
+    ``repairs``, no repaired texts are tried; trying them is the most expensive part.
+    Raises only ExpressionError, for any text or number.
     """
     if isinstance(source, str):
         text = source
@@ -179,19 +178,19 @@ def read(
         error = UnreadableError("beyond", span, limit="characters", length=len(text))
         raise _explained(text, error, vocabulary)
     degrees = angle_unit == "degrees"
-    # In radians an angle is read as any number is, and is remembered as one.
+    # In radians, an angle is read like any number, so both share one cache entry.
     options = (vocabulary, degrees and quantity == "angle", degrees)
-    remembered = _remembered[bisect_left(_LENGTHS, len(text))]
-    result = remembered(text, *options, _ATTEMPTS if repairs else 0)
+    memoized = _memoized[bisect_left(_LENGTHS, len(text))]
+    result = memoized(text, *options, _ATTEMPTS if repairs else 0)
     if isinstance(result, ExpressionError):
-        raise result.again()
+        raise result.without_traceback()
     return result
 
 
 def _number_as_text(number: int | float) -> str:
     if isinstance(number, bool):
         raise _explained("", UnreadableError("boolean", (0, 0)), _NO_SYMBOLS)
-    # Python refuses to write out an integer of several thousand digits.
+    # Python refuses to print an integer of several thousand digits.
     too_large = isinstance(number, int) and abs(number) > 10**308
     if too_large or not math.isfinite(number):
         raise _explained("", UnreadableError("not_finite", (0, 0)), _NO_SYMBOLS)
@@ -199,14 +198,14 @@ def _number_as_text(number: int | float) -> str:
 
 
 def _explained(text: str, error: UnreadableError, vocabulary: Vocabulary) -> ExpressionError:
-    """The error for a text that is not even tried."""
+    """Return the error for a text that is refused before parsing."""
     return explain(Failure(text, vocabulary, error, lambda _: None))
 
 
 def _read(
     text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool, attempts: int
 ) -> Expression | ExpressionError:
-    # An error is kept without its traceback, which would hold every frame of the parse.
+    # Return the error, do not raise it: its traceback would keep every frame of the parse.
     reading = _Reading(ReadingOptions(vocabulary, is_angle, degrees), attempts)
     result = reading.read(text)
     if isinstance(result, ExpressionError):
@@ -214,11 +213,11 @@ def _read(
     return result
 
 
-_remembered: Final = [lru_cache(maxsize=number)(_read) for number in _REMEMBERED]
+_memoized: Final = [lru_cache(maxsize=number)(_read) for number in _CACHED_TEXTS]
 
 
 class _Reading:
-    """The reading of a text, with a number of attempts to read repaired ones."""
+    """Reads a text, with a limited number of attempts to read repaired texts."""
 
     def __init__(self, options: ReadingOptions, attempts: int) -> None:
         self.options = options
@@ -234,7 +233,7 @@ class _Reading:
         return Expression(text, parsed.tree, parsed.notes, parsed.symbols, self.options)
 
     def repaired(self, text: str) -> str | None:
-        """``text`` where it can be read, else its own repaired text, if it has one."""
+        """Return ``text`` if it can be read, else its own repaired text, else None."""
         if not self.attempts or len(text) > LIMITS.repaired:
             return None
         symbols = symbols_in(text)
@@ -254,16 +253,16 @@ class _Parsed(NamedTuple):
     symbols: frozenset[str]
 
 
-@lru_cache(maxsize=_TREES)
+@lru_cache(maxsize=_CACHED_TREES)
 def _parsed(text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool) -> _Parsed:
-    """The syntax tree of ``text`` and its notes. Raises UnreadableError."""
+    """Parse ``text``. May raise UnreadableError."""
     notes: list[Note] = []
     text, note = right_side(text, vocabulary)
     notes += (note,) if note else ()
     characters = normalise(text)
     if not characters.text or characters.text.isspace():
         raise UnreadableError("empty", (0, len(text)))
-    # One character, as ½, may stand for several.
+    # One typed character, such as ½, may become several.
     if len(characters.text) > LIMITS.characters:
         raise UnreadableError("beyond", (0, len(text)), limit="terms")
     tokens = Lexer(text, characters, vocabulary, degrees=degrees, notes=notes).run()
@@ -277,16 +276,16 @@ def _parsed(text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool) ->
     return _Parsed(tree, tuple(notes[: LIMITS.notes]), symbols)
 
 
-@lru_cache(maxsize=_SETS_OF_SYMBOLS)
+@lru_cache(maxsize=_CACHED_SYMBOL_SETS)
 def _shared(symbols: frozenset[str]) -> frozenset[str]:
-    """One and the same set for all texts that use the same symbols."""
+    """Return one shared set object for all texts that use the same symbols."""
     return symbols
 
 
 def _used_symbols(tree: Node) -> frozenset[str]:
-    """The canonical names in ``tree``. Raises UnreadableError where it is too large or too deep.
+    """Return the canonical names in ``tree``. Raises UnreadableError if it is too large or deep.
 
-    A run of sums, or of products, counts as one level, for that is how it is written.
+    A run of sums, or of products, counts as one level of depth.
     """
     symbols = set()
     count, depth = 0, 0
@@ -312,7 +311,7 @@ def _used_symbols(tree: Node) -> frozenset[str]:
 
 
 def _is_beyond_depth(tree: Node) -> bool:
-    """Whether the tree itself is too deep, which a long sum may be."""
+    """True if the tree is deeper than ``LIMITS.tree_depth``, as for a very long sum."""
     level: list[Any] = [tree]
     for _ in range(LIMITS.tree_depth):
         level = [child for node in level for child in children(node)]
@@ -320,7 +319,7 @@ def _is_beyond_depth(tree: Node) -> bool:
 
 
 def _broken_limit(tree: Node) -> str:
-    """The limit that is broken first on the way from right to left, for a message names one."""
+    """Return the limit that is exceeded first, from right to left: "depth" or "nodes"."""
     count = 0
     pending: list[tuple[Any, int]] = [(tree, 1)]
     while pending:
@@ -337,5 +336,5 @@ def _broken_limit(tree: Node) -> str:
 
 
 def _is_run(node: Binary) -> bool:
-    """Whether the operand on the left is in one run with ``node``."""
+    """True if the left operand extends the run of sums or products of ``node``."""
     return type(node.left) is Binary and node.left.operator in _RUNS[node.operator]

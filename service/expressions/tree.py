@@ -7,10 +7,10 @@
              └ right
     Call cos ─ arguments          cos(q1), c1, atan2(y, x)
 
-Brackets, spelling and the c12 shorthand leave no trace in it, so that equal trees are equal
-formulas as typed. ``start`` and ``end`` are offsets in the text as typed, brackets included, and
-do not count for equality. The classes are not frozen, because a frozen dataclass takes four times
-as long to construct; nothing changes a tree after the reader has built it.
+The tree does not store brackets, spelling or the c12 shorthand, so formulas that differ only in
+these have equal trees. ``start`` and ``end`` are offsets in the text as typed, brackets included,
+and are ignored by equality. The classes are not frozen, because a frozen dataclass takes four times
+as long to construct; trees are not changed after the reader has built them.
 """
 
 from dataclasses import dataclass, field
@@ -81,7 +81,7 @@ class Binary:
 
 @dataclass(slots=True)
 class Call:
-    """A function of its arguments."""
+    """A function call."""
 
     function: str
     arguments: tuple["Node", ...]
@@ -93,7 +93,7 @@ Node = Number | Pi | SymbolNode | Unit | Negation | Binary | Call
 
 
 def children(node: Node) -> tuple[Node, ...]:
-    """The operands or arguments of ``node``, left to right."""
+    """Return the operands or arguments of ``node``, from left to right."""
     kind = type(node)
     if kind is Binary:
         return (node.left, node.right)  # type: ignore[union-attr]

@@ -1,4 +1,4 @@
-"""The figure of a robot: its mechanism as a labelled drawing, with frames only where asked for."""
+"""The figure of a robot: a labelled drawing of its mechanism, with frames only on request."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -21,8 +21,8 @@ from service.figures.geometry.mechanism import (
     JOINT_RADIUS,
     Configuration,
     MovableMechanism,
+    as_samples,
     mechanism_of,
-    one_by_one,
 )
 from service.figures.geometry.path import path_of
 from service.figures.geometry.symbol_numbers import drawing_numbers
@@ -32,11 +32,11 @@ from service.kinematics.transforms import Matrices, Numbers
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """What is drawn: a robot, its symbols, and words for whoever does not see it.
+    """The subject of a figure: a robot, its symbols, and a title for the text alternative.
 
-    ``name`` is part of ids inside the SVG. ``directed`` says that the joints' positive directions
-    are known to whoever looks. ``frames`` ``(frames, 4, 4)`` are drawn with the names x, y and z
-    and the indices ``labels``.
+    ``name`` is part of ids inside the SVG. With ``directed``, arrows show the joints' positive
+    directions. ``frames`` ``(frames, 4, 4)`` are drawn with the axis names x, y and z and the
+    indices ``labels``.
     """
 
     name: str
@@ -55,15 +55,15 @@ class Subject:
 
 
 def exercise_figure(exercise: Exercise, theme: Theme = Theme.AUTO) -> str:
-    """The drawing that a student sees: no frames, no numbers, no answer.
+    """Return the drawing for students, without frames, numbers or answers.
 
-    Raises LookupError where the exercise has no robot.
+    Raises LookupError if the exercise has no robot.
     """
     return figure(subject_of(exercise), theme)
 
 
 def subject_of(exercise: Exercise) -> Subject:
-    """The robot of an exercise as a student may see it. Raises LookupError where it has none."""
+    """Return the subject of the drawing for students. Raises LookupError without a robot."""
     if exercise.reference is None:
         raise LookupError(f"exercise {exercise.id!r} has no robot to draw")
     seen = exercise.view
@@ -78,12 +78,12 @@ def subject_of(exercise: Exercise) -> Subject:
 
 
 def reference_figure(exercise: Exercise, theme: Theme = Theme.AUTO) -> str:
-    """The drawing with the frames of the reference's own table: for tutors, an answer.
+    """Return the drawing with the frames of the reference table. It shows an answer: for tutors.
 
-    Raises LookupError where the exercise has no robot by its table.
+    Raises LookupError if the exercise has no robot with a table.
     """
     robot, subject = exercise.robot, subject_of(exercise)
-    numbers = one_by_one(drawing_numbers(exercise.variables), 1)
+    numbers = as_samples(drawing_numbers(exercise.variables), 1)
     first = robot.joints[0].index - 1
     frames = robot.all_frames(numbers, 1)[:, 0]
     labels = tuple(str(first + i) for i in range(len(frames)))
@@ -91,7 +91,7 @@ def reference_figure(exercise: Exercise, theme: Theme = Theme.AUTO) -> str:
 
 
 def figure(subject: Subject, theme: Theme = Theme.AUTO) -> str:
-    """The drawing as SVG: joints, links, names of lengths and of joint variables."""
+    """Return the drawing as SVG: joints, links, names of lengths and of joint variables."""
     numbers = drawing_numbers(subject.variables)
     mechanism = mechanism_of(subject.reference, numbers)
     shown = _at_home(mechanism, numbers)
@@ -106,14 +106,14 @@ def figure(subject: Subject, theme: Theme = Theme.AUTO) -> str:
         sheet.above += drawn
     lengths = named_lengths(subject.reference, subject.variables)
     _dimensions(sheet, shown, _measured(subject, lengths, numbers))
-    told = {length.names[0] for length in lengths if len(length.names) == 1}
-    _motions(sheet, shown, subject, told)
+    labelled = {length.names[0] for length in lengths if len(length.names) == 1}
+    _motions(sheet, shown, subject, labelled)
     caption = Caption(subject.name, subject.title, _description(subject, lengths))
     return sheet.svg(solids, caption, theme)
 
 
-def plainest_view(mechanism: MovableMechanism, numbers: Mapping[str, float]) -> View:
-    """The view that a figure of the mechanism has where its author has not chosen one."""
+def default_view(mechanism: MovableMechanism, numbers: Mapping[str, float]) -> View:
+    """Return the default view of a mechanism, used unless the author chooses another one."""
     return best_view(_at_home(mechanism, numbers), mechanism.extent)
 
 
@@ -125,8 +125,8 @@ def _at_home(mechanism: MovableMechanism, numbers: Mapping[str, float]) -> Confi
 def _measured(
     subject: Subject, lengths: Sequence[NamedLength], numbers: Mapping[str, float]
 ) -> Iterator[tuple[Numbers, Label]]:
-    """The ends ``(2, 3)`` of each length that has a name, and the name."""
-    corners = path_of(subject.reference, one_by_one(numbers, 1), 1).corners[:, 0]
+    """Yield the ends ``(2, 3)`` of each named length, and its label."""
+    corners = path_of(subject.reference, as_samples(numbers, 1), 1).corners[:, 0]
     for length in lengths:
         yield corners[[length.start, length.end]], sum_label(length.names)
 
@@ -145,7 +145,7 @@ def _dimensions(
 
 
 def _aside(step: Numbers, directions: Numbers) -> Numbers:
-    """The unit vectors at right angles to a piece that lie in a plane with a known direction."""
+    """Return the unit vectors perpendicular to ``step`` in the planes that it spans with others."""
     along = step / np.linalg.norm(step)
     found: list[Numbers] = []
     for direction in directions:
@@ -158,10 +158,10 @@ def _aside(step: Numbers, directions: Numbers) -> Numbers:
     return np.array(found)
 
 
-def _motions(sheet: Sheet, shown: Configuration, subject: Subject, told: set[str]) -> None:
-    """Draw how each joint moves, with the name of its variable where no length has told it.
+def _motions(sheet: Sheet, shown: Configuration, subject: Subject, labelled: set[str]) -> None:
+    """Draw an arrow for each joint, and its variable unless the variable labels a length.
 
-    Only where the positive directions are known has an arrow one head alone.
+    An arrow has one head if the positive directions are known, else two.
     """
     both = not subject.directed
     half, radius = JOINT_LENGTH / 2 * sheet.size, JOINT_RADIUS * sheet.size
@@ -180,14 +180,14 @@ def _motions(sheet: Sheet, shown: Configuration, subject: Subject, told: set[str
         sheet.above += arrow.svg()
         arrows.append((joint, arrow))
     for joint, arrow in arrows:
-        if joint.variable not in told:
+        if joint.variable not in labelled:
             label = name_label(joint.variable)
             place = sheet.room.place(label, around(arrow.middle, 15.0))
             sheet.above.append(label.svg(place.x, place.y, "variable"))
 
 
 def _description(subject: Subject, lengths: Sequence[NamedLength]) -> str:
-    """The picture in words, for whoever does not see it: what it shows, and no answer."""
+    """Return the text alternative: what the picture shows, without an answer."""
     kinds = [
         f"{name_label(joint.variable).text} {'slides' if joint.prismatic else 'turns'}"
         for joint in subject.joints

@@ -1,7 +1,7 @@
-"""The figure of a table as somebody has written it: its frames, over the mechanism or alone.
+"""The figure of a student's table: its frames, drawn over the mechanism or alone.
 
-It shows one configuration, and stands in where the 3D view cannot be drawn. Nothing that the
-student wrote is in it but numbers: its only texts are the names of axes, x0 to z12.
+It shows one configuration, and replaces the 3D view in browsers that cannot draw it. It contains no
+text from the student: its only texts are the names of axes, x0 to z12.
 """
 
 from collections.abc import Iterator
@@ -21,7 +21,7 @@ from service.figures.drawing.mechanism_solids import (
 )
 from service.figures.drawing.placing import TakenRoom
 from service.figures.drawing.sheet import Caption, Sheet, camera_for
-from service.figures.drawing.solids import in_order, polyline
+from service.figures.drawing.solids import back_to_front, polyline
 from service.figures.drawing.style import Theme
 from service.figures.geometry.mechanism import Configuration, MovableMechanism, distinct
 from service.figures.geometry.view import View
@@ -29,11 +29,11 @@ from service.kinematics.chain import joint_frames
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices, Numbers
 
-# The view of a table without a mechanism; the 3D view begins with the same.
+# The view of a table without a mechanism; the 3D view begins with the same view.
 _PLAIN: Final = View(-60, 25)
 _UP: Final = np.array([0.0, 0.0, 1.0])
 _NOTHING: Final = 1e-5
-# The length of the axes of frames as a share of the parts' size, and the least in pixels.
+# The length of frame axes as a share of the parts' size, and the minimum length in pixels.
 _FRAME: Final = 0.2
 _LEAST: Final = 30.0
 _CAPTION: Final = Caption(
@@ -45,7 +45,7 @@ _CAPTION: Final = Caption(
 class WrittenChain:
     """A table at some joint values: its frames ``(frames, 4, 4)``, the base frame first.
 
-    ``row_joints`` has the joint of each row, None where it has none.
+    ``row_joints`` has the joint of each row, or None for a row without a joint.
     """
 
     frames: Matrices
@@ -54,7 +54,7 @@ class WrittenChain:
 
     @property
     def links(self) -> list[Numbers]:
-        """The line of each row ``(3, 3)``: along z and along x, in the convention's order."""
+        """The line ``(3, 3)`` of each row: along z and along x, in the convention's order."""
         return [
             np.array([before[:3, 3], before[:3, 3] + self._first(before, after), after[:3, 3]])
             for before, after in pairwise(self.frames)
@@ -66,7 +66,7 @@ class WrittenChain:
 
     @property
     def axes(self) -> Iterator[tuple[Joint, Numbers]]:
-        """The joints, each with the frame ``(4, 4)`` along whose z it acts."""
+        """The joints, each with the frame ``(4, 4)`` whose z axis is its axis."""
         for joint, frame in zip(
             self.row_joints, joint_frames(self.frames, self.convention), strict=True
         ):
@@ -76,7 +76,7 @@ class WrittenChain:
 
 @dataclass(frozen=True, slots=True)
 class SeenMechanism:
-    """The mechanism of an exercise as it is moved, and where it is seen from."""
+    """The mechanism of an exercise, its configuration and its view."""
 
     mechanism: MovableMechanism
     shown: Configuration
@@ -86,7 +86,7 @@ class SeenMechanism:
 def table_figure(
     written: WrittenChain | None, seen: SeenMechanism | None, theme: Theme = Theme.AUTO
 ) -> str:
-    """The SVG of a table, of a mechanism, or of the one over the other; one of them is there."""
+    """Return the SVG of a table, of a mechanism, or of both; at least one must be given."""
     links = [] if written is None else written.links
     corners = [np.zeros((1, 3)), *links]
     if seen is not None:
@@ -94,7 +94,7 @@ def table_figure(
     points = np.concatenate(corners)
     extent = float(np.linalg.norm(np.ptp(points, axis=0)))
     if extent < _NOTHING:
-        # A table that leads nowhere is seen as large as its parts.
+        # A table whose frames all coincide is drawn as large as its parts.
         points, extent = np.concatenate([points, _UP[None]]), 1.0
     size = seen.mechanism.size if seen else 0.9 * extent
     sheet = Sheet(camera_for(points, seen.view if seen else _PLAIN), size, TakenRoom(hasty=True))
@@ -114,7 +114,7 @@ def table_figure(
 
 
 def _solids(sheet: Sheet, written: WrittenChain, links: list[Numbers]) -> list[str]:
-    """The SVG of the table as a robot of its own."""
+    """Return the SVG of a robot with the joints and links of the table."""
     joints = [
         joint_solid(
             sheet, frame[:3, 3], frame[:3, 2], f"{_CAPTION.name}-{i}", slides=joint.prismatic
@@ -124,4 +124,4 @@ def _solids(sheet: Sheet, written: WrittenChain, links: list[Numbers]) -> list[s
     lines = [line for line in map(distinct, links) if len(line) > 1]
     rods = [link_solid(sheet, line, line) for line in lines]
     floor = ground_solid(sheet, np.zeros(3), _UP)
-    return [floor.svg, *(solid.svg for solid in in_order(sheet.camera, [*joints, *rods]))]
+    return [floor.svg, *(solid.svg for solid in back_to_front(sheet.camera, [*joints, *rods]))]

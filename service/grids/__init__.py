@@ -1,6 +1,7 @@
-"""Pasted text -> a grid of cells, each with its place in the text as pasted.
+"""Pasted text -> a grid of cells. Each cell keeps its place in the pasted text.
 
-Knows nothing of robots, and of expressions only spans, errors and the names of functions.
+This package knows nothing about robots. It imports only spans, errors and function names from
+``service.expressions``.
 """
 
 from service.grids.cutting.grid import Grid, GridCell, GridError

@@ -13,9 +13,9 @@ from service.grids.scripts.named_columns import describes_columns, read_columns
 from service.grids.scripts.program_text import without_title
 from service.grids.scripts.robot_script import describes_robot, read_script
 from service.grids.scripts.robot_table import RobotTable
-from service.grids.scripts.session import printed
+from service.grids.scripts.session import session_outputs
 
-# The surest sign comes first: a tag, a command, a bracket; then separators, blanks last of all.
+# Formats with sure signs (tags, commands, brackets) come first, then separators, then blanks.
 FORMATS: Final[tuple[GridFormat, ...]] = (
     html.FORMAT, latex.FORMAT, drawn_matrix.FORMAT, bracketed.FORMAT, markdown.FORMAT,
     matlab_rows.FORMAT, tsv.FORMAT, semicolons.FORMAT, csv.FORMAT, columns.FORMAT,
@@ -23,14 +23,14 @@ FORMATS: Final[tuple[GridFormat, ...]] = (
 
 _SEPARATORS: Final = (*",;&|│┃║\t\n\r\x85\u2028\u2029", "<t", "<T", "\\\\")
 
-# LaTeX's thin space, by which factors are parted.
+# LaTeX's thin space, which is written between factors and contains a comma.
 _THIN_SPACE: Final = "\\,"
 
 
 def read_grid(text: str) -> Grid:
-    """The grid in a pasted text. Raises GridError, and nothing else, whatever the text.
+    """Return the grid in a pasted text. Raises only GridError, for any text.
 
-    Time is linear in the text, which is bounded by ``GRID_LIMITS``.
+    Takes linear time. The length of the text is bounded by ``GRID_LIMITS``.
     """
     source, notes = without_given_values(without_title(pasted_source(text)))
     found = grid_of(source)
@@ -38,10 +38,9 @@ def read_grid(text: str) -> Grid:
 
 
 def read_robot(text: str) -> RobotTable | None:
-    """The DH table of a robot that a pasted script describes; None for any other text.
+    """Return the DH table of the robot that a pasted script describes; None for any other text.
 
-    Raises GridError where the text is such a script, and its table is not certain. Time is linear
-    in the text.
+    Raises GridError if the text is such a script but its table is not certain. Takes linear time.
     """
     if describes_robot(text):
         return read_script(_limited(text))
@@ -49,17 +48,17 @@ def read_robot(text: str) -> RobotTable | None:
 
 
 def pasted_source(text: str, *, named: bool = False) -> SourceText:
-    """A pasted text within the limits, without the prompts of an interpreter.
+    """Return a pasted text without the prompts of an interpreter.
 
-    With ``named``, names that were asked for at a prompt stand as headings above their outputs.
+    With ``named``, the name typed at a prompt becomes a heading above its output.
 
-    Raises GridError beyond the limits, and where nothing is written.
+    Raises GridError if the text is empty or exceeds the limits.
     """
-    return printed(_limited(text), named=named)
+    return session_outputs(_limited(text), named=named)
 
 
 def _limited(text: str) -> SourceText:
-    """A pasted text. Raises GridError beyond the limits, and where nothing is written."""
+    """Return the text as a SourceText. Raises GridError if it is empty or exceeds the limits."""
     if len(text) > GRID_LIMITS.characters:
         most = GRID_LIMITS.characters
         message = f"A pasted text has at most {most:,} characters; yours has {len(text):,}."
@@ -78,7 +77,7 @@ def _limited(text: str) -> SourceText:
 
 
 def grid_of(source: SourceText) -> Grid:
-    """The grid in a piece of a pasted text. Raises GridError where there is none."""
+    """Return the grid in a piece of a pasted text. Raises GridError if it is no grid."""
     for candidate in FORMATS:
         if candidate.matches(source.text):
             return candidate.parse(source)

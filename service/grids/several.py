@@ -1,6 +1,7 @@
-r"""Several matrices in one pasted text, each with the name in front of it.
+r"""Several matrices in one pasted text, each with the name before it.
 
-``A1 = […]`` and ``A2 = […]`` below each other, a list of them, LaTeX with several environments.
+The text may be ``A1 = […]`` above ``A2 = […]``, a list of matrices, or LaTeX with several
+environments.
 """
 
 import re
@@ -20,7 +21,7 @@ from service.grids.registry import grid_of, pasted_source
 from service.grids.scripts.program_text import MAKERS, TAIL, without_harmless_lines, without_remarks
 
 _HIDDEN: Final = "\x01"
-# A name such as A_1, T(q1) or A{2}; what stands in its brackets is hidden.
+# A name such as A_1, T(q1) or A{2}; the content of its brackets is masked.
 _NAME: Final = (
     r"(?:\{\})?(?!\d+[.*\s])[\w\\{^]"
     rf"(?:[\w.^\\'*@→ \t]|[({{\[]{_HIDDEN}{{0,40}}[)}}\]]){{0,48}}"
@@ -35,9 +36,9 @@ _PRODUCT: Final = re.compile(
     r"(?:[A-Za-z]{1,12}\()?[^\W\d]\w{0,20}(?:\s?[*@.]\s?[^\W\d]\w{0,20})+\)?"
 )
 _PROSE: Final = re.compile(r"[^\W\d]{0,20}(?:[ \n,.:;]{1,3}[^\W\d]{1,20}){0,40}")
-# A list of matrices stands in the brackets of a list, and these in those of a function.
+# The brackets of a matrix, of a list around it, and of a function around the list.
 _NESTING: Final = 3
-# Each row of each matrix may have brackets of its own.
+# Each row of each matrix may be in brackets of its own.
 _MOST_GROUPS: Final = GRID_LIMITS.rows**2
 _GROUP: Final = re.compile(
     rf"(?:(?<![\w.])(?P<maker>[A-Za-z_][\w.]{{0,60}})[ \t]*)?[\[({{]{_HIDDEN}*[\])}}]"
@@ -47,9 +48,9 @@ _BLANK_LINES: Final = re.compile(r"\n(?:[ \t]*\r?\n)+")
 
 @dataclass(frozen=True, slots=True)
 class NamedGrid:
-    """One matrix of several, or the reason why it cannot be read.
+    """One matrix of several, or the error if it cannot be read.
 
-    ``name`` is the text in front of it, empty where there is none.
+    ``name`` is the name before the matrix; it may be empty.
     """
 
     name: SourceText
@@ -57,13 +58,13 @@ class NamedGrid:
 
 
 def read_grids(text: str) -> tuple[NamedGrid, ...]:
-    """The matrices in a pasted text, in the order in which they stand.
+    """Return the matrices in a pasted text, in order.
 
-    Time is linear in the text. Raises GridError where the text cannot be cut into matrices.
+    Takes linear time. Raises GridError if the text cannot be split into matrices.
     """
     source = pasted_source(text, named=True)
     pieces = latex_list.several(source) if latex.FORMAT.matches(source.text) else _several(source)
-    # Names and products alone are no matrix: the text itself is refused as one.
+    # Names and products alone are no matrix: let the reader of a matrix refuse the text.
     pieces = pieces or [(source.cut(0, 0), source)]
     if len(pieces) > GRID_LIMITS.rows:
         raise too_many_matrices(source.whole)
@@ -72,7 +73,7 @@ def read_grids(text: str) -> tuple[NamedGrid, ...]:
 
 
 def _is_made_later(each: NamedGrid, later: Sequence[NamedGrid]) -> bool:
-    """Whether this only makes a matrix: ``A1 = trotz(q1)`` above ``A1 = […]``."""
+    """True if ``each`` is a formula whose value follows: ``A1 = trotz(q1)`` above ``A1 = […]``."""
     name = each.name.text
     if not isinstance(each.grid, GridError) or each.grid.code != "no_grid" or not name:
         return False
@@ -98,7 +99,7 @@ def _several(source: SourceText) -> list[tuple[SourceText, SourceText]]:
 
 
 def _headings_out_of_comments(source: SourceText) -> SourceText:
-    """The text in which ``% A1`` on a line of its own is the heading ``A1``."""
+    """Return the text with each comment line ``% A1`` replaced by the heading ``A1``."""
     pieces, start = [], 0
     for comment in _COMMENT.finditer(source.text):
         pieces += [source.cut(start, comment.start()), source.cut(*comment.span(1))]
@@ -107,7 +108,7 @@ def _headings_out_of_comments(source: SourceText) -> SourceText:
 
 
 def _masked(source: SourceText) -> str:
-    """The text in which all that stands in brackets and quotes is hidden."""
+    """Return the text with the contents of all brackets and quotes masked."""
     pieces, start, after = [], 0, 0
     text = source.text
     ends = strict_pairs(source)
@@ -120,7 +121,7 @@ def _masked(source: SourceText) -> str:
 
 
 def _labelled(source: SourceText) -> Iterator[tuple[SourceText, SourceText]]:
-    """The names at the outermost level, each with what stands behind it."""
+    """Yield each name outside brackets with the text that follows it."""
     name, start = source.cut(0, 0), 0
     for heading in _HEADING.finditer(_masked(source)):
         content = source.cut(start, heading.start())
@@ -138,13 +139,13 @@ def _labelled(source: SourceText) -> Iterator[tuple[SourceText, SourceText]]:
 
 
 def _holds_something(content: SourceText) -> bool:
-    """Whether this is more than words, and products of matrices by name."""
+    """True if the text is more than prose or a product of named matrices."""
     text = content.text.strip(TAIL)
     return _PRODUCT.fullmatch(text) is None and _PROSE.fullmatch(text) is None
 
 
 def _listed(content: SourceText) -> list[SourceText]:
-    """The matrices in a text without names: in a list, in a row, or in blocks."""
+    """Split a text without names into matrices: a list, consecutive brackets, or blocks."""
     inner = content
     for _ in range(_NESTING):
         groups = _groups(inner)
@@ -160,7 +161,7 @@ def _listed(content: SourceText) -> list[SourceText]:
 
 
 def _groups(content: SourceText) -> list[SourceText]:
-    """The brackets in a row, with the functions they are handed to; none beside other text."""
+    """Return consecutive brackets with the functions around them; [] if there is other text."""
     masked = _masked(content)
     groups = list(islice(_GROUP.finditer(masked), _MOST_GROUPS + 1))
     if len(groups) > _MOST_GROUPS or _GROUP.sub("", masked).strip(TAIL):
@@ -174,7 +175,7 @@ def _content(group: SourceText) -> SourceText:
 
 
 def _is_matrix(group: SourceText) -> bool:
-    """Whether a bracket, perhaps handed to a function, is a matrix and no row of one."""
+    """True if a bracket, possibly the argument of a function, is a matrix and not a row."""
     content = _content(group)
     maker = group.text[: len(group.text) - len(content.text) - 2].strip().rpartition(".")[2]
     if maker:

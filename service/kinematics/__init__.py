@@ -1,1 +1,1 @@
-"""Rigid transforms and Denavit-Hartenberg chains, batched. Knows nothing of students."""
+"""Rigid transforms and Denavit-Hartenberg chains, batched. Independent of students' answers."""

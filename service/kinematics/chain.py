@@ -1,11 +1,11 @@
 """A serial chain as the alternating product X_0 Z_1 X_1 Z_2 X_2 … Z_m X_m.
 
 Z_i = Rot_z(θ_i) Trans_z(d_i) and X_i = Trans_x(a_i) Rot_x(α_i); the factors of each commute. The
-standard table groups the product as (Z_1 X_1)(Z_2 X_2)…, the modified table as (X_0 Z_1)(X_1 Z_2)…,
-so converting a table is moving (a, α) by one row and nothing is solved for.
+standard table groups the product as (Z_1 X_1)(Z_2 X_2)…, the modified table as (X_0 Z_1)(X_1 Z_2)….
+So converting a table means moving (a, α) by one row, without solving any equation.
 
-A numeric table is an array ``(rows, 4, ...)``: the columns are a, α, d, θ in this order, the axes
-after them are the batch; angles in radians. The regrouping is the same for numbers and formulas.
+A numeric table is an array ``(rows, 4, ...)``: the columns are a, α, d, θ in this order, and the
+axes after them are the batch; angles in radians. Numbers and formulas are regrouped the same way.
 """
 
 from collections.abc import Sequence
@@ -30,7 +30,7 @@ _IDENTITY = identity()
 def modified_rows(standard: Sequence[Row[_Cell]], zero: _Cell) -> list[Row[_Cell]]:
     """Regroup (Z_1 X_1)…(Z_m X_m) as (X_0 Z_1)…(X_{m-1} Z_m)(X_m), with X_0 the identity.
 
-    The last of the ``m + 1`` rows is the fixed end-effector row "e" of the proximal convention.
+    The last of the ``m + 1`` rows is the fixed end-effector row "e" of the modified convention.
     """
     none = (zero, zero, zero, zero)
     pairs = zip([none, *standard], [*standard, none], strict=True)
@@ -38,32 +38,32 @@ def modified_rows(standard: Sequence[Row[_Cell]], zero: _Cell) -> list[Row[_Cell
 
 
 def standard_rows(modified: Sequence[Row[_Cell]], zero: _Cell) -> list[Row[_Cell]]:
-    """Regroup (X_0 Z_1)…(X_{m-1} Z_m) as (Z_1 X_1)…(Z_m): as many rows, the last without X.
+    """Regroup (X_0 Z_1)…(X_{m-1} Z_m) as (Z_1 X_1)…(Z_m): ``m`` rows, the last one without X.
 
-    X_0 is left out, since a standard table begins on the axis of joint 1. The caller must see to it
-    that the chain has none.
+    X_0 is dropped, because a standard table begins on the axis of joint 1. The caller must ensure
+    that it is the identity.
     """
     pairs = zip(modified, [*modified[1:], (zero, zero, zero, zero)], strict=True)
     return [(*after[:2], *row[2:]) for row, after in pairs]
 
 
 def links(table: Table, convention: Convention) -> Matrices:
-    """The link transform of each row: ``(rows, ..., 4, 4)`` from a table ``(rows, 4, ...)``."""
+    """Return the link transform of each row: ``(rows, ..., 4, 4)`` from ``(rows, 4, ...)``."""
     return link_transforms(convention, table[:, A], table[:, ALPHA], table[:, D], table[:, THETA])
 
 
 def compound(transforms: Matrices) -> Matrices:
-    """The product A_1 A_2 … along the first axis of ``(rows, ..., 4, 4)``."""
+    """Return the product A_1 A_2 … along the first axis of ``(rows, ..., 4, 4)``."""
     return reduce(np.matmul, transforms)
 
 
 def frames(table: Table, convention: Convention) -> Matrices:
-    """The base frame and the frame after each row of a table: ``(rows + 1, ..., 4, 4)``."""
+    """Return the base frame and the frame after each row of a table: ``(rows + 1, ..., 4, 4)``."""
     return products(links(table, convention))
 
 
 def products(transforms: Matrices) -> Matrices:
-    """The product of the first k transforms for k = 0..K: ``(K + 1, ...)`` from ``(K, ...)``."""
+    """Return the product of the first k transforms for k = 0..K: ``(K + 1, ...)``."""
     reached = np.empty((len(transforms) + 1, *transforms.shape[1:]))
     reached[0] = _IDENTITY
     reached[1:2] = transforms[:1]
@@ -73,23 +73,23 @@ def products(transforms: Matrices) -> Matrices:
 
 
 def joint_frames(frames: Matrices, convention: Convention) -> Matrices:
-    """The frames along whose z each row's joint acts: ``(rows, ...)`` of ``(rows + 1, ...)``.
+    """Return, for each row, the one of ``frames`` whose z axis is the joint axis: ``(rows, ...)``.
 
-    Row i of a standard table acts along z_{i-1}, of a modified one along z_i.
+    The joint axis of row i is z_{i-1} in a standard table and z_i in a modified one.
     """
     return frames[:-1] if convention is Convention.STANDARD else frames[1:]
 
 
 def z_links(rows: Table) -> Matrices:
-    """The Z of each row: ``(rows, ..., 4, 4)`` from ``(rows, 4, ...)``."""
+    """Return the factor Z of each row: ``(rows, ..., 4, 4)`` from ``(rows, 4, ...)``."""
     return standard_link(0.0, 0.0, rows[:, D], rows[:, THETA])
 
 
 def axis_frames(table: Table, convention: Convention, wanted: Convention) -> Matrices:
-    """The frames on the rows' axes as ``wanted`` has them, and the last: ``(rows + 1, ..., 4, 4)``.
+    """Return the frames on the joint axes and the last frame: ``(rows + 1, ..., 4, 4)``.
 
-    In the standard convention they are where a row's Z starts from, in the modified one where it
-    leads to; the table may be of either.
+    If ``wanted`` is the standard convention, they are the frames before each row's Z; if it is the
+    modified one, the frames after it. The table may be in either convention.
     """
     reached = frames(table, convention)
     if wanted is convention is Convention.STANDARD:
@@ -102,5 +102,5 @@ def axis_frames(table: Table, convention: Convention, wanted: Convention) -> Mat
 
 
 def pose(table: Table, convention: Convention) -> Matrices:
-    """The compound transform of a table ``(rows, 4, ...)``: ``(..., 4, 4)``."""
+    """Return the compound transform of a table ``(rows, 4, ...)``: ``(..., 4, 4)``."""
     return compound(links(table, convention))

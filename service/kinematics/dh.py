@@ -13,19 +13,19 @@ from service.kinematics.transforms import Matrices
 
 
 class Convention(StrEnum):
-    """Which frame of a link carries the joint: the distal one or the proximal one."""
+    """The Denavit-Hartenberg convention of a table: standard (distal) or modified (proximal)."""
 
     STANDARD = "standard"
     MODIFIED = "modified"
 
     @property
     def other(self) -> "Convention":
-        """The one of the two that this is not."""
+        """The other convention."""
         return Convention.MODIFIED if self is Convention.STANDARD else Convention.STANDARD
 
 
 def standard_link(a: ArrayLike, alpha: ArrayLike, d: ArrayLike, theta: ArrayLike) -> Matrices:
-    """A_i = Rot_z(θ_i) Trans_z(d_i) Trans_x(a_i) Rot_x(α_i), the distal convention.
+    """Return A_i = Rot_z(θ_i) Trans_z(d_i) Trans_x(a_i) Rot_x(α_i), the standard convention.
 
     Source: Spong, Hutchinson, Vidyasagar, *Robot Modeling and Control*, eq. 3.10.
     """
@@ -48,10 +48,10 @@ def standard_link(a: ArrayLike, alpha: ArrayLike, d: ArrayLike, theta: ArrayLike
 
 
 def modified_link(a: ArrayLike, alpha: ArrayLike, d: ArrayLike, theta: ArrayLike) -> Matrices:
-    """Rot_x(α_{i-1}) Trans_x(a_{i-1}) Rot_z(θ_i) Trans_z(d_i), the proximal convention.
+    """Return Rot_x(α_{i-1}) Trans_x(a_{i-1}) Rot_z(θ_i) Trans_z(d_i), the modified convention.
 
     Source: Craig, *Introduction to Robotics*, eq. 3.6; here ``a`` and ``alpha`` are the entries
-    of row i, which carry the index i−1.
+    of row i, which have the index i−1.
     """
     cos_theta, sin_theta = np.cos(theta), np.sin(theta)
     cos_alpha, sin_alpha = np.cos(alpha), np.sin(alpha)
@@ -74,6 +74,6 @@ def modified_link(a: ArrayLike, alpha: ArrayLike, d: ArrayLike, theta: ArrayLike
 def link_transforms(
     convention: Convention, a: ArrayLike, alpha: ArrayLike, d: ArrayLike, theta: ArrayLike
 ) -> Matrices:
-    """The link transforms of whole tables at once, in the given convention."""
+    """Return the link transforms of whole tables at once, in the given convention."""
     link = standard_link if convention is Convention.STANDARD else modified_link
     return link(a, alpha, d, theta)

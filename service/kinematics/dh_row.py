@@ -1,9 +1,9 @@
-"""Whether a transform is a link transform, and its row if it is.
+"""Check the two DH conditions of a transform, and find its DH row.
 
-Four numbers describe a transform only under two conditions (Spong, Hutchinson, Vidyasagar, *Robot
-Modeling and Control*, §3.2.1; *Direct Kinematics (Part 2)*, §2.3). Standard: DH1, x_1 is
-perpendicular to z_0; DH2, x_1 meets z_0. Modified: the same of z_1 and x_0. The inverse of a
-modified link transform is a standard one with all four numbers negated, so one formula serves both.
+A transform has a DH row only if two conditions hold (Spong, Hutchinson, Vidyasagar, *Robot Modeling
+and Control*, §3.2.1; *Direct Kinematics (Part 2)*, §2.3). Standard: DH1, x_1 is perpendicular to
+z_0; DH2, x_1 meets z_0. Modified: the same conditions for z_1 and x_0. The inverse of a modified
+link transform is a standard one with all four numbers negated, so both use the same formulas.
 """
 
 import numpy as np
@@ -19,12 +19,12 @@ def _as_standard(transform: Matrices, convention: Convention) -> Matrices:
 
 
 def dh1_residual(transform: Matrices, convention: Convention) -> Numbers:
-    """The cosine of the angle between the axes of DH1, ``(...)``; 0 if it holds."""
+    """Return the cosine of the angle between the axes of DH1, ``(...)``; 0 if DH1 holds."""
     return np.asarray(_as_standard(transform, convention)[..., 2, 0])
 
 
 def dh2_residual(transform: Matrices, convention: Convention) -> Numbers:
-    """The distance at which the axes of DH2 pass each other, ``(...)``; 0 if they meet."""
+    """Return the signed distance between the axes of DH2, ``(...)``; 0 if DH2 holds."""
     standard = _as_standard(transform, convention)
     x, y = standard[..., 0, 0], standard[..., 1, 0]
     px, py = standard[..., 0, 3], standard[..., 1, 3]
@@ -35,7 +35,7 @@ def dh2_residual(transform: Matrices, convention: Convention) -> Numbers:
 
 
 def row(transform: Matrices, convention: Convention) -> Numbers:
-    """The row (a, α, d, θ) ``(..., 4, L)`` of transforms ``(..., L, 4, 4)`` for which both hold.
+    """Return the row (a, α, d, θ) ``(..., 4, L)`` of link transforms ``(..., L, 4, 4)``.
 
     >>> from service.kinematics.dh import modified_link
     >>> row(modified_link(0.5, 0.2, 0.3, 0.7)[None], Convention.MODIFIED)[:, 0]
@@ -50,7 +50,7 @@ def row(transform: Matrices, convention: Convention) -> Numbers:
 
 
 def is_unreachable(transform: Matrices, length_scale: float) -> NDArray[np.bool_]:
-    """Where no row of the standard convention leads to a whole frame ``(H, L, 4, 4)``: ``(H,)``."""
+    """True for transforms ``(H, L, 4, 4)`` that no standard row describes: ``(H,)``."""
     tilt = np.abs(dh1_residual(transform, Convention.STANDARD)).max(axis=-1)
     distance = np.abs(dh2_residual(transform, Convention.STANDARD)).max(axis=-1)
     return np.asarray((tilt > PARALLEL) | (distance > PARALLEL * length_scale))

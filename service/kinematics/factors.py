@@ -1,10 +1,11 @@
-"""A table as the product of its factors: screws about x and z in turn.
+"""A table as a product of factors: alternating screw motions about x and z.
 
-X = Trans_x(a) Rot_x(α) and Z = Rot_z(θ) Trans_z(d) are screws: a shift along an axis and a turn
-about it, which commute. A standard table is Z_1 X_1 Z_2 X_2 …, a modified one X_0 Z_1 X_1 Z_2 ….
+X = Trans_x(a) Rot_x(α) and Z = Rot_z(θ) Trans_z(d) are screw motions: a shift along an axis and a
+turn about it, which commute. A standard table is Z_1 X_1 Z_2 X_2 …, a modified table X_0 Z_1 X_1
+Z_2 ….
 
-Shapes: L samples, K factors; a table is ``(rows, 4, L)`` in the column order a, α, d, θ,
-joint variables and all; angles in radians. Axes are numbered: 0 is x, 2 is z.
+Shapes: L samples, K factors; a table is ``(rows, 4, L)`` in the column order a, α, d, θ, including
+the joint variables; angles in radians. Axes are numbered: 0 is x, 2 is z.
 """
 
 from dataclasses import dataclass
@@ -20,7 +21,7 @@ from service.kinematics.transforms import Matrices, Numbers, inverse
 Integers = NDArray[np.int_]
 
 X, Z = 0, 2
-# The cells of a factor: how far it shifts and how far it turns.
+# The two cells of a factor: the length of its shift, and the angle of its turn.
 SHIFT, TURN = 0, 1
 
 # A row and a column of a table.
@@ -31,7 +32,7 @@ CellIndex = tuple[int, int]
 class Factors:
     """The factors of a table, in the order of the product.
 
-    ``sizes`` ``(K, 2, L)`` are the SHIFT and the TURN of each, about the axes ``(K,)``.
+    ``sizes`` ``(K, 2, L)`` are the SHIFT and the TURN of each factor, ``axes`` ``(K,)`` its axis.
     """
 
     convention: Convention
@@ -40,7 +41,7 @@ class Factors:
 
     @cached_property
     def screws(self) -> Matrices:
-        """The factors themselves, ``(K, L, 4, 4)``."""
+        """The factors as matrices, ``(K, L, 4, 4)``."""
         return screws(self.axes, self.sizes[:, SHIFT], self.sizes[:, TURN])
 
     @cached_property
@@ -68,16 +69,16 @@ class Factors:
         return inverse(self.after)
 
     def around(self, factor: int) -> tuple[Matrices, Matrices]:
-        """The products of the factors before and after one of them, ``(L, 4, 4)`` each."""
+        """Return the products of all factors before and after ``factor``, ``(L, 4, 4)`` each."""
         before = reduce(np.matmul, self.screws[:factor], np.eye(4))
         return before, reduce(np.matmul, self.screws[factor + 1 :], np.eye(4))
 
     def cell(self, factor: int, kind: int) -> CellIndex:
-        """The cell that holds the SHIFT or TURN of a factor."""
+        """Return the table cell of a factor's SHIFT or TURN."""
         return factor // 2, (A if self.axes[factor] == X else D) + kind
 
     def position(self, cell: CellIndex) -> tuple[int, int]:
-        """The factor of a cell, and whether the cell is its SHIFT or its TURN."""
+        """Return the factor of a table cell, and SHIFT or TURN."""
         row, column = cell
         in_z = column >= D
         z_first = self.convention is Convention.STANDARD
@@ -85,7 +86,7 @@ class Factors:
 
 
 def factors_of(table: Table, convention: Convention, unit: float = 1.0) -> Factors:
-    """The factors of a table ``(rows, 4, L)``, its lengths measured in ``unit``."""
+    """Return the factors of a table ``(rows, 4, L)``, with lengths measured in ``unit``."""
     sizes = table.reshape(len(table), 2, 2, -1)
     z_first = convention is Convention.STANDARD
     if z_first:
@@ -96,7 +97,7 @@ def factors_of(table: Table, convention: Convention, unit: float = 1.0) -> Facto
 
 
 def screws(axes: Integers, shifts: Numbers, turns: Numbers) -> Matrices:
-    """The screws ``(K, L, 4, 4)`` about axes ``(K,)`` by shifts and turns ``(K, L)``."""
+    """Return screw motions ``(K, L, 4, 4)`` about axes ``(K,)`` by shifts and turns ``(K, L)``."""
     k = np.arange(len(axes))
     one, other = (axes + 1) % 3, (axes + 2) % 3
     cosine, sine = np.cos(turns), np.sin(turns)
@@ -112,10 +113,10 @@ def screws(axes: Integers, shifts: Numbers, turns: Numbers) -> Matrices:
 
 
 def read_screws(transforms: Matrices, axes: Integers) -> tuple[Numbers, Numbers]:
-    """The SHIFT and TURN of each transform about its axis, and how far it is from such a screw.
+    """Return the SHIFT and TURN of each transform about its axis, and its deviation from a screw.
 
-    From ``(K, L, 4, 4)`` and axes ``(K,)``: the sizes ``(K, 2, L)`` and the errors ``(K, L)``, how
-    far the axis is tilted and how far the origin lies beside it.
+    For transforms ``(K, L, 4, 4)`` and axes ``(K,)``, the results are the sizes ``(K, 2, L)`` and
+    the deviations ``(K, L)``: the tilt of the axis plus the distance of the origin from it.
     """
     k = np.arange(len(axes))
     one, other = (axes + 1) % 3, (axes + 2) % 3

@@ -1,11 +1,11 @@
-"""Joint screws of a table, which are the columns of its space Jacobian, and its rank.
+"""The space Jacobian of a table, whose columns are the joints' screws, and its rank.
 
-A screw (ω; v) is a column of six numbers: ω = z and v = −ω × o for a joint that turns about the
-axis z through o, ω = 0 and v = z for one that slides along z; both in the base frame.
+A screw (ω; v) has six numbers in the base frame: ω = z and v = −ω × o for a revolute joint with the
+axis z through o, and ω = 0 and v = z for a prismatic joint along z.
 Source: Lynch and Park, *Modern Robotics*, §5.1.1, eq. 5.11.
 
 Shapes: L samples and n joints; a table is ``(rows, 4, L)``, angles in radians. Lengths should be
-measured in a unit that suits the arm, or they outweigh the angular parts.
+measured in a unit that suits the arm, so that they do not outweigh the angular parts.
 """
 
 from collections.abc import Sequence
@@ -23,10 +23,10 @@ Screws = NDArray[np.float64]
 def space_jacobian(
     table: Table, convention: Convention, rows: Sequence[int], prismatic: Sequence[bool]
 ) -> Screws:
-    """The space Jacobian ``(L, 6, n)`` at the configurations that the table is given in.
+    """Return the space Jacobian ``(L, 6, n)`` at the configurations of the table.
 
-    ``rows`` says which row belongs to each joint, ``prismatic`` which joints slide. Angular over
-    linear parts; the linear ones have the table's unit of length.
+    ``rows`` has the row of each joint; ``prismatic`` is True for prismatic joints. The angular
+    parts are above the linear parts, which have the table's unit of length.
     """
     on_axes = joint_frames(frames(table, convention), convention)[list(rows)]
     axes, origins = on_axes[..., :3, 2], on_axes[..., :3, 3]
@@ -37,9 +37,9 @@ def space_jacobian(
 
 
 def coincident(jacobian: Screws) -> NDArray[np.bool_]:
-    """Which pairs of joints of ``(L, 6, n)`` are one joint twice, at every sample: ``(n, n)``.
+    """True for pairs of joints of ``(L, 6, n)`` with the same motion at every sample: ``(n, n)``.
 
-    They turn about one line, or slide along one direction, in the same sense or the opposite.
+    Both turn about the same line, or both slide in the same direction, possibly in opposite senses.
     """
     one, other = jacobian[..., :, None], jacobian[..., None, :]
     error = np.minimum(np.abs(one - other).max(axis=(0, 1)), np.abs(one + other).max(axis=(0, 1)))
@@ -47,11 +47,11 @@ def coincident(jacobian: Screws) -> NDArray[np.bool_]:
 
 
 def rank(jacobian: Screws, zero: float = ZERO_SINGULAR_VALUE) -> int:
-    """The rank of ``(L, m, n)`` at a generic configuration: the median of that of all samples.
+    """Return the rank of ``(L, m, n)`` at a generic configuration: the median of all samples.
 
-    So neither a singular configuration nor a badly rounded one decides. A singular value counts as
-    0 up to ``zero`` times the largest of all samples (or times 1, if all are smaller: a joint's
-    screw has an entry of that size).
+    The median ignores single singular or badly rounded configurations. A singular value counts as 0
+    up to ``zero`` times the largest one of all samples, or times 1 if all are smaller (a joint's
+    screw has an entry of size 1).
     """
     singular = np.linalg.svd(jacobian, compute_uv=False)
     ranks = np.sort((singular > zero * singular.max(initial=1.0)).sum(axis=-1))
@@ -59,9 +59,9 @@ def rank(jacobian: Screws, zero: float = ZERO_SINGULAR_VALUE) -> int:
 
 
 def dependent(jacobian: Screws) -> NDArray[np.bool_]:
-    """Which columns of ``(L, 6, n)`` can be made up from the others at every sample, ``(n,)``.
+    """True for columns of ``(L, 6, n)`` that depend on the others at every sample: ``(n,)``.
 
-    A column is independent of the others if and only if every null vector is zero there.
+    A column is independent of the others if and only if its entry of every null vector is zero.
     """
     _, singular, rows = np.linalg.svd(jacobian)
     n = jacobian.shape[-1]

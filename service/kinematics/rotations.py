@@ -1,8 +1,8 @@
-"""Rotations about coordinate axes: sequences of three angles, and sequences of any steps. Batched.
+"""Rotations about coordinate axes: Euler angle sequences, and sequences of any steps. Batched.
 
-A sequence names three axes, such as "ZYZ". About moving axes each turn is about the axes as the
-turns before have left them, R = R_1(a_1) R_2(a_2) R_3(a_3); about fixed axes all turns are about
-the axes as they were at first, R = R_3(a_3) R_2(a_2) R_1(a_1). Rotations are ``(..., 3, 3)``,
+A sequence names three axes, such as "ZYZ". With moving axes, each turn is about the axes of the
+frame after the turns before, R = R_1(a_1) R_2(a_2) R_3(a_3). With fixed axes, all turns are about
+the axes of the original frame, R = R_3(a_3) R_2(a_2) R_1(a_1). Rotations are ``(..., 3, 3)``,
 triples of angles ``(..., 3)`` in the order of the sequence, in radians.
 """
 
@@ -23,7 +23,7 @@ _TURNS = {"X": rot_x, "Y": rot_y, "Z": rot_z}
 
 
 def about(axis: str, angle: ArrayLike) -> Matrices:
-    """The fundamental rotation by ``angle`` about "X", "Y" or "Z": ``(..., 3, 3)``.
+    """Return the fundamental rotation by ``angle`` about "X", "Y" or "Z": ``(..., 3, 3)``.
 
     Source: *Direct Kinematics (Part 2)*, §1.4.
     """
@@ -31,7 +31,7 @@ def about(axis: str, angle: ArrayLike) -> Matrices:
 
 
 def composed(steps: Sequence[tuple[Matrices, bool]]) -> Matrices:
-    """The composite of rotations ``(..., 3, 3)``, each marked whether it is about a fixed axis.
+    """Return the composite of rotations ``(..., 3, 3)``; each flag is True for a fixed axis.
 
     A turn about an axis of the fixed frame is multiplied from the left, one about an axis of the
     moving frame from the right. Source: *Direct Kinematics (Part 2)*, §1.5.
@@ -48,7 +48,7 @@ def composed(steps: Sequence[tuple[Matrices, bool]]) -> Matrices:
 
 
 def from_angles(sequence: str, angles: Numbers, *, fixed: bool = False) -> Matrices:
-    """The rotation ``(..., 3, 3)`` that a triple of angles ``(..., 3)`` describes.
+    """Return the rotation ``(..., 3, 3)`` that a triple of angles ``(..., 3)`` describes.
 
     Source: Craig, *Introduction to Robotics*, §2.8 and appendix B (all twelve of either kind).
 
@@ -64,11 +64,11 @@ def from_angles(sequence: str, angles: Numbers, *, fixed: bool = False) -> Matri
 
 
 def to_angles(sequence: str, rotation: Matrices, *, fixed: bool = False) -> Numbers:
-    """One triple of angles ``(..., 3)`` that describes ``rotation``; ``other_triple`` is the other.
+    """Return one of the two triples ``(..., 3)`` that describe ``rotation`` (see ``other_triple``).
 
-    The middle angle lies in [−π/2, π/2] for three different axes, in [0, π] where the first axis
-    returns. Where only the sum or difference of the outer angles is determined, the last is 0 (of
-    a sequence about fixed axes the first).
+    The middle angle is in [−π/2, π/2] for three different axes, and in [0, π] if the first axis
+    occurs twice. If only the sum or difference of the outer angles is determined, the last angle is
+    0 (for fixed axes the first).
 
     Source: Shoemake, *Euler Angle Conversion*, Graphics Gems IV; for "ZYX" this is Craig, eq. 2.66.
 
@@ -97,9 +97,10 @@ def to_angles(sequence: str, rotation: Matrices, *, fixed: bool = False) -> Numb
 
 
 def other_triple(sequence: str, angles: Numbers) -> Numbers:
-    """The other triple that describes the same rotation, ``(..., 3)``; the same for fixed axes.
+    """Return the other triple ``(..., 3)`` that describes the same rotation, also for fixed axes.
 
-    Source: Craig, *Introduction to Robotics*, §2.8: of an arctangent of y and x both signs serve.
+    Source: Craig, *Introduction to Robotics*, §2.8: the square root for the middle angle may have
+    either sign.
     """
     first, middle, last = np.moveaxis(angles, -1, 0)
     turned = -middle if sequence[2] == sequence[0] else np.pi - middle
@@ -107,16 +108,16 @@ def other_triple(sequence: str, angles: Numbers) -> Numbers:
 
 
 def is_singular(sequence: str, rotation: Matrices, *, fixed: bool = False) -> NDArray[np.bool_]:
-    """Where only the sum or difference of the outer angles is determined, ``(...)``."""
+    """True where only the sum or difference of the outer angles is determined, ``(...)``."""
     middle = to_angles(sequence, rotation, fixed=fixed)[..., 1]
     outer = np.sin(middle) if sequence[2] == sequence[0] else np.cos(middle)
     return np.asarray(np.abs(outer) < OUTER_AXES_ALIGNED)
 
 
 def last_angle(sequence: str, first_two: Numbers, rotation: Matrices) -> Numbers:
-    """The third angle ``(...)`` where the first two ``(..., 2)`` of a moving sequence are chosen.
+    """Return the third angle ``(...)`` for given first two ``(..., 2)`` of a moving sequence.
 
-    Only where the outer axes are one line may the first angle be chosen at will.
+    The first angle may be chosen freely only if the outer axes coincide.
     """
     turned = about(sequence[0], first_two[..., 0]) @ about(sequence[1], first_two[..., 1])
     rest = np.swapaxes(turned, -1, -2) @ rotation

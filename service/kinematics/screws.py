@@ -1,9 +1,9 @@
 """Screw axes, their exponentials and the product of exponentials. Batched.
 
 A screw axis is a six-vector (ω; v) ``(..., 6)``: ω is a unit vector along the axis and
-v = −ω × q + h ω with a point q on the axis and the pitch h; of a prismatic joint (infinite pitch) ω
-is 0 and v the unit vector of its direction. Angles are in radians, lengths in any one unit. The
-source is Lynch and Park, *Modern Robotics*, chapters 3 and 4, with its own order (ω; v).
+v = −ω × q + h ω with a point q on the axis and the pitch h. For a prismatic joint (infinite pitch),
+ω is 0 and v is the unit vector of its direction. Angles are in radians, lengths in any one unit.
+The source is Lynch and Park, *Modern Robotics*, chapters 3 and 4, which also uses the order (ω; v).
 """
 
 from functools import reduce
@@ -16,7 +16,7 @@ from service.kinematics.transforms import Matrices, Numbers, identity
 
 
 def skew(vector: Numbers) -> Matrices:
-    """The matrix ``(..., 3, 3)`` of the cross product with ``vector`` ``(..., 3)``.
+    """Return the matrix ``(..., 3, 3)`` of the cross product with ``vector`` ``(..., 3)``.
 
     Source: *Modern Robotics*, eq. 3.30.
     """
@@ -28,9 +28,9 @@ def skew(vector: Numbers) -> Matrices:
 
 
 def exponential(screw: Numbers, amount: ArrayLike) -> Matrices:
-    """The motion e^{[S]θ} ``(..., 4, 4)`` along ``screw`` ``(..., 6)`` by ``amount`` ``(...)``.
+    """Return the motion e^{[S]θ} ``(..., 4, 4)`` along ``screw`` ``(..., 6)`` by ``amount``.
 
-    ω need not be of unit length: S θ is taken as it stands. Source: *Modern Robotics*, proposition
+    ``amount`` is ``(...)``. ω need not have unit length. Source: *Modern Robotics*, proposition
     3.25.
 
     >>> motion = exponential(np.array([0.0, 0, 1, 0, -2, 0]), np.pi)
@@ -55,10 +55,11 @@ def exponential(screw: Numbers, amount: ArrayLike) -> Matrices:
 
 
 def turning_axis(displacement: Matrices, angle: float) -> Numbers:
-    """The screw axis ``(..., 6)`` without pitch about which ``displacement`` turns by ``angle``.
+    """Return the screw axis ``(..., 6)`` without pitch of a turn by ``angle``.
 
-    ``displacement`` is ``(..., 4, 4)``, ``angle`` no multiple of π. What is no such turn gives an
-    axis whose exponential is another motion. Source: *Modern Robotics*, algorithm in 3.3.3.2.
+    ``displacement`` is ``(..., 4, 4)``, and ``angle`` must not be a multiple of π. If the
+    displacement is not such a turn, the exponential of the result is another motion. Source:
+    *Modern Robotics*, algorithm in 3.3.3.2.
     """
     rotation = displacement[..., :3, :3]
     twice = rotation - np.swapaxes(rotation, -1, -2)
@@ -74,13 +75,13 @@ def turning_axis(displacement: Matrices, angle: float) -> Numbers:
 
 
 def sliding_axis(displacement: Matrices, distance: float) -> Numbers:
-    """The screw axis ``(..., 6)`` along which ``displacement`` slides by ``distance``."""
+    """Return the screw axis ``(..., 6)`` along which ``displacement`` slides by ``distance``."""
     v = displacement[..., :3, 3] / distance
     return np.concatenate([np.zeros_like(v), v], axis=-1)
 
 
 def adjoint(transform: Matrices) -> Matrices:
-    """The matrix ``(..., 6, 6)`` that takes a screw axis from the second frame to the first.
+    """Return the matrix ``(..., 6, 6)`` that takes a screw axis from the second frame to the first.
 
     Source: *Modern Robotics*, definition 3.20: [R, 0; [p] R, R].
     """
@@ -92,12 +93,12 @@ def adjoint(transform: Matrices) -> Matrices:
 
 
 def moved(transform: Matrices, screws: Numbers) -> Numbers:
-    """Screw axes ``(..., 6)`` of the second frame of ``transform`` as seen in the first."""
+    """Return screw axes ``(..., 6)``, given in the second frame of ``transform``, in the first."""
     return np.asarray((adjoint(transform) @ screws[..., None])[..., 0])
 
 
 def product_in_space(screws: Numbers, amounts: Numbers, home: Matrices) -> Matrices:
-    """T(θ) = e^{[S_1]θ_1} … e^{[S_n]θ_n} M: ``(..., 4, 4)``.
+    """Return T(θ) = e^{[S_1]θ_1} … e^{[S_n]θ_n} M: ``(..., 4, 4)``.
 
     ``screws`` is ``(n, ..., 6)``, ``amounts`` ``(n, ...)``, ``home`` ``(..., 4, 4)``. Source:
     *Modern Robotics*, eq. 4.14.
@@ -106,7 +107,7 @@ def product_in_space(screws: Numbers, amounts: Numbers, home: Matrices) -> Matri
 
 
 def product_in_body(screws: Numbers, amounts: Numbers, home: Matrices) -> Matrices:
-    """T(θ) = M e^{[B_1]θ_1} … e^{[B_n]θ_n}: ``(..., 4, 4)``, shapes as in ``product_in_space``.
+    """Return T(θ) = M e^{[B_1]θ_1} … e^{[B_n]θ_n}, with shapes as in ``product_in_space``.
 
     Source: *Modern Robotics*, eq. 4.16.
     """

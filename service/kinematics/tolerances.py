@@ -1,46 +1,48 @@
 """Every tolerance of the kinematics, each with its reason.
 
-Poses are compared in a unit of length that suits the robot, so that one number serves lengths and
-direction cosines. Double precision leaves about 1e-15 after a product of twenty matrices; no two
-choices that a student can make lie closer than about 1e-4.
+Poses are compared in a unit of length that suits the robot, so that lengths and direction cosines
+have the same tolerance. A product of twenty matrices in double precision has an error of about
+1e-15; different choices of a student differ by at least about 1e-4.
 """
 
 from typing import Final
 
-# Poses, relative poses and joint screws: the largest difference between two entries.
+# Poses, relative poses and joint screws are equal if no entry differs by more.
 SAME_POSE: Final = 1e-7
 SAME_SCREW: Final = 1e-7
 
-# Two axes: the norm of the cross product of their directions, which near 0 is the angle itself (a
-# cosine near 1 would call axes parallel that are 4 mrad apart); and how far one passes the other.
+# Two axes are parallel if the norm of the cross product of their directions is smaller. Near 0 it
+# equals the angle; with the cosine, axes 4 mrad apart would seem parallel. Parallel axes coincide
+# if their distance is smaller.
 PARALLEL: Final = 1e-7
-# An axis that helps to fix a basis must be far from parallel, for it is divided by this sine.
+# An axis that determines a basis must be clearly not parallel, because of a division by this sine.
 CLEARLY_NOT_PARALLEL: Final = 100 * PARALLEL
-# Two axes that are parallel but for angles with three figures are not farther from it.
+# Parallel axes whose angles are rounded to three figures deviate from parallel by less than this.
 NOT_PARALLEL_BY_ROUNDING: Final = 3e-2
-# An x axis that lies along a common normal, one way or the other: its cosine, less 1.
+# An x axis is along a common normal if the absolute value of the cosine differs less from 1.
 ALONG_NORMAL: Final = 1e-6
-# An x axis along z: the length of its projection on the plane across z.
+# An x axis is along z if its projection on the plane perpendicular to z is shorter.
 X_ALONG_Z: Final = 1e-9
 
-# Frames of two hypotheses that would lead to the same table. Wider than SAME_POSE: a hypothesis
-# that is kept twice costs a place in the beam, one that is dropped has a twin.
+# Frames of two hypotheses that would lead to the same table. It is wider than SAME_POSE: keeping a
+# hypothesis twice wastes a place in the beam, and a dropped one has an equal one.
 SAME_HYPOTHESIS: Final = 1e-6
 
-# A singular value, relative to the largest: far above rounding, far below any arm in generic pose.
+# Smaller singular values, relative to the largest, are 0: it is far above rounding errors, and far
+# below the values of any arm in a generic pose.
 ZERO_SINGULAR_VALUE: Final = 1e-7
 
-# Euler angles: the sine (or cosine) of the middle angle where the outer axes are one line.
+# Euler angles: the outer axes coincide if the sine (or cosine) of the middle angle is smaller.
 OUTER_AXES_ALIGNED: Final = 1e-7
 
-# An ω this short is no axis of rotation, but what rounding has left.
+# A shorter ω is a rounding error, not an axis of rotation.
 NO_ROTATION: Final = 1e-12
 
-# A cell of a table, as a multiple of the unit of its column: exact beyond all doubt.
+# The error of an exact table cell, as a multiple of its column's unit.
 EXACT_CELL: Final = 1e-9
-# The same for a rounded cell of a table in which others are rounded, too.
+# The error of a rounded table cell, as a multiple of its column's unit.
 ROUNDED_CELL: Final = 1e-3
-# How many times its unit a number of the robot's own may be: an angle goes up to π, a length hardly
-# beyond the longest link.
+# The largest numbers of the reference robot, as multiples of the column's unit: an angle is at most
+# π, a length not much longer than the longest link.
 LARGEST_ANGLE: Final = 4.0
 LARGEST_LENGTH: Final = 1.5

@@ -7,35 +7,35 @@ float64 matrices of shape ``(..., 4, 4)``. Angles are in radians, lengths in any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-# Numbers of any shape; the last axis is most often that of the samples.
+# Numbers of any shape; the last axis usually is the axis of samples.
 Numbers = NDArray[np.float64]
 Matrices = NDArray[np.float64]
 
 
 def identity(shape: tuple[int, ...] = ()) -> Matrices:
-    """The identity transform, repeated over the batch ``shape``: ``(*shape, 4, 4)``."""
+    """Return the identity transform, repeated over the batch ``shape``: ``(*shape, 4, 4)``."""
     matrices = np.zeros((*shape, 4, 4))
     matrices[..., [0, 1, 2, 3], [0, 1, 2, 3]] = 1.0
     return matrices
 
 
 def rot_x(angle: ArrayLike) -> Matrices:
-    """Rotation by ``angle`` about x: R_1(φ) of *Direct Kinematics (Part 2)*, §1.4."""
+    """Return the rotation by ``angle`` about x: R_1(φ), *Direct Kinematics (Part 2)*, §1.4."""
     return _rotation(angle, 1, 2)
 
 
 def rot_y(angle: ArrayLike) -> Matrices:
-    """Rotation by ``angle`` about y: R_2(φ) of *Direct Kinematics (Part 2)*, §1.4."""
+    """Return the rotation by ``angle`` about y: R_2(φ), *Direct Kinematics (Part 2)*, §1.4."""
     return _rotation(angle, 2, 0)
 
 
 def rot_z(angle: ArrayLike) -> Matrices:
-    """Rotation by ``angle`` about z: R_3(φ) of *Direct Kinematics (Part 2)*, §1.4."""
+    """Return the rotation by ``angle`` about z: R_3(φ), *Direct Kinematics (Part 2)*, §1.4."""
     return _rotation(angle, 0, 1)
 
 
 def _rotation(angle: ArrayLike, first: int, second: int) -> Matrices:
-    """Rotation in the plane that axes ``first`` and ``second`` span, from the one to the other."""
+    """Return the rotation in a coordinate plane that turns axis ``first`` towards ``second``."""
     angle = np.asarray(angle, dtype=np.float64)
     cosine, sine = np.cos(angle), np.sin(angle)
     matrices = identity(angle.shape)
@@ -47,7 +47,7 @@ def _rotation(angle: ArrayLike, first: int, second: int) -> Matrices:
 
 
 def inverse(transform: Matrices) -> Matrices:
-    """The inverse [Rᵀ, −Rᵀp; 0 1] of rigid transforms ``(..., 4, 4)``.
+    """Return the inverse [Rᵀ, −Rᵀp; 0 1] of rigid transforms ``(..., 4, 4)``.
 
     Source: *Direct Kinematics (Part 2)*, §1.6.
     """
@@ -60,7 +60,7 @@ def inverse(transform: Matrices) -> Matrices:
 
 
 def is_rigid(transform: Matrices, tolerance: float) -> NDArray[np.bool_]:
-    """Which ``(..., 4, 4)`` are rigid: a right-handed rotation over the last row (0, 0, 0, 1)."""
+    """True for rigid matrices ``(..., 4, 4)``: a right-handed rotation, last row (0, 0, 0, 1)."""
     rotation = transform[..., :3, :3]
     product = rotation @ np.swapaxes(rotation, -1, -2)
     error = np.abs(product - np.eye(3)).max(axis=(-1, -2))

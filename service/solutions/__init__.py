@@ -1,7 +1,6 @@
-"""Model solutions: the right answer to each part, as a textbook prints it.
+"""Model solutions: the right answer to each part, in the form of a textbook.
 
-Built on SymPy, which takes longer to import than a class takes to be graded: it is imported when
-the first exercise is solved.
+They need SymPy, whose import is slow, so it is imported when the first exercise is solved.
 """
 
 from service.catalogue import Exercise
@@ -11,7 +10,7 @@ __all__ = ["LinkSolution", "ModelSolution", "PartAnswer", "Shown", "solve"]
 
 
 def solve(exercise: Exercise) -> ModelSolution:
-    """The model solution. Takes a few hundredths of a second; the same exercise, the same text."""
+    """Return the model solution, always the same for an exercise. It takes about 50 ms."""
     from service.solutions.solution import solved
 
     return solved(exercise)

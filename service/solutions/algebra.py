@@ -1,4 +1,4 @@
-"""Formulas of an exercise -> SymPy: the tree is walked, and no text is ever given to SymPy."""
+"""Convert an exercise's formulas from syntax trees to SymPy. SymPy never parses a text."""
 
 from collections.abc import Callable, Mapping
 from decimal import Decimal
@@ -45,9 +45,9 @@ _OPERATORS: Mapping[Operator, Callable[[sympy.Expr, sympy.Expr], sympy.Expr]] = 
 
 
 class Algebra:
-    """One exercise's formulas in SymPy; a symbol whose range is positive is positive there.
+    """Converts one exercise's formulas to SymPy. Symbols with a positive range are positive.
 
-    ``home`` takes all joint variables as 0.
+    With ``home``, all joint variables are 0.
     """
 
     def __init__(self, exercise: Exercise, *, home: bool = False) -> None:
@@ -61,11 +61,11 @@ class Algebra:
             self.symbols |= {joint.variable: sympy.S.Zero for joint in exercise.joints}
 
     def of(self, formula: Expression) -> sympy.Expr:
-        """The formula as it stands; numbers stay exact."""
+        """Return the formula in SymPy; numbers stay exact."""
         return self._node(formula.tree)
 
     def matrix(self, grid: FormulaGrid) -> sympy.Matrix:
-        """A grid of formulas as a matrix."""
+        """Return a grid of formulas as a matrix."""
         return sympy.Matrix([[self.of(formula) for formula in row] for row in grid])
 
     def _node(self, node: Node) -> sympy.Expr:

@@ -13,7 +13,7 @@ from service.solutions.motions import Fixed, Motion, Shift, Turn, X, Z, inverse,
 
 
 def link(row: FormulaRow, convention: Convention, algebra: Algebra) -> list[Motion]:
-    """The motions of one row of a table."""
+    """Return the motions of one row of a DH table."""
     a, alpha, d, theta = map(algebra.of, row)
     along_z: list[Motion] = [Turn(Z, theta), Shift(d * Z)]
     along_x: list[Motion] = [Shift(a * X), Turn(X, alpha)]
@@ -23,10 +23,10 @@ def link(row: FormulaRow, convention: Convention, algebra: Algebra) -> list[Moti
 def between(
     exercise: Exercise, start: FrameName, end: FrameName, algebra: Algebra, *, home: bool = False
 ) -> list[Motion]:
-    """The motions that lead from one frame of the robot to another.
+    """Return the motions from one frame of the robot to another.
 
-    Frames are "base", "tool" and the numbers of the robot's own table. ``home`` takes all joint
-    variables as 0. Raises LookupError where there is no robot.
+    Frames are "base", "tool" and the frame numbers of the robot's own table. With ``home``, all
+    joint variables are 0. Raises LookupError if the exercise has no robot.
     """
     motions = _steps(exercise, Algebra(exercise, home=True) if home else algebra)
     first, last = (_place(exercise, frame, len(motions)) for frame in (start, end))
@@ -35,7 +35,7 @@ def between(
 
 
 def _steps(exercise: Exercise, algebra: Algebra) -> list[list[Motion]]:
-    """The motions from each frame to the next."""
+    """Return the motions from each frame to the next."""
     match exercise.reference:
         case Robot(tables=tables, convention=convention):
             return [link(row, convention, algebra) for row in tables[convention].rows]
@@ -52,7 +52,10 @@ def _place(exercise: Exercise, frame: FrameName, steps: int) -> int:
 
 
 def _exponentials(robot: ScrewRobot, algebra: Algebra) -> list[Motion]:
-    """e^{[S_1]θ_1} … e^{[S_n]θ_n} M, each turn through the point of its axis nearest 0."""
+    """Return the motions of e^{[S_1]θ_1} … e^{[S_n]θ_n} M.
+
+    Each turn is about the point of its screw axis that is nearest to the origin.
+    """
     motions: list[Motion] = []
     for joint, axis in zip(robot.joints, algebra.matrix(robot.axes).tolist(), strict=True):
         amount = algebra.symbols[joint.variable]
@@ -68,12 +71,12 @@ def _exponentials(robot: ScrewRobot, algebra: Algebra) -> list[Motion]:
 
 
 def joint_axes(exercise: Exercise) -> list[tuple[sympy.Matrix, sympy.Matrix]]:
-    """The direction of each joint's axis and a point on it, at home in the base frame, 3×1 each.
+    """Return the direction (3×1) of each joint axis and a point (3×1) on it, at home, in the base.
 
-    Only for a robot with a table. Raises LookupError where there is none.
+    Raises LookupError if the robot has no table.
     """
     robot, algebra = exercise.robot, Algebra(exercise, home=True)
-    # A standard row begins on its joint's axis; a modified one comes to it by a and α.
+    # The joint axis is z before the motions of a standard row, but after a and α of a modified one.
     at = 0 if robot.convention is Convention.STANDARD else 2
     rotation, position = sympy.eye(3), sympy.zeros(3, 1)
     axes = []

@@ -1,17 +1,17 @@
-"""Constants without a closed form, such as cos 0.3: each product or sum of them is one number.
+"""Replace products and sums of constants without a closed form, such as cos 0.3, by one number.
 
-A robot of numbers has one in each twist, and six of them multiplied out would fill a page. They are
-computed with more digits than are printed, so that what cancels is 0.
+A robot given in numbers has such a constant in each twist, and products of six would fill a page.
+They are computed with more digits than are printed, so that terms cancel to exactly 0.
 """
 
 from decimal import ROUND_HALF_EVEN, Context, Decimal
 
 import sympy
 
-# The digits that are printed, and those that are computed.
+# The number of digits that are printed, and that are computed.
 _DIGITS = 15
 _WORKING_DIGITS = 40
-# Smaller numbers are what is left of a difference of equal ones.
+# Smaller numbers are rounding errors of a difference that is 0.
 _NOTHING = sympy.Float("1e-25", _WORKING_DIGITS)
 # More decimals are not printed.
 DECIMALS = 20
@@ -21,20 +21,20 @@ _ROUNDED = Context(prec=_DIGITS, rounding=ROUND_HALF_EVEN)
 
 
 def folded(expression: sympy.Expr) -> sympy.Expr:
-    """The number of a sine or cosine that has no closed form; anything else as it is."""
+    """Evaluate a constant sine or cosine without a closed form; return others unchanged."""
     has_none = expression.is_number and expression.has(sympy.sin, sympy.cos)
     return expression.evalf(_WORKING_DIGITS) if has_none else expression
 
 
 def is_unwieldy(expression: sympy.Expr) -> bool:
-    """Whether there are numbers without a closed form, or with more decimals than are printed."""
+    """True if a number has no closed form, or more decimals than are printed."""
     return expression.has(sympy.Float) or any(
         number.q > 10**DECIMALS for number in expression.atoms(sympy.Rational)
     )
 
 
 def rounded(expression: sympy.Expr) -> sympy.Expr:
-    """The same with one number of 15 digits in place of each constant, but in angles."""
+    """Return the expression with each constant rounded to 15 digits, except in angles."""
     values = _evaluated(expression)
     return values.xreplace({each: _rational(each) for each in values.atoms(sympy.Float)})
 

@@ -1,4 +1,4 @@
-"""An answer as it is posted, as text that may be pasted, and as LaTeX."""
+"""Lay out an answer as JSON, as text to paste, and as LaTeX."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,7 +10,7 @@ from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention
 from service.solutions.model_solution import PrintedAnswer, Shown
 
-# As the column is headed: in a modified table a and α carry the index i−1.
+# The column headers. In a modified table, a and α have the index i−1.
 _HEADERS = {
     Convention.STANDARD: ("i", r"a_i", r"\alpha_i", r"d_i", r"\theta_i"),
     Convention.MODIFIED: ("i", r"a_{i-1}", r"\alpha_{i-1}", r"d_i", r"\theta_i"),
@@ -18,7 +18,7 @@ _HEADERS = {
 
 
 def matrix(nodes: Sequence[Sequence[Node]]) -> PrintedAnswer:
-    """A matrix: nested lists, MATLAB's brackets, and a LaTeX matrix."""
+    """Return a matrix as nested lists, in MATLAB's brackets, and as a LaTeX matrix."""
     cells = [[to_text(node) for node in row] for row in nodes]
     widths = [max(map(len, column)) + 2 for column in zip(*cells, strict=True)]
     lines = [
@@ -30,7 +30,7 @@ def matrix(nodes: Sequence[Sequence[Node]]) -> PrintedAnswer:
 
 
 def listed(nodes: Sequence[Node]) -> PrintedAnswer:
-    """A list of values: in LaTeX a column."""
+    """Return a list of values; in LaTeX it is a column."""
     cells = list(map(to_text, nodes))
     return PrintedAnswer(f"[{', '.join(cells)}]", _latex_matrix([[node] for node in nodes]), cells)
 
@@ -38,9 +38,9 @@ def listed(nodes: Sequence[Node]) -> PrintedAnswer:
 def table(
     rows: Sequence[Sequence[Node]], labels: Sequence[str], convention: Convention, *, named: bool
 ) -> PrintedAnswer:
-    """A DH table: rows by column, a Markdown table, and a LaTeX tabular.
+    """Return a DH table as rows with column names, as a Markdown table, and as a LaTeX tabular.
 
-    The answer names its convention where that is ``named``.
+    With ``named``, the JSON value names the convention.
     """
     cells = [[to_text(node) for node in row] for row in rows]
     answer: dict[str, object] = {"rows": [dict(zip(COLUMNS, row, strict=True)) for row in cells]}
@@ -50,24 +50,24 @@ def table(
 
 
 def row(nodes: Sequence[Node], convention: Convention) -> PrintedAnswer:
-    """One row of a DH table, set as a table of its own."""
+    """Return one row of a DH table, laid out as a table."""
     answer = dict(zip(COLUMNS, map(to_text, nodes), strict=True))
     return replace(table([nodes], ["1"], convention, named=False), answer=answer)
 
 
 def no_row() -> PrintedAnswer:
-    """The answer that a transform has no row."""
+    """Return the answer that a transform has no row."""
     return PrintedAnswer("none", r"\text{none}", {"none": True})
 
 
 def too_long() -> PrintedAnswer:
-    """The answer where the right one is too long to be handed in."""
+    """Return the placeholder for an answer that is too long to be handed in."""
     text = "longer than an answer may be"
     return PrintedAnswer(text, rf"\text{{{text}}}", None)
 
 
 def product(labels: Sequence[str]) -> Shown:
-    """A matrix as the product of link transforms, where written out it would be too long."""
+    """Return a pose as a product of link transforms, for a matrix that would be too long."""
     latex = " ".join(f"A_{{{label}}}" for label in labels)
     return Shown(" ".join(f"A{label}" for label in labels), latex)
 

@@ -1,6 +1,6 @@
-"""Answers of a student who knows nothing: what they earn shows whether the marks are fair.
+"""Answers that need no knowledge; the marks that they earn show whether the marking is fair.
 
-Every joint has its variable in the usual place, turning about z or sliding along it; all else is 0.
+Every joint turns about the z axis or slides along it by its variable; all other entries are 0.
 """
 
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ IDENTITY: _Rows = [["1" if i == j else "0" for j in range(4)] for i in range(4)]
 
 
 def motion(joints: Sequence[Joint]) -> _Rows:
-    """The homogeneous transform of joints that turn about, and slide along, the z axis."""
+    """Return the homogeneous transform of joints that all turn about or slide along the z axis."""
     angle = " + ".join(joint.variable for joint in joints if not joint.prismatic)
     distance = " + ".join(joint.variable for joint in joints if joint.prismatic)
     rows = [list(row) for row in IDENTITY]
@@ -25,6 +25,6 @@ def motion(joints: Sequence[Joint]) -> _Rows:
 
 
 def poses(exercise: Exercise, size: int) -> list[_Rows]:
-    """The identity, and the motion of all joints as if they had one axis: ``size`` is 3 or 4."""
+    """Return the identity and the ``motion`` of all joints; ``size`` is 3 (rotations) or 4."""
     of_joints = [motion(exercise.joints)] if exercise.joints else []
     return [[row[:size] for row in rows[:size]] for rows in (IDENTITY, *of_joints)]

@@ -1,4 +1,4 @@
-"""A model solution, as it is sent and printed."""
+"""The data of a model solution, as it is sent and printed."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ class Shown:
 
 @dataclass(frozen=True, slots=True)
 class PrintedAnswer(Shown):
-    """An answer; ``answer`` is its JSON value, None where it is longer than may be handed in."""
+    """An answer. ``answer`` is its JSON value, or None if it is too long to be handed in."""
 
     answer: object
 
@@ -37,7 +37,7 @@ class PartAnswer(Shown):
     kind: str
     title: str
     answer: Annotated[
-        Any, Field(description="The same as it is posted; `text` may be posted as well.")
+        Any, Field(description="The answer's JSON value, ready to post; `text` may be posted, too.")
     ]
 
 
@@ -49,13 +49,13 @@ class ModelSolution:
     version: str
     notation: Annotated[
         Mapping[str, str],
-        Field(description="What each shorthand stands for: c12 for cos(theta1 + theta2)."),
+        Field(description="The meaning of each shorthand: c12 is cos(theta1 + theta2)."),
     ]
     parts: tuple[PartAnswer, ...]
     links: Annotated[
         tuple[LinkSolution, ...],
         Field(
-            description="The link transforms of the robot's own table; none where it has no table."
+            description="The link transforms of the robot's own table; empty if it has no table."
         ),
     ]
     pose: Annotated[Shown | None, Field(description="From the base frame to the tool frame.")] = (
@@ -64,5 +64,5 @@ class ModelSolution:
 
     @property
     def answers(self) -> dict[str, object]:
-        """The parts' answers as a submission holds them."""
+        """The answers of all parts by part id, as in a submission."""
         return {part.part: part.answer for part in self.parts}

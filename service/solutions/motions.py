@@ -1,14 +1,14 @@
-"""Rigid motions as a product of turns and shifts, multiplied out into a textbook's form.
+"""Multiply rigid motions (turns and shifts) in the form that textbooks print.
 
-A general simplifier spends seconds on six joints and leaves no textbook's form. The form comes of
-the order of the work instead:
+A general simplifier takes seconds for six joints, and its result does not look like a textbook's.
+Here the form results from the order of the steps:
 
 - Quarter turns about a coordinate axis are constant, and C Rot(u, φ) = Rot(C u, φ) C for a constant
-  C; so they go to the right end, and 90° twists leave no trace but the axes that they turn.
-- Turns about one axis with only shifts between them are done at once: their angles add up, which
-  gives c12 and c123 without a product of sines and cosines that would have to be drawn together.
-- The factors are applied from the right and products of brackets are not expanded, which gives
-  c1 (c2 (c4 c5 c6 − s4 s6) − s2 s5 c6) − … as a wrist's matrix is printed.
+  rotation C. So they are moved to the right end; a 90° twist only changes later axes.
+- Consecutive turns about the same axis, with only shifts between them, are combined: their angles
+  are added, which gives c12 and c123 without expanding and collecting sines and cosines.
+- Factors are applied from the right, and products of brackets are not expanded, which gives
+  c1 (c2 (c4 c5 c6 − s4 s6) − s2 s5 c6) − …, as books print the matrix of an arm with a wrist.
 
 Vectors are 3×1, rotations 3×3 matrices of SymPy; angles in radians.
 """
@@ -43,7 +43,7 @@ class Shift:
 
 @dataclass(frozen=True, slots=True)
 class Fixed:
-    """A rotation by a matrix that no joint variable enters."""
+    """A rotation by a constant matrix."""
 
     rotation: sympy.Matrix
 
@@ -53,22 +53,23 @@ Motion = Turn | Shift | Fixed
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """The pose that a product of motions leads to: a rotation and a position."""
+    """The result of a product of motions: a rotation and a position."""
 
     rotation: sympy.Matrix
     position: sympy.Matrix
 
     def matrix(self) -> sympy.Matrix:
-        """The homogeneous transform, 4×4."""
+        """Return the homogeneous transform, 4×4."""
         upper = self.rotation.row_join(self.position)
         return upper.col_join(sympy.Matrix([[0, 0, 0, 1]]))
 
 
 @dataclass(frozen=True, slots=True)
 class Normal:
-    """A product with its constant rotation at the right end.
+    """A product of motions whose constant rotation is at the right end.
 
-    First the shift ``start``, then turns, each with the shift after it, then the rotation ``end``.
+    The factors are the shift ``start``, the turns, each followed by a shift, and the rotation
+    ``end``.
     """
 
     start: sympy.Matrix
@@ -77,11 +78,11 @@ class Normal:
 
 
 def inverse(motions: Sequence[Motion]) -> list[Motion]:
-    """The product that undoes ``motions``."""
-    return [_undone(motion) for motion in reversed(motions)]
+    """Return the inverse of the product of ``motions``."""
+    return [_inverted(motion) for motion in reversed(motions)]
 
 
-def _undone(motion: Motion) -> Motion:
+def _inverted(motion: Motion) -> Motion:
     match motion:
         case Turn(axis, angle):
             return Turn(axis, -angle)
@@ -92,7 +93,7 @@ def _undone(motion: Motion) -> Motion:
 
 
 def multiplied(motions: Iterable[Motion]) -> Pose:
-    """The pose that the product of ``motions`` from left to right leads to."""
+    """Return the product of ``motions`` from left to right."""
     normal = normalised(motions)
     rotation, position = normal.end, ORIGIN
     for run in reversed(_runs(normal.turns)):
@@ -105,7 +106,7 @@ def multiplied(motions: Iterable[Motion]) -> Pose:
 
 
 def normalised(motions: Iterable[Motion]) -> Normal:
-    """The same product with quarter turns and fixed rotations moved to the right end."""
+    """Return an equal product with quarter turns and fixed rotations moved to the right end."""
     constant = sympy.eye(3)
     shifts, turns = [ORIGIN], list[Turn]()
     for motion in motions:
@@ -124,7 +125,7 @@ def normalised(motions: Iterable[Motion]) -> Normal:
 
 
 def _split(axis: sympy.Matrix, angle: sympy.Expr) -> tuple[sympy.Expr, sympy.Matrix]:
-    """The angle without its quarter turns, and those as a rotation."""
+    """Return the angle without its quarter turns, and the rotation by these quarter turns."""
     constant, rest = angle.as_independent(*angle.free_symbols, as_Add=True)
     if axis not in (X, Y, Z) or not (2 * constant / sympy.pi).is_Integer:
         return angle, sympy.eye(3)
@@ -132,13 +133,13 @@ def _split(axis: sympy.Matrix, angle: sympy.Expr) -> tuple[sympy.Expr, sympy.Mat
 
 
 def _upright(turn: Turn) -> Turn:
-    """The same turn about the axis or its opposite, whichever has its first number positive."""
+    """Return an equal turn about the axis or its opposite, so that its first number is positive."""
     first = next(number for number in turn.axis if number != 0)
     return Turn(-turn.axis, -turn.angle) if first.could_extract_minus_sign() else turn
 
 
 def _runs(turns: Sequence[tuple[Turn, sympy.Matrix]]) -> list[list[tuple[Turn, sympy.Matrix]]]:
-    """Turns about one axis that follow each other, each by the angle turned since the run began."""
+    """Group consecutive turns about the same axis; in a group, replace angles by running totals."""
     runs: list[list[tuple[Turn, sympy.Matrix]]] = []
     for turn, shift in turns:
         if runs and runs[-1][-1][0].axis == turn.axis:
@@ -150,7 +151,7 @@ def _runs(turns: Sequence[tuple[Turn, sympy.Matrix]]) -> list[list[tuple[Turn, s
 
 
 def rotation_about(axis: sympy.Matrix, angle: sympy.Expr) -> sympy.Matrix:
-    """Rot(u, φ) = cos φ I + sin φ [u] + (1 − cos φ) u uᵀ.
+    """Return Rot(u, φ) = cos φ I + sin φ [u] + (1 − cos φ) u uᵀ.
 
     Source: Lynch and Park, *Modern Robotics*, eq. 3.51 (Rodrigues' formula).
     """

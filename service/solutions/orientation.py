@@ -1,7 +1,7 @@
 """Euler angles as formulas.
 
-A rotation that already is a product of turns in the sequence asked for gives its own angles: a
-spherical wrist is ZYZ with its joint angles. Any other is written with atan2 of its entries.
+If a rotation already is a product of turns in the requested sequence, its own angles are returned:
+the ZYZ angles of a spherical wrist are its joint angles. Otherwise the angles are atan2 of entries.
 """
 
 from collections.abc import Iterable
@@ -27,9 +27,10 @@ _QUARTERS = (0, sympy.pi / 2, sympy.pi, -sympy.pi / 2)
 
 
 def euler_angles(motions: Iterable[Motion], sequence: str, axes: str) -> Angles:
-    """The angles of the rotation of ``motions`` in a sequence such as "ZYZ".
+    """Return the angles of the rotation of ``motions`` in a sequence such as "ZYZ".
 
-    ``axes`` is "moving" or "fixed"; turns about fixed axes are those about moving ones in reverse.
+    ``axes`` is "moving" or "fixed". Turns about fixed axes equal turns about moving axes in reverse
+    order.
     """
     steps = list(motions)
     if axes == "fixed":
@@ -40,7 +41,7 @@ def euler_angles(motions: Iterable[Motion], sequence: str, axes: str) -> Angles:
 
 
 def _own_angles(normal: Normal, sequence: str) -> Angles | None:
-    """The angles turned about the axes of the sequence, where no other turn is made."""
+    """Return the total angle about each axis of the sequence; None if the turns do not fit it."""
     angles = [sympy.S.Zero] * 3
     at = 0
     for turn, _ in normal.turns:
@@ -60,11 +61,11 @@ def _own_angles(normal: Normal, sequence: str) -> Angles | None:
 
 
 def _by_entries(rotation: sympy.Matrix, sequence: str) -> Angles:
-    """The angles by atan2, the second one in [0, π] or in [−π/2, π/2].
+    """Return the angles as atan2 of entries; the second one is in [0, π] or in [−π/2, π/2].
 
     Source: Spong, Hutchinson, Vidyasagar, *Robot Modeling and Control*, §2.5.1 for ZYZ and §2.5.2
-    for ZYX; the other sequences follow by renaming the axes, with a sign where that turns a
-    right-handed frame into a left-handed one.
+    for ZYX. The other sequences follow by renaming the axes, with a sign if the renamed frame is
+    left-handed.
     """
     i, j = map("XYZ".index, sequence[:2])
     k = 3 - i - j
@@ -84,7 +85,7 @@ def _by_entries(rotation: sympy.Matrix, sequence: str) -> Angles:
 
 
 def as_angle(sine: sympy.Expr, cosine: sympy.Expr) -> sympy.Expr:
-    """The angle with this sine and cosine: φ itself for sin φ and cos φ, with any signs."""
+    """Return the angle with this sine and cosine: φ for sin φ and cos φ, else an atan2."""
     found = sine.atoms(sympy.sin, sympy.cos) | cosine.atoms(sympy.sin, sympy.cos)
     arguments = sorted((call.args[0] for call in found), key=str)
     for argument, quarter, sign in product((sympy.S.Zero, *arguments), _QUARTERS, (1, -1)):

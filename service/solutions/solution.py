@@ -20,13 +20,13 @@ from service.solutions.work import Work
 
 
 def solved(exercise: Exercise) -> ModelSolution:
-    """The model solution, which is a function of the exercise alone."""
+    """Return the model solution. It depends only on the exercise."""
     work = Work(exercise, Algebra(exercise), Writer(exercise))
     robot = exercise.reference
     links = work.link_matrices(robot.convention) if isinstance(robot, Robot) else {}
     parts = tuple(_part_answer(part, work) for part in exercise.parts)
     pose = None if robot is None else _pose(work, list(links))
-    # By function and length: c1, c2, c12, s1, s2, s12.
+    # Sort by function and length: c1, c2, c12, s1, s2, s12.
     notation = sorted(work.writer.used, key=lambda name: (name[0], len(name), name))
     return ModelSolution(
         exercise=exercise.id,
@@ -47,7 +47,7 @@ def _part_answer(part: PartSpec, work: Work) -> PartAnswer:
 
 
 def _pose(work: Work, labels: Sequence[str]) -> Shown:
-    """The pose of the tool in the base frame, as a product of link transforms if need be."""
+    """Return the tool's pose in the base frame; a product of link transforms if it is too long."""
     pose = multiplied(between(work.exercise, "base", "tool", work.algebra))
     try:
         shown: Shown = work.matrix(pose.matrix())

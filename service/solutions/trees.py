@@ -1,7 +1,7 @@
-"""SymPy -> the syntax tree of a student's formula, in a textbook's order and shorthand.
+"""Convert SymPy expressions to syntax trees, in a textbook's order and shorthand.
 
-The trees are printed by service.expressions like any formula. A shorthand such as c12 stands in
-them as a symbol of that name, and only where a student's c12 would be read as just that.
+``service.expressions`` prints these trees. A shorthand such as c12 is a symbol in the tree; it is
+used only if the reader would read c12 with the same meaning.
 """
 
 from collections.abc import Callable, Sequence
@@ -20,24 +20,24 @@ from service.solutions.algebra import FUNCTIONS
 
 _NAMES = {function: name for name, function in FUNCTIONS.items()}
 _TRIGONOMETRIC = (sympy.sin, sympy.cos, sympy.tan)
-# These fractions are written as such; another has a decimal point where its digits end.
+# Fractions with these denominators stay fractions; others become finite decimals if possible.
 _PLAIN_DENOMINATORS = (1, 2, 3, 4)
 
-# Beyond this many nodes a formula has more characters than are read of an answer.
+# A formula with more nodes would be longer than an answer may be.
 _MOST_NODES = 1000
 
-# How the factors of a product are sorted: rank, joints, whether it is a sine, text.
+# The sort key of a factor in a product: rank, joints, True for a sine, text.
 FactorOrder = tuple[int, list[int], bool, str]
 
 
 class TooLongError(Exception):
-    """A formula that would be longer than any answer may be."""
+    """The formula is longer than an answer may be."""
 
 
 class Writer:
-    """Writes one exercise's formulas.
+    """Converts one exercise's SymPy expressions to syntax trees.
 
-    ``used`` collects the shorthand that has occurred, with its meaning.
+    ``used`` maps each shorthand used so far to its meaning.
     """
 
     def __init__(self, exercise: Exercise) -> None:
@@ -48,7 +48,7 @@ class Writer:
         self._order = {variable.name: i for i, variable in enumerate(ordered)}
 
     def number(self, expression: sympy.Expr) -> Node:
-        """The formula of a number or a length. Raises TooLongError."""
+        """Return the tree of a number or a length. May raise TooLongError."""
         if constants.is_unwieldy(expression):
             expression = constants.rounded(expression)
         if _size(expression, {}) > _MOST_NODES:
@@ -57,7 +57,7 @@ class Writer:
 
     def _node(self, expression: sympy.Expr) -> Node:
         if isinstance(expression, sympy.Add):
-            return _signed_sum(sorted(expression.args, key=self._in_sum), self._node)
+            return _signed_sum(sorted(expression.args, key=self._term_order), self._node)
         if isinstance(expression, sympy.Symbol):
             return SymbolNode(self._symbols[expression.name])
         if isinstance(expression, sympy.Pow):
@@ -69,10 +69,10 @@ class Writer:
         return self._call(expression)
 
     def angle(self, expression: sympy.Expr) -> Node:
-        """The formula of an angle.
+        """Return the tree of an angle.
 
-        A number that is neither a multiple of π nor of a symbol says that it is in radians, so that
-        it means the same to those who work in degrees.
+        A plain number gets the unit rad, so that it means the same to a student who works in
+        degrees.
         """
 
         def term(value: sympy.Expr) -> Node:
@@ -81,7 +81,7 @@ class Writer:
 
         terms = sympy.Add.make_args(expression)
         ordered = sorted(
-            terms, key=lambda each: (_negative(each), each.is_number, *self._in_sum(each))
+            terms, key=lambda each: (_negative(each), each.is_number, *self._term_order(each))
         )
         return _signed_sum(ordered, term)
 
@@ -101,7 +101,7 @@ class Writer:
         return Binary("/", upper, self._chain(lower)) if lower else upper
 
     def _chain(self, factors: Sequence[sympy.Expr]) -> Node:
-        """The product of factors that are no fractions, in order."""
+        """Return the product of factors that are not fractions, in a textbook's order."""
         nodes = [
             _number(each) if isinstance(each, sympy.Rational) else self._node(each)
             for each in sorted(factors, key=self._factor_order)
@@ -127,21 +127,21 @@ class Writer:
         return SymbolNode(Symbol(short, "number"))
 
     def _shorthand(self, function: str, terms: Sequence[sympy.Expr]) -> str | None:
-        """Such as c12 for the cosine of a sum of joint angles."""
+        """Return the shorthand for a function of a sum of joint angles, such as c12, or None."""
         symbols = [self._symbols.get(str(term)) for term in terms]
         joints = [symbol.joint for symbol in symbols if symbol and symbol.joint is not None]
         if function == "tan" or len(joints) < len(terms):
             return None
         return function[0] + "".join(map(str, sorted(joints)))
 
-    def _in_sum(self, term: sympy.Expr) -> tuple[bool, list[FactorOrder], list[int], str]:
-        """Added before subtracted, lengths alone before others, then by the first joints."""
+    def _term_order(self, term: sympy.Expr) -> tuple[bool, list[FactorOrder], list[int], str]:
+        """Return a term's sort key: added terms first, then lengths alone, then by joints."""
         factors = sorted(map(self._factor_order, sympy.Mul.make_args(term)))
         joints = sorted(self._order[symbol.name] for symbol in term.free_symbols)
         return _negative(term), [each for each in factors if each[0] > 1], joints, str(term)
 
     def _factor_order(self, factor: sympy.Expr) -> FactorOrder:
-        """Numbers, then symbols, then sines and cosines by their joints, then brackets."""
+        """Return a factor's sort key: numbers, symbols, sines and cosines by joints, brackets."""
         base = factor.base if isinstance(factor, sympy.Pow) else factor
         is_symbol, is_turn = isinstance(base, sympy.Symbol), isinstance(base, _TRIGONOMETRIC)
         rank = (bool(base.is_number), is_symbol, is_turn, True).index(True)
@@ -163,21 +163,21 @@ def _negative(term: sympy.Expr) -> bool:
 
 
 def _size(expression: sympy.Expr, known: dict[sympy.Expr, int]) -> int:
-    """The number of nodes of the formula; a subexpression that recurs is measured once."""
+    """Return the number of nodes of the formula; ``known`` memoizes subexpressions."""
     if expression not in known:
         known[expression] = 1 + sum(_size(part, known) for part in expression.args)
     return known[expression]
 
 
 def _negated(node: Node) -> Node:
-    """The node with a minus in front, as it is typed: −c1 s2 and not −(c1 s2)."""
+    """Return the node with a minus before its first factor, as typed: −c1 s2, not −(c1 s2)."""
     if isinstance(node, Binary) and node.operator in ("*", "/"):
         return Binary(node.operator, _negated(node.left), node.right)
     return Negation(node)
 
 
 def _without_negative_brackets(expression: sympy.Expr) -> sympy.Expr:
-    """The same with −s2 (a + b) for s2 (−a − b)."""
+    """Return the expression with the minus before brackets: −s2 (a + b) for s2 (−a − b)."""
 
     def turned(product: sympy.Expr) -> sympy.Expr:
         factors = [
@@ -191,14 +191,14 @@ def _without_negative_brackets(expression: sympy.Expr) -> sympy.Expr:
 
 
 def _number(value: sympy.Rational) -> Node:
-    """A whole number, or one whose decimals end; not negative."""
+    """Return the node of a whole number or a finite decimal, which must not be negative."""
     literal = str(value.p) if value.q == 1 else _decimal(value)
     assert literal is not None
     return Number(float(literal), literal)
 
 
 def _decimal(value: sympy.Rational) -> str | None:
-    """The decimals, or None where they do not end."""
+    """Return the number as a finite decimal, or None if it has none."""
     exact = Fraction(int(value.p), int(value.q))
     for digits in range(constants.DECIMALS + 1):
         scaled = exact * 10**digits

@@ -1,4 +1,4 @@
-"""One exercise being solved, with the steps that the kinds share."""
+"""The state while one exercise is solved, and the steps that several kinds share."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,28 +21,28 @@ from service.solutions.trees import Writer
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """The exercise, its formulas in SymPy, and the writer of the solution's formulas."""
+    """An exercise, its conversion to SymPy, and the conversion back to trees."""
 
     exercise: Exercise
     algebra: Algebra
     writer: Writer
 
     def as_written(self, part: PartSpec) -> list[list[Node]] | None:
-        """The formulas that the part's file gives; None where the robot tells."""
+        """Return the part's formulas from the exercise file; None if they follow from the robot."""
         grid, written = self.exercise.formulas.get(part.id), part.formulas()
         if grid is None or written is None:
             return None
         return [self._row(*each) for each in zip(grid, written.quantities, strict=True)]
 
     def table_row(self, row: FormulaRow) -> list[Node]:
-        """A row of the reference's table, as the author has written it."""
+        """Return a row of the reference table as the author wrote it."""
         return self._row(row, ROW_QUANTITIES)
 
     def _row(self, formulas: Sequence[Expression], quantities: Sequence[Kind]) -> list[Node]:
-        return [self._spelled(*each) for each in zip(formulas, quantities, strict=True)]
+        return [self._with_units(*each) for each in zip(formulas, quantities, strict=True)]
 
-    def _spelled(self, formula: Expression, quantity: Kind) -> Node:
-        """The author's formula, with units where those who work in degrees would miss them."""
+    def _with_units(self, formula: Expression, quantity: Kind) -> Node:
+        """Return the author's formula, with units that a student who works in degrees needs."""
         text = to_text(formula.tree)
         in_degrees = read(text, self.exercise.vocabulary, quantity=quantity, angle_unit="degrees")
         if in_degrees.tree == formula.tree:
@@ -51,17 +51,17 @@ class Work:
         return self.writer.angle(exact) if quantity == "angle" else self.writer.number(exact)
 
     def pose_motions(self, part: PosePartSpec) -> list[Motion]:
-        """The motions that lead to the pose of the robot that the part asks for."""
+        """Return the motions to the pose that the part asks for."""
         return between(self.exercise, part.start, part.to, self.algebra, home=part.home)
 
     def matrix(self, entries: sympy.Matrix) -> PrintedAnswer:
-        """A matrix of numbers and lengths."""
+        """Return a matrix of numbers and lengths, laid out."""
         return layout.matrix(
             [[self.writer.number(each) for each in row] for row in entries.tolist()]
         )
 
     def link_matrices(self, convention: Convention) -> dict[str, PrintedAnswer]:
-        """The transform of each row of the robot's table in this convention, by its label."""
+        """Map the label of each row of the robot's table in this convention to its transform."""
         reference = self.exercise.robot.tables[convention]
         return {
             label: self.matrix(multiplied(link(row, convention, self.algebra)).matrix())

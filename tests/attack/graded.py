@@ -32,7 +32,7 @@ from tests.attack.spellings import PLAIN, Spelling, Writer
 from tests.grading.support.exercise_texts import graded, one_part
 from tests.grading.support.submitting import handed_in, part
 from tests.grids.writers import FORMATS, TABLES
-from tests.solutions.solved import once_for_each
+from tests.solutions.solved import memoized_by_exercise
 
 Suited = Callable[[str, Random], Spelling]
 Outcome = tuple[str, str, str]
@@ -184,7 +184,7 @@ def _tree(text: str) -> Tree | None:
     return terms[0][1] if len(terms) == 1 and terms[0][0] == 1 else Sum(tuple(terms))
 
 
-@once_for_each
+@memoized_by_exercise
 def _trees_of(exercise: Exercise) -> Trees | None:
     """The model table in trees; none where it has other cells, or names that begin with q."""
     rows = model_of(exercise).answers["table"]["rows"]

@@ -1,9 +1,9 @@
-"""An arm to write about: joints 1, 2, 4 turn, joint 3 slides.
+"""The vocabulary of an arm: joints 1, 2, 4 turn, joint 3 slides.
 
-The test of ``service/expressions/x/y.py`` is ``x/test_y.py``. At the top stand the suites that test
-the whole reader: the written cases (``corpus``, and ``repairs`` for its repairs), random texts
-(``fuzz``), properties of any tree, the formulas that SymPy prints, what is remembered, and that no
-text is run as a program.
+The test of ``service/expressions/x/y.py`` is ``x/test_y.py``. The tests in this folder are for the
+whole reader: written cases (``corpus``, and ``repairs`` for its repairs), random texts (``fuzz``),
+properties of trees, formulas printed by SymPy, memoized readings, and that no text is run as a
+program.
 """
 
 import numpy as np
@@ -34,7 +34,7 @@ def arm() -> Vocabulary:
 
 @pytest.fixture(scope="session")
 def six() -> Vocabulary:
-    """Six turning joints, so that sin45 may mean joints 4 and 5."""
+    """The vocabulary of six revolute joints, so that sin45 may mean joints 4 and 5."""
     return Vocabulary([joint_variable(index) for index in range(1, 7)])
 
 

@@ -1,4 +1,4 @@
-"""The written cases in corpus/, and the robot that they are about."""
+"""Read the cases in corpus/; their formulas are about ``ROBOT``."""
 
 import ast
 import re
@@ -22,7 +22,7 @@ _NUMBER = re.compile(r"(\w+) = (-?[0-9.]+)")
 
 
 class Case(NamedTuple):
-    """One line of a file: the text, what is said of it, and where it stands."""
+    """One line of a file: the text, its expected results, and the file and line."""
 
     text: str
     answers: tuple[str, ...]
@@ -42,7 +42,7 @@ def cases(name: str) -> list[Case]:
 
 
 class SpellingCase(NamedTuple):
-    """A useful spelling and its meaning in plain arithmetic; ``refused`` where it is not read."""
+    """A spelling and its meaning in plain arithmetic; ``refused`` if the reader refuses it."""
 
     text: str
     meaning: str
@@ -51,7 +51,7 @@ class SpellingCase(NamedTuple):
 
 
 def spelling_cases() -> list[SpellingCase]:
-    """The cases of corpus/spellings/: ``text | meaning``, or ``text | ! meaning`` if refused."""
+    """Return the cases of corpus/spellings/: ``text | meaning``, or ``| ! meaning`` if refused."""
     found = []
     for file in sorted((FOLDER / "spellings").glob("*.txt")):
         for number, line in enumerate(file.read_text("utf-8").split("\n"), 1):
@@ -64,10 +64,10 @@ def spelling_cases() -> list[SpellingCase]:
 
 
 class RepairCase(NamedTuple):
-    """A text that a rule refuses, or, without a ``code``, a near one that is read as ``answer``.
+    """A text that a rule refuses, or, without a ``code``, a similar text that is read.
 
-    ``span`` is from-to, ``part`` what stands there (empty where the text is written in Python),
-    ``answer`` the repaired text, None where there is none.
+    ``span`` is from-to, and ``part`` the text at this place (empty for a text written in Python).
+    ``answer`` is the repaired text or None; for a text that is read, it is its meaning.
     """
 
     text: str | float
@@ -79,14 +79,14 @@ class RepairCase(NamedTuple):
 
 
 def repairs() -> list[str]:
-    """The repairs that have cases."""
+    """Return the names of the repairs that have cases."""
     return sorted(file.stem for file in (FOLDER / "repairs").glob("*.txt"))
 
 
 def repair_cases(repair: str) -> list[RepairCase]:
-    """The cases of corpus/repairs/``repair``.txt.
+    """Return the cases of corpus/repairs/``repair``.txt.
 
-    A text in Python begins with ``python:``: letters that cannot be seen, and JSON's numbers.
+    Invisible characters and JSON's numbers are written as Python literals after ``python:``.
     """
     found = []
     lines = (FOLDER / "repairs" / f"{repair}.txt").read_text("utf-8").split("\n")
@@ -109,7 +109,7 @@ def _typed(text: str) -> str | float:
 
 
 def python_text(line: str) -> str | float:
-    """The value of a literal, of repetitions of one, or of several joined by +."""
+    """Evaluate a Python literal, a repeated literal (``*``), or several joined by ``+``."""
     value: str | float = _joined(ast.parse(line, mode="eval").body)
     return value
 
@@ -134,7 +134,7 @@ def numbers(name: str) -> dict[str, float]:
 
 
 def names() -> list[str]:
-    """Return the files that hold values."""
+    """Return the names of the files that contain values."""
     return sorted(
         file.stem for file in FOLDER.glob("*.txt") if file.stem not in {"errors", "hostile"}
     )

@@ -1,4 +1,4 @@
-"""Texts that nobody wrote, and what must hold for each of them."""
+"""Generate random texts, and check the properties that every reading must have."""
 
 import time
 import xml.etree.ElementTree as ET
@@ -122,7 +122,7 @@ PIECES: Final = (
 
 
 def seeds() -> list[str]:
-    """Return every written case."""
+    """Return the texts of all cases in corpus/, except the hostile ones."""
     return [case.text for name in (*names(), "errors") for case in cases(name)]
 
 
@@ -133,7 +133,7 @@ def hostile() -> list[str]:
 
 
 def texts(count: int, seed: int) -> Iterator[str]:
-    """Yield `count` texts: formulas, runs of the pieces that they are made of, mutated cases."""
+    """Yield `count` texts: random formulas, random sequences of PIECES, mutated cases."""
     random = Random(seed)
     written = [*seeds(), *hostile()]
     for _ in range(count):
@@ -147,7 +147,7 @@ def texts(count: int, seed: int) -> Iterator[str]:
 
 
 def _formula(random: Random, depth: int) -> str:
-    """Return a formula in a mixture of spellings, most of which can be read."""
+    """Return a formula in mixed spellings; most of these formulas can be read."""
     if not depth or random.random() < 0.15:
         return random.choice(PIECES[: PIECES.index("np.")])
     inner = _formula(random, depth - 1)
@@ -168,7 +168,7 @@ def _formula(random: Random, depth: int) -> str:
 
 
 def mutated(text: str, random: Random, written: list[str]) -> str:
-    """A written case with other bytes in it, or parts of other cases."""
+    """Return `text` with a few bytes changed, or with parts of other cases inserted."""
     data = bytearray(text.encode("utf-8", "surrogatepass"))
     for _ in range(random.randint(1, 4)):
         at = random.randint(0, len(data))
@@ -190,23 +190,23 @@ def mutated(text: str, random: Random, written: list[str]) -> str:
 
 
 class Outcome(NamedTuple):
-    """What a text came to, and what it cost in seconds of processor time."""
+    """The result of reading a text, and the processor time it took in seconds."""
 
     fingerprint: Fingerprint
     seconds: float
 
 
 def outcome(text: str, *, degrees: bool = False) -> Outcome:
-    """Read `text` afresh, evaluate and print it. Raises AssertionError for a bad answer."""
-    for remembered in reader._remembered:
-        remembered.cache_clear()
+    """Read `text` with empty caches, evaluate and print it. May raise AssertionError."""
+    for memoized in reader._memoized:
+        memoized.cache_clear()
     reader._parsed.cache_clear()
     words.split.cache_clear()
     return next_outcome(text, degrees=degrees)
 
 
 def next_outcome(text: str, *, degrees: bool = False) -> Outcome:
-    """The same with whatever is remembered of other texts."""
+    """Read `text` with the caches as they are, evaluate and print it. May raise AssertionError."""
     start = time.process_time()
     try:
         expression = _read(text, degrees)

@@ -1,4 +1,4 @@
-"""Random formulas of the kind that a robot's forward kinematics holds, made by SymPy."""
+"""Random SymPy formulas like those in forward kinematics."""
 
 from random import Random
 from typing import Final
@@ -31,7 +31,7 @@ def entry(random: Random) -> sympy.Expr:
 
 
 def product(random: Random) -> sympy.Expr:
-    """Return a product that the rules of trigonometry can write in other ways."""
+    """Return a product that trigonometric identities can rewrite."""
     first, second = random.sample(ANGLES, 2)
     left, right = random.sample(LENGTHS, 2)
     along = random.choice([sympy.cos, sympy.sin])
@@ -52,6 +52,6 @@ def _term(random: Random) -> sympy.Expr:
 
 
 def value(expression: sympy.Expr) -> float:
-    """Return its value at NUMBERS."""
+    """Return the value of an expression at NUMBERS."""
     at = {name: NUMBERS[name.name.replace("_", "")] for name in expression.free_symbols}
     return float(expression.evalf(20, subs=at))

@@ -1,6 +1,6 @@
-"""A second way to work out what a formula is worth: Python's own grammar over a handful of nodes.
+"""An independent evaluator of formulas: a few nodes of Python's own grammar.
 
-Nothing here is shared with the program, and nothing is evaluated but arithmetic.
+It shares no code with the program and evaluates only arithmetic.
 """
 
 import ast
@@ -23,7 +23,7 @@ _FUNCTIONS: Final[dict[str, Callable[..., float]]] = {
 
 
 def worth(text: str, numbers: Mapping[str, float]) -> float:
-    """Return the value of plain arithmetic in `numbers`, pi and the functions of `math`."""
+    """Return the value of plain arithmetic with `numbers`, pi and functions of `math`."""
     return _value(ast.parse(text, mode="eval").body, {**numbers, "pi": math.pi})
 
 

@@ -1,4 +1,4 @@
-"""Every line of corpus/*.txt: what a student types, and its worth or what is wrong with it."""
+"""Test every line of corpus/*.txt: a typed text, and its value or its error."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ ERRORS = cases("errors")
 
 
 @together(("name", "case"), VALUES)
-def test_value(name: str, case: Case) -> None:
+def test_a_written_case_has_its_value(name: str, case: Case) -> None:
     known = numbers(name)
     values = {
         symbol.name: np.array([known[alias]])
@@ -31,7 +31,7 @@ def test_value(name: str, case: Case) -> None:
 
 
 @together("case", ERRORS)
-def test_error(case: Case) -> None:
+def test_a_written_case_has_its_error(case: Case) -> None:
     code, place, suggestion = case.answers
     with pytest.raises(ExpressionError) as caught:
         read(case.text, ROBOT)
@@ -41,6 +41,6 @@ def test_error(case: Case) -> None:
     assert (error.suggestion or "-") == suggestion
 
 
-def test_there_are_as_many_as_were_promised() -> None:
+def test_the_corpus_has_600_distinct_cases() -> None:
     assert len(VALUES) + len(ERRORS) >= 600
     assert len({(name, case.text) for name, case in VALUES}) == len(VALUES)

@@ -1,4 +1,4 @@
-"""What cannot be read: the code, the place in the text as typed, and the repair."""
+"""Unreadable texts: the code, the place in the typed text, and the repair."""
 
 import pytest
 
@@ -94,7 +94,7 @@ CASES = [
 
 
 @together(("text", "code", "span", "suggestion"), CASES)
-def test_error(
+def test_an_unreadable_text_has_a_code_a_place_and_a_repair(
     text: str, code: str, span: tuple[int, int], suggestion: str | None, arm: Vocabulary
 ) -> None:
     with pytest.raises(ExpressionError) as caught:
@@ -121,20 +121,20 @@ def test_a_suggestion_can_be_read(text: str, arm: Vocabulary) -> None:
     [float("nan"), float("inf"), -float("inf"), 10**400, -(10**9999)],
     ids=["nan", "inf", "-inf", "400 digits", "9999 digits"],
 )
-def test_a_number_that_is_not_finite(number: float, arm: Vocabulary) -> None:
+def test_an_infinite_number_is_refused(number: float, arm: Vocabulary) -> None:
     with pytest.raises(ExpressionError) as caught:
         read(number, arm)
     assert caught.value.code == "not_finite"
 
 
 @pytest.mark.parametrize("boolean", [True, False])
-def test_a_boolean_is_no_number(boolean: bool, arm: Vocabulary) -> None:
+def test_a_boolean_is_refused(boolean: bool, arm: Vocabulary) -> None:
     with pytest.raises(ExpressionError, match="not true or false") as caught:
         read(boolean, arm)
     assert caught.value.code == "not_a_number"
 
 
-def test_a_name_that_looks_like_a_power_of_ten() -> None:
+def test_a_name_that_looks_like_a_power_of_ten_is_ambiguous() -> None:
     vocabulary = Vocabulary([Symbol("e1", "length"), Symbol("e", "number")])
     for text, product in (("2e1", "2*e1"), ("2e-1", "2*e-1")):
         with pytest.raises(ExpressionError) as caught:
@@ -142,7 +142,7 @@ def test_a_name_that_looks_like_a_power_of_ten() -> None:
         assert (caught.value.code, caught.value.suggestion) == ("ambiguous_number", product)
 
 
-def test_an_error_is_remembered_and_raised_anew(arm: Vocabulary) -> None:
+def test_a_memoized_error_is_raised_as_a_new_object(arm: Vocabulary) -> None:
     errors = []
     for _ in range(2):
         with pytest.raises(ExpressionError) as caught:
@@ -152,19 +152,19 @@ def test_an_error_is_remembered_and_raised_anew(arm: Vocabulary) -> None:
     assert errors[0].args == errors[1].args
 
 
-def test_an_error_says_what_is_wrong(arm: Vocabulary) -> None:
+def test_a_message_names_the_trailing_operator(arm: Vocabulary) -> None:
     with pytest.raises(ExpressionError, match="after the `\\+` at the end"):
         read("1 +", arm)
 
 
-def test_a_detached_index_is_quoted_as_it_stands(arm: Vocabulary) -> None:
+def test_a_message_names_the_joined_index(arm: Vocabulary) -> None:
     message = "Write the name and its index without a space: theta1."
     with pytest.raises(ExpressionError, match=message):
         read("l1 + theta 1", arm)
 
 
 @pytest.mark.parametrize("text", ["q1q2q7", "zz", "x"])
-def test_no_name_is_suggested_where_none_is_near(text: str, arm: Vocabulary) -> None:
+def test_no_name_is_suggested_if_none_is_similar(text: str, arm: Vocabulary) -> None:
     with pytest.raises(ExpressionError) as caught:
         read(text, arm)
     assert (caught.value.code, caught.value.suggestion) == ("unknown_symbol", None)

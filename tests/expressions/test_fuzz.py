@@ -1,4 +1,4 @@
-"""Whatever is typed, one answer comes back, soon, and the same one again."""
+"""Any typed text gives one result, quickly, and the same result again."""
 
 import pytest
 from hypothesis import given
@@ -32,43 +32,43 @@ def _check(text: str) -> None:
     for degrees in (False, True):
         first, second = outcome(text, degrees=degrees), outcome(text, degrees=degrees)
         assert first.fingerprint == second.fingerprint
-        # A garbage collection may fall into one of the two.
+        # A garbage collection may slow one of the two.
         assert min(first.seconds, second.seconds) < STALL
 
 
 @given(formulas)
-def test_formulas_of_the_grammar(text: str) -> None:
+def test_random_formulas_give_one_result(text: str) -> None:
     _check(text)
 
 
 @given(st.lists(st.sampled_from(PIECES), max_size=25).map("".join) | st.text(max_size=60))
-def test_pieces_of_formulas(text: str) -> None:
+def test_random_texts_give_one_result(text: str) -> None:
     _check(text)
 
 
 @given(st.sampled_from(seeds()), st.integers(0, 60), st.binary(max_size=6))
-def test_cases_with_other_bytes_in_them(text: str, at: int, put: bytes) -> None:
+def test_mutated_cases_give_one_result(text: str, at: int, put: bytes) -> None:
     data = text.encode()
     _check((data[:at] + put + data[at + 1 :]).decode("utf-8", "replace"))
 
 
-def test_a_short_run_of_the_long_fuzz() -> None:
+def test_a_sample_of_the_fuzz_campaign_gives_one_result() -> None:
     for text in texts(300, seed=1):
         _check(text)
 
 
 @together("text", HOSTILE)
-def test_hostile(text: str) -> None:
+def test_hostile_texts_give_one_result(text: str) -> None:
     _check(text)
 
 
 @pytest.mark.parametrize("text", [text for text in HOSTILE if "__" in text or "import" in text])
-def test_code_is_not_read(text: str) -> None:
+def test_program_code_is_refused(text: str) -> None:
     with pytest.raises(ExpressionError):
         read(text, ROBOT)
 
 
-def test_what_is_too_long_is_not_even_looked_at() -> None:
+def test_a_text_that_is_too_long_is_refused_at_once() -> None:
     with pytest.raises(ExpressionError) as caught:
         read("(" * 10_000_000, ROBOT)
     assert (caught.value.code, caught.value.span[0]) == ("too_long", LIMITS.characters)

@@ -1,4 +1,4 @@
-"""Limits before work."""
+"""Limits on expressions."""
 
 import time
 
@@ -17,13 +17,15 @@ from tests.guards import STALL
         ("-" * 41 + "1", "too_deep", (0, 42)),
         ("(" * 41 + "1" + ")" * 41, "too_deep", (40, 41)),
         ("sin(" * 40 + "1" + ")" * 40, "too_deep", (0, 201)),
-        # Both limits are broken: the first on the way from right to left is named.
+        # Both limits are exceeded: the error names the first one from right to left.
         ("k+" * 1100 + "-" * 41 + "k", "too_deep", (0, 2242)),
         ("-" * 41 + "k" + "+k" * 1100, "too_many_nodes", (0, 2242)),
         ("-" * 300 + "k", "too_deep", (0, 301)),
     ],
 )
-def test_beyond(text: str, code: str, span: tuple[int, int], arm: Vocabulary) -> None:
+def test_a_text_beyond_a_limit_is_refused(
+    text: str, code: str, span: tuple[int, int], arm: Vocabulary
+) -> None:
     with pytest.raises(ExpressionError) as caught:
         read(text, arm)
     assert (caught.value.code, caught.value.span) == (code, span)
@@ -41,8 +43,8 @@ def test_beyond(text: str, code: str, span: tuple[int, int], arm: Vocabulary) ->
         "*".join(["q1"] * 100),
     ],
 )
-def test_within(text: str, arm: Vocabulary) -> None:
-    """A long sum is one level deep, for that is how it is written."""
+def test_a_text_within_the_limits_is_read(text: str, arm: Vocabulary) -> None:
+    """A long sum counts as one level of depth."""
     expression = read(text, arm, quantity="angle", angle_unit="degrees")
     assert expression.mathml()
     assert expression.latex()
@@ -56,8 +58,8 @@ def test_the_limits_are_those_of_the_design() -> None:
     "text",
     ["a" * 500, "θ" * 500, "sin" * 166, ")" * 500, "k1" * 250, "-(" * 250, "c1" * 250, "½" * 500],
 )
-def test_no_text_is_costly(text: str, arm: Vocabulary) -> None:
-    """A generous bound on processor time, to catch what grows with the square of the length."""
+def test_no_text_takes_quadratic_time(text: str, arm: Vocabulary) -> None:
+    """The bound on processor time is generous; quadratic growth would exceed it."""
     start = time.process_time()
     with pytest.raises(ExpressionError):
         read(text, arm, angle_unit="degrees")

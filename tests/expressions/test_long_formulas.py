@@ -1,4 +1,4 @@
-"""The pose of a seven-joint arm, as programs print it: multiplied out and not simplified."""
+"""The pose of a seven-joint arm as programs print it: expanded and not simplified."""
 
 import inspect
 import sys
@@ -44,7 +44,7 @@ PRINTERS: dict[str, Callable[[sympy.Expr], str]] = {
 
 @cache
 def _pose() -> sympy.Matrix:
-    """The standard DH product of an arm with the twists and offsets of Baxter's."""
+    """Return the product of the standard DH transforms of an arm like Baxter's."""
     a0, a1, a2, a3, a4, a5, a6 = LENGTHS
     turn = sympy.pi / 2
     rows = [(a1, -turn, a0), (0, turn, 0), (a3, -turn, a2), (0, turn, 0), (a5, -turn, a4),
@@ -84,7 +84,7 @@ def test_a_long_entry_is_read(printer: str) -> None:
 
 
 def _longest_formulas() -> list[str]:
-    """Formulas at the limits: a long sum, a long product, and levels of both."""
+    """Return formulas at the limits: long sums, long products, and nested ones."""
     run = LIMITS.tree_depth - 1
     return [
         "+".join(["L1"] * (run + 1)),
@@ -96,8 +96,8 @@ def _longest_formulas() -> list[str]:
 
 
 @pytest.mark.parametrize("text", _longest_formulas(), ids=range(5))
-def test_whatever_works_on_trees_stays_far_from_the_recursion_limit(text: str) -> None:
-    """A server's own calls take a hundred levels of the 1,000."""
+def test_functions_on_trees_stay_far_from_the_recursion_limit(text: str) -> None:
+    """Python allows 1,000 nested calls, of which a server's own calls take about a hundred."""
     depth = len(inspect.stack(0))
     limit = sys.getrecursionlimit()
     sys.setrecursionlimit(depth + 800)

@@ -1,4 +1,4 @@
-"""No text of a student's reaches an evaluator: the source is walked for calls of one."""
+"""No student's text is run as code: the source code contains no call of an evaluator."""
 
 import ast
 from pathlib import Path
@@ -17,7 +17,7 @@ MODULES = frozenset({"pickle", "marshal", "shelve", "subprocess", "sympy", "impo
 ROOT = Path(service.__file__).parent
 FOLDERS = ("expressions", "grids", "grading")
 FILES = sorted(file for folder in FOLDERS for file in (ROOT / folder).rglob("*.py"))
-# The kinds are found by the names of their files.
+# The kinds are imported by the names of their files.
 ALLOWED = {"grading/kinds/__init__.py": {"importlib", "import_module"}}
 
 
@@ -50,6 +50,6 @@ def test_no_evaluator_is_called(file: Path) -> None:
     "source",
     ["eval('1')", "sympy.sympify(x)", "import pickle", "from sympy import S", "a.parse_expr(x)"],
 )
-def test_the_walk_finds_one(source: str) -> None:
+def test_a_forbidden_call_is_found(source: str) -> None:
     assert found(source)
     assert len(FILES) > 40

@@ -1,4 +1,4 @@
-"""What holds for any tree and any text."""
+"""Properties that hold for every tree and every text."""
 
 import xml.etree.ElementTree as ET
 from operator import add, mul, sub
@@ -36,8 +36,8 @@ units = st.builds(Unit, numbers | numbers.map(lambda n: Binary("/", n, Number(2.
                   st.sampled_from(["deg", "rad"]))  # fmt: skip
 
 
-def _that_is_read(tree: Binary) -> Binary:
-    """Turn x^0, which is refused where x is a number (90^0 was meant as 90°), into x*0."""
+def _without_zero_power(tree: Binary) -> Binary:
+    """Replace x^0 by x*0, because 90^0 is refused (it may mean 90°)."""
     is_zero = isinstance(tree.right, Number) and tree.right.value == 0
     return Binary("*", tree.left, tree.right) if tree.operator == "^" and is_zero else tree
 
@@ -46,7 +46,7 @@ def _inner(trees: st.SearchStrategy[Node]) -> st.SearchStrategy[Node]:
     one = st.sampled_from(["sin", "cos", "tan", "asin", "acos", "atan", "sqrt", "abs", "exp"])
     return st.one_of(
         st.builds(Negation, trees),
-        st.builds(Binary, st.sampled_from("+-*/^"), trees, trees).map(_that_is_read),
+        st.builds(Binary, st.sampled_from("+-*/^"), trees, trees).map(_without_zero_power),
         st.builds(Call, one, st.tuples(trees)),
         st.builds(Call, st.just("atan2"), st.tuples(trees, trees)),
     )
@@ -61,7 +61,7 @@ def test_a_printed_tree_reads_back(tree: Node) -> None:
 
 
 @given(trees)
-def test_degrees_are_explicit_once_converted(tree: Node) -> None:
+def test_converting_to_degrees_twice_changes_nothing_more(tree: Node) -> None:
     once = in_degrees(tree, is_angle=True, notes=[])
     assert in_degrees(once, is_angle=True, notes=[]) == once
     text = to_text(once)
@@ -92,7 +92,7 @@ def test_latex_reads_back_to_the_same_values(tree: Node) -> None:
 
 
 def _oracle(node: Node, values: dict[str, float]) -> sympy.Expr:
-    """Build the same tree in SymPy, exactly and without its evaluation."""
+    """Build the same formula in SymPy, with 40 digits."""
     match node:
         case Number(value):
             return sympy.Float(value, 40)

@@ -1,4 +1,4 @@
-"""What a text is worth. Expected values are Python's own arithmetic at the samples of conftest."""
+"""The values of texts, compared with Python's own arithmetic at the sample of conftest."""
 
 from math import acos, asin, atan2, cos, exp, pi, sin, sqrt, tan
 
@@ -138,14 +138,14 @@ MARKED = [
 
 
 @together(("text", "expected"), [*NUMBERS, *SYMBOLS, *NAMES, *SHORTHAND, *MARKED])
-def test_value(text: str, expected: float, arm: Vocabulary, values: Values) -> None:
+def test_a_text_has_its_value(text: str, expected: float, arm: Vocabulary, values: Values) -> None:
     assert np.ravel(read(text, arm).evaluate(values)) == pytest.approx([expected], rel=1e-14)
 
 
 @pytest.mark.parametrize("number", [0, -7, 90, 0.5, -1e-9, 1e300, 10**300])
-def test_a_json_number_is_itself(number: float, arm: Vocabulary) -> None:
+def test_a_json_number_keeps_its_value(number: float, arm: Vocabulary) -> None:
     assert read(number, arm).evaluate({}) == float(number)
 
 
-def test_symbols_are_canonical(arm: Vocabulary) -> None:
+def test_an_expression_has_the_canonical_names_of_its_symbols(arm: Vocabulary) -> None:
     assert read("q3 + s12*l1 + π", arm).symbols == {"d3", "theta1", "theta2", "l1"}

@@ -1,4 +1,4 @@
-"""What the reading of a text costs is known before it is read."""
+"""The cost of reading a text is estimated before it is read."""
 
 import time
 
@@ -17,7 +17,7 @@ from tests.guards import STALL
         ("l1*c1 + 2", 7),
         (r"\cos\left(\theta_{1}\right)", 11),
         ("     0     ", 1),
-        # ½ stands for 1/2 in brackets that are not written.
+        # ½ is read as 1/2 in brackets.
         ("½", 6),
         ("x" * 160, 90),
     ],
@@ -29,7 +29,7 @@ def test_names_numbers_and_signs_are_counted(text: str, symbols: int) -> None:
 @pytest.mark.parametrize(
     ("text", "cost"),
     [
-        # As measured: the processor time, in that of an opening brace of LaTeX.
+        # Measured processor time, as a multiple of that for an opening brace of LaTeX.
         (r"\frac{1}{2}", 18),
         ("pi ", 6),
         ("√2 ", 7),
@@ -46,8 +46,8 @@ def test_costly_symbols_of_long_texts_count_several_times(text: str, cost: int) 
     assert reading_cost(text * 80) / 80 == pytest.approx(cost, abs=1.8)
 
 
-def test_a_repair_tries_texts_of_so_many_symbols_and_no_more() -> None:
-    """Each of six readings of such a text took 5 ms."""
+def test_a_repair_tries_at_most_1200_symbols() -> None:
+    """Without this limit, reading this text took six times 5 ms."""
     with pytest.raises(ExpressionError) as caught:
         read("//".join(["½" * 78] * 6) + "1", ROBOT)
     assert 0 < caught.value.tried <= 1200
@@ -56,8 +56,8 @@ def test_a_repair_tries_texts_of_so_many_symbols_and_no_more() -> None:
     assert caught.value.tried == 0
 
 
-def test_a_run_of_letters_costs_no_more_than_its_length() -> None:
-    """Each place of a run of 200 letters copied all pieces behind it."""
+def test_a_run_of_letters_takes_linear_time() -> None:
+    """The time was quadratic when each place of a run copied all pieces after it."""
     start = time.process_time()
     for i in range(100):
         outcome("sin" * 26 + str(i))

@@ -1,4 +1,4 @@
-"""What is kept of a text once it was read, and what is made anew from it."""
+"""Memoized expressions: which objects are stored, and which are computed again."""
 
 import gc
 import threading
@@ -22,7 +22,7 @@ SAMPLES = {symbol.name: np.linspace(-2, 2, 16) for symbol in ROBOT.symbols}
 
 
 def _tracked() -> int:
-    """How many objects the garbage collector has to look at."""
+    """Return the number of objects that the garbage collector visits."""
     for _ in range(3):
         gc.collect()
     return len(gc.get_objects())
@@ -35,8 +35,8 @@ def _readable(text: str) -> Expression | None:
         return None
 
 
-def test_a_remembered_text_is_a_handful_of_objects(arm: Vocabulary, values: Values) -> None:
-    """Fifty nodes, but no more work for the garbage collector than a name."""
+def test_a_memoized_text_is_at_most_five_objects(arm: Vocabulary, values: Values) -> None:
+    """A formula with fifty nodes must cost the garbage collector no more than a name."""
     before = _tracked()
     for number in range(100, 600):
         read(LONG.format(number), arm).evaluate(values)
@@ -56,7 +56,7 @@ def test_a_remembered_text_is_a_handful_of_objects(arm: Vocabulary, values: Valu
         (0.25, "length", "radians"),
     ],
 )
-def test_a_tree_is_the_same_whenever_it_is_asked_for(
+def test_a_tree_that_is_parsed_again_is_the_same(
     text: str | float, quantity: object, angle_unit: object, arm: Vocabulary
 ) -> None:
     expression = read(text, arm, quantity=quantity, angle_unit=angle_unit)  # type: ignore[arg-type]
@@ -64,11 +64,11 @@ def test_a_tree_is_the_same_whenever_it_is_asked_for(
     reader._parsed.cache_clear()
     again = expression.tree
     assert again is not first
-    # Places in the text take no part in equality, but stand in the repr.
+    # Equality ignores places in the text, but the repr contains them.
     assert repr(again) == repr(first)
 
 
-def test_a_tree_that_was_handed_in_is_kept(arm: Vocabulary) -> None:
+def test_a_tree_given_without_options_is_stored(arm: Vocabulary) -> None:
     tree = read("2*l1", arm).tree
     expression = Expression("l1", tree, (), frozenset({"l1"}))
     assert expression.tree is tree
@@ -89,12 +89,14 @@ def test_a_tree_that_was_handed_in_is_kept(arm: Vocabulary) -> None:
         ("np.cos(q1)", False),
     ],
 )
-def test_whether_a_decimal_was_written(text: str | float, expected: bool, arm: Vocabulary) -> None:
+def test_has_decimal_is_true_for_decimal_numbers(
+    text: str | float, expected: bool, arm: Vocabulary
+) -> None:
     assert read(text, arm).has_decimal is expected
 
 
-def test_what_others_left_in_the_memo_changes_no_value() -> None:
-    """To the last bit, whatever was evaluated before."""
+def test_a_shared_memo_changes_no_value() -> None:
+    """Values are equal to the last bit, with and without a memo, in any order."""
     expressions = [each for text in READABLE if (each := _readable(text)) is not None]
     assert len(expressions) > 100
     alone = [np.asarray(each.evaluate(SAMPLES)) for each in expressions]
@@ -108,8 +110,8 @@ def test_what_others_left_in_the_memo_changes_no_value() -> None:
 def test_threads_that_read_the_same_texts_agree() -> None:
     texts = [f"{text} + 0*{number}" for number, text in enumerate(READABLE[:60])]
     expected = [None if (each := _readable(text)) is None else str(each.text()) for text in texts]
-    for remembered in reader._remembered:
-        remembered.cache_clear()
+    for memoized in reader._memoized:
+        memoized.cache_clear()
     reader._parsed.cache_clear()
     together = threading.Barrier(4)
     found: list[list[str | None]] = []

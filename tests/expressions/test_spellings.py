@@ -1,8 +1,8 @@
-"""A thousand spellings with their meaning beside each, written by hand.
+"""A thousand spellings, each with its meaning, written by hand.
 
-The meaning is plain arithmetic, evaluated by ``reference``, which shares nothing with the program.
-The files of ``corpus/spellings`` are sorted by the program or habit that a spelling comes from. The
-other files of ``corpus`` are read by ``test_corpus``.
+The meaning is plain arithmetic, evaluated by ``reference``, which shares no code with the program.
+``corpus/spellings`` has one file for each program or habit that spellings come from.
+``test_corpus`` tests the other files of ``corpus``.
 """
 
 from collections.abc import Callable
@@ -20,13 +20,13 @@ CASES = spelling_cases()
 READ = [case for case in CASES if not case.refused]
 REFUSED = [case for case in CASES if case.refused]
 DRAWS = 3
-# Of the useful spellings, fewer than this share is refused.
+# The greatest share of useful spellings that may be refused.
 MOST_REFUSED = 0.03
 LEAST_SPELLINGS = 1000
 
 
 def _values(seed: int) -> dict[str, float]:
-    """A value for each symbol, by the names that meanings use; positive, so that roots exist."""
+    """Return a positive value for each symbol, by the names that meanings use."""
     random = Random(seed)
     return {
         alias: random.uniform(0.2, 0.9)
@@ -47,12 +47,12 @@ def _means(text: str, meaning: str) -> None:
 
 
 @together("case", READ)
-def test_a_spelling_is_read_as_it_is_meant(case: SpellingCase) -> None:
+def test_a_spelling_has_its_meaning(case: SpellingCase) -> None:
     _means(case.text, case.meaning)
 
 
 @together("case", REFUSED)
-def test_a_useful_spelling_that_is_refused_has_a_repair_that_keeps_its_meaning(
+def test_the_repair_of_a_refused_spelling_keeps_its_meaning(
     case: SpellingCase,
 ) -> None:
     with pytest.raises(ExpressionError) as caught:
@@ -71,7 +71,7 @@ def test_few_useful_spellings_are_refused(figure: Callable[[str], None]) -> None
     assert share < MOST_REFUSED
 
 
-# Names of one letter, of which a text may be a product by accident.
+# Symbols with one letter: a text may accidentally be a product of them.
 LETTERS = Vocabulary(
     [
         *ROBOT.symbols,
@@ -90,7 +90,7 @@ LETTERS = Vocabulary(
         *("ArcTan(l1, l2)", "arctan(a, b)", "sin2a", "2^3^2", "sin^-1(n)", "lambda: 0"),
     ],
 )
-def test_no_text_is_a_product_by_accident(text: str) -> None:
+def test_no_text_is_accidentally_a_product(text: str) -> None:
     with pytest.raises(ExpressionError) as caught:
         read(text, LETTERS)
     if caught.value.suggestion is not None:
@@ -111,7 +111,7 @@ def test_no_text_is_a_product_by_accident(text: str) -> None:
         ("A b", "a*b", ["letter_case"]),
     ],
 )
-def test_a_product_that_is_meant(text: str, meaning: str, notes: list[str]) -> None:
+def test_an_intended_product_is_read(text: str, meaning: str, notes: list[str]) -> None:
     expression = read(text, LETTERS)
     assert expression.text() == meaning
     assert [note.code for note in expression.notes] == notes

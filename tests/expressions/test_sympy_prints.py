@@ -1,4 +1,4 @@
-"""What SymPy prints is read, and is worth what SymPy says it is."""
+"""Formulas printed by SymPy are read with the value that SymPy computes."""
 
 from collections.abc import Callable
 from random import Random
@@ -29,7 +29,7 @@ REWRITINGS: dict[str, Callable[[sympy.Expr], sympy.Expr]] = {
     "expand_trig": sympy.expand_trig,
     "sum of angles": lambda e: TR10i(sympy.expand(sympy.expand_trig(e))),
     "trigsimp": lambda e: sympy.trigsimp(sympy.expand(e)),
-    # Rules 8 and 10 of Fu et al., by which trigsimp works: products to sums, and the way back.
+    # Rules 8 and 10 of Fu et al., which trigsimp uses: products to sums, and sums to products.
     "product to sum": lambda e: TR8(sympy.expand(e)),
     "factor_terms": lambda e: sympy.factor_terms(sympy.expand(e)),
     "collect": lambda e: sympy.collect(sympy.expand(e), list(sympy.ordered(e.free_symbols))[:1]),
@@ -46,7 +46,7 @@ def entries(seed: int, count: int) -> list[sympy.Expr]:
 
 
 @pytest.mark.parametrize("printer", PRINTERS)
-def test_a_print_is_read(printer: str) -> None:
+def test_a_printed_formula_has_its_value(printer: str) -> None:
     count = 0
     for expression in entries(1, 40):
         text = PRINTERS[printer](expression)
@@ -58,8 +58,8 @@ def test_a_print_is_read(printer: str) -> None:
 
 
 @pytest.mark.parametrize("rewriting", REWRITINGS)
-def test_a_rewritten_formula_is_worth_the_same(rewriting: str) -> None:
-    """Both texts are read by us; that they are equal is SymPy's word."""
+def test_a_rewritten_formula_has_the_same_value(rewriting: str) -> None:
+    """SymPy rewrites the formula; the reader must give both texts the same value."""
     random = Random(2)
     changed = 0
     for _ in range(10):
@@ -71,7 +71,7 @@ def test_a_rewritten_formula_is_worth_the_same(rewriting: str) -> None:
     assert changed >= 3
 
 
-def test_our_own_latex_is_read_back() -> None:
+def test_latex_of_an_expression_is_read_back() -> None:
     for expression in entries(3, 40):
         ours = read(str(expression), ROBOT).latex()
         if len(ours) <= LIMITS.characters:

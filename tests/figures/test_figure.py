@@ -1,4 +1,4 @@
-"""The figures of all exercises: legible, accessible, and no answer in them."""
+"""The figures of all exercises are legible and accessible, and contain no answer."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -15,7 +15,7 @@ from service.catalogue import Exercise
 from service.catalogue.files.schema import ViewSpec
 from service.catalogue.robots.robot import Robot
 from service.figures.drawing.style import Theme
-from service.figures.figure import exercise_figure, plainest_view, reference_figure
+from service.figures.figure import default_view, exercise_figure, reference_figure
 from service.figures.geometry.mechanism import mechanism_of
 from service.figures.geometry.symbol_numbers import drawing_numbers
 from service.figures.geometry.view import View
@@ -37,17 +37,17 @@ GREEK = str.maketrans({"θ": "theta", "α": "alpha"})
 
 @cache
 def drawn(name: str) -> str:
-    """The figure of a shipped exercise."""
+    """Return the figure of a shipped exercise (memoized)."""
     return exercise_figure(SHIPPED[name])
 
 
 def texts(svg: str) -> list[str]:
-    """The texts of a figure, as plain names: theta1."""
+    """Return the texts of a figure as plain names: theta1."""
     found = ET.fromstring(svg).iter(f"{SVG}text")
     return ["".join(each.itertext()).translate(GREEK) for each in found]
 
 
-# Every pair of texts of one figure whose boxes overlap, and every text beyond its figure's edge.
+# JavaScript: all pairs of texts in a figure whose boxes overlap, and all texts beyond its edge.
 MISPLACED = """[...document.querySelectorAll('svg')].flatMap(svg => {
     const edge = svg.getBoundingClientRect(), title = svg.querySelector('title').textContent
     const texts = [...svg.querySelectorAll('text')]
@@ -63,10 +63,8 @@ MISPLACED = """[...document.querySelectorAll('svg')].flatMap(svg => {
 })"""
 
 
-def test_no_two_labels_overlap_as_a_browser_sets_them(
-    visit: Callable[..., Visit], tmp_path: Path
-) -> None:
-    """A box is as high as the type's tallest letter and deepest stroke; 4 pixels of it are air."""
+def test_no_labels_overlap_in_a_browser(visit: Callable[..., Visit], tmp_path: Path) -> None:
+    """A text's box is as high as the font; its upper and lower 4 pixels are empty."""
     shown = [*map(drawn, SHIPPED), *(reference_figure(SHIPPED[name]) for name in FRAMED)]
     file = tmp_path / "figures.html"
     file.write_text("<!doctype html><meta charset=utf-8>" + "".join(shown), encoding="utf-8")
@@ -78,8 +76,8 @@ def test_no_two_labels_overlap_as_a_browser_sets_them(
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_nothing_is_told_that_the_statement_does_not_tell(name: str) -> None:
-    """All texts are names of joint variables and lengths, and sums of them; no other number."""
+def test_a_figure_reveals_only_what_the_statement_says(name: str) -> None:
+    """All texts are joint variables, lengths and their sums; there are no other numbers."""
     exercise = SHIPPED[name]
     known = {variable.name for variable in exercise.variables}
     told = [part for text in texts(drawn(name)) for part in text.split(" + ")]
@@ -93,13 +91,13 @@ def test_nothing_is_told_that_the_statement_does_not_tell(name: str) -> None:
 
 
 def stated(exercise: Exercise) -> str:
-    """The words that a student has: the statement, and what is said of the symbols."""
+    """Return the text that students see: the statement and the descriptions of symbols."""
     described = (f"{variable.name}: {variable.description}" for variable in exercise.variables)
     return "\n".join([exercise.statement, *described])
 
 
 @pytest.mark.parametrize("name", TABLES)
-def test_every_joint_and_every_named_length_of_the_table_has_its_name(name: str) -> None:
+def test_every_joint_and_length_symbol_of_the_table_is_labelled(name: str) -> None:
     exercise = SHIPPED[name]
     told = {part for text in texts(drawn(name)) for part in text.split(" + ")}
     robot = exercise.robot
@@ -109,19 +107,19 @@ def test_every_joint_and_every_named_length_of_the_table_has_its_name(name: str)
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_no_axis_is_seen_end_on(name: str) -> None:
+def test_no_joint_axis_points_at_the_viewer(name: str) -> None:
     exercise = SHIPPED[name]
     assert exercise.reference is not None
     numbers = drawing_numbers(exercise.variables)
     mechanism = mechanism_of(exercise.reference, numbers)
-    view = plainest_view(mechanism, numbers)
+    view = default_view(mechanism, numbers)
     [shown] = mechanism.at(np.array([[numbers[joint.variable] for joint in exercise.joints]]))
     # The sine of the angle between an axis and the line of sight.
     assert np.linalg.norm(np.cross(shown.axes, sight(view)), axis=1).min() > 0.45
 
 
 def sight(view: View) -> Numbers:
-    """The direction to the viewer, from azimuth and elevation."""
+    """Return the direction to the viewer by azimuth and elevation."""
     azimuth, elevation = np.radians([view.azimuth, view.elevation])
     level = np.cos(elevation)
     return np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)])
@@ -131,7 +129,7 @@ def test_the_author_may_choose_the_view() -> None:
     exercise = SHIPPED["spatial-rrr"]
     other = exercise_figure(replace(exercise, view=ViewSpec(azimuth=-100, elevation=20)))
     assert other != drawn("spatial-rrr")
-    # Seen from the side of -y0 the arm along x0 lies level.
+    # Seen from -y0, the arm along x0 is horizontal.
     level = exercise_figure(replace(exercise, view=ViewSpec(azimuth=-90, elevation=0)))
     heights = [
         {point.split(",")[1] for point in line.get("points", "").split()[-2:]}
@@ -141,7 +139,7 @@ def test_the_author_may_choose_the_view() -> None:
 
 
 @pytest.mark.parametrize("theme", Theme)
-def test_a_theme_is_a_matter_of_the_style_sheet_alone(theme: Theme) -> None:
+def test_a_theme_changes_only_the_style_sheet(theme: Theme) -> None:
     themed = exercise_figure(SHIPPED["scara"], theme)
     style = re.compile("<style>.*?</style>", re.DOTALL)
     assert style.sub("", themed) == style.sub("", drawn("scara"))
@@ -169,7 +167,7 @@ def test_frames_are_drawn_for_tutors() -> None:
     framed = texts(reference_figure(SHIPPED["stanford-arm"]))
     names = {name for text in framed for name in text.split(", ")}
     assert {f"{axis}{i}" for axis in "xyz" for i in range(7)} <= names
-    # Frames 3, 4 and 5 lie in the wrist: their common axes are drawn once.
+    # Frames 3, 4 and 5 are in the wrist: common axes are drawn once.
     assert "x3, x4, x5" in framed
 
 
@@ -185,7 +183,7 @@ def test_no_arrow_of_a_sliding_joint_crosses_an_axis(name: str) -> None:
     assert lines["motion"]
     assert lines["frame"]
     for (a, b), (c, d) in product(lines["motion"], lines["frame"]):
-        # Lines cross where each has its ends on either side of the other.
+        # Two lines cross if each has its ends on both sides of the other.
         sides = [((q - p) * (r - p).conjugate()).imag for p, q, r in
                  [(a, b, c), (a, b, d), (c, d, a), (c, d, b)]]  # fmt: skip
         assert not (sides[0] * sides[1] < 0 and sides[2] * sides[3] < 0)
@@ -198,9 +196,9 @@ def test_an_exercise_without_a_robot_has_no_figure() -> None:
 
 
 def test_the_figure_of_the_readme_is_current() -> None:
-    """Refresh it: dh-grader exercises show stanford-arm --figure docs/stanford-arm.svg.
+    """To update it: dh-grader exercises show stanford-arm --figure docs/stanford-arm.svg.
 
-    Another processor may round another way in the last digit.
+    The last digits may differ between processors.
     """
     number = re.compile(r"-?\d+(?:\.\d+)?")
     kept = (DOCS / "stanford-arm.svg").read_text(encoding="utf-8")

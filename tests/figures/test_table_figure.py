@@ -1,4 +1,4 @@
-"""The figure of a table as somebody has written it: its frames where they are, and nothing else."""
+"""The figure of a student's table shows its frames and no text of the student."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -16,7 +16,7 @@ from tests.shipped import shipped_exercises
 
 SHIPPED = shipped_exercises()
 SVG = "{http://www.w3.org/2000/svg}"
-# A sliding joint a quarter turn from a turning one; the fixed row has no joint.
+# A revolute joint, a prismatic joint perpendicular to it, and a fixed row.
 TABLE = {"structure": "RP", "rows": "0 90° d1 q1\n0 0 q2 0\n0.2 0 0 0"}
 
 
@@ -48,15 +48,15 @@ def test_a_table_is_drawn_as_a_robot_with_its_frames(client: httpx.Client) -> No
     found = kinds(svg)
     assert (found["turning"], found["rod"], found["chain"]) == (1, 3, 0)
     assert found["sliding"] > 0
-    # Up by d1 = 0.5.
+    # The first rod goes up by d1 = 0.5.
     up, *_ = svg.iterfind(".//*[@class='rod']")
     (x0, y0), (x1, y1) = (map(float, point.split(",")) for point in up.get("points", "").split())
     assert x0 == pytest.approx(x1)
     assert y1 < y0
 
 
-def test_a_table_stands_over_the_mechanism_of_its_exercise(client: httpx.Client) -> None:
-    # Without a table nothing of an answer is in it: no names at all, no lines of a chain.
+def test_a_table_is_drawn_over_the_mechanism_of_its_exercise(client: httpx.Client) -> None:
+    # Without a table, the figure contains no answer: no names, and no lines of a chain.
     for name, exercise in SHIPPED.items():
         if exercise.reference is not None:
             alone = drawn(client, exercise=name)
@@ -65,14 +65,14 @@ def test_a_table_stands_over_the_mechanism_of_its_exercise(client: httpx.Client)
     over = drawn(client, exercise="planar-rr", table={"rows": right}, joints=[[0.4, 0.7]])
     assert names(over) == {f"{axis}{i}" for axis in "xyz" for i in range(3)}
     assert kinds(over)["chain"] == 2
-    # The last origin of a right table is where the gripper grips.
+    # The last origin of a right table is the tool point of the gripper.
     point = over.find(".//*[@class='point']")
     assert point is not None
     tip = over.findall(".//*[@class='chain']")[-1].get("points", "").split()[-1]
     assert tip == f"{point.get('cx')},{point.get('cy')}"
 
 
-def test_nothing_of_a_hostile_table_is_in_its_figure(client: httpx.Client) -> None:
+def test_a_figure_contains_no_text_of_a_hostile_table(client: httpx.Client) -> None:
     rows = [[TEXTS[i % len(TEXTS)], 0, 0, "theta1"] for i in range(2)]
     for table in ({"rows": rows}, {"rows": TEXTS[0]}, {"rows": [["1e6", "1", "-1e6", "1"]] * 12}):
         svg = drawn(client, exercise="planar-rr", table=table)
@@ -82,6 +82,6 @@ def test_nothing_of_a_hostile_table_is_in_its_figure(client: httpx.Client) -> No
             "svg", "title", "desc", "style", "rect", "g", "polygon", "polyline", "path", "ellipse",
             "circle", "text", "tspan", "linearGradient", "stop",
         }  # fmt: skip
-    # Rows that cannot be read, and no exercise: there is nothing to draw.
+    # With unreadable rows and no exercise, there is nothing to draw.
     body = {"figure": "auto", "table": {"structure": "R", "rows": TEXTS[1]}}
     assert "figure" not in client.post("/v1/frames", json=body).json()

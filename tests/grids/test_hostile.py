@@ -1,4 +1,4 @@
-"""Whatever is pasted, a grid or one GridError comes back, soon."""
+"""Reading any pasted text gives a grid or one GridError within a time limit."""
 
 import time
 from collections.abc import Callable
@@ -67,13 +67,13 @@ def spans(found: Grid | Refusal) -> list[tuple[int, int]]:
 
 
 def twice(read: Callable[[str], Found], text: str) -> Found:
-    """What is found, the same both times and soon."""
+    """Return ``read(text)``; fail if a second call differs or both are slow."""
     times = [time.process_time()]
     found = read(text)
     times.append(time.process_time())
     assert read(text) == found
     times.append(time.process_time())
-    # Of two runs the better: a collection of garbage belongs to neither.
+    # Take the faster of two runs, because garbage collection may slow one of them.
     assert min(times[1] - times[0], times[2] - times[1]) < STALL
     return found
 
@@ -85,7 +85,7 @@ def check(text: str) -> None:
 def check_places(
     text: str, one: Grid | Refusal, found: list[tuple[tuple[int, int], Grid | Refusal]] | Refusal
 ) -> None:
-    """What was found stands in the text, and is no larger than the limits allow."""
+    """Fail if a place is outside the text or a grid exceeds the limits."""
     places = spans(one)
     if isinstance(found, list):
         assert 1 <= len(found) <= GRID_LIMITS.rows
@@ -101,7 +101,7 @@ def check_places(
 @example("[" * 16_000)
 @example("<td>" * 4000)
 @example("0=A@A")
-def test_any_text(text: str) -> None:
+def test_any_text_gives_a_grid_or_an_error(text: str) -> None:
     check(text)
 
 
@@ -117,11 +117,11 @@ def mutations(draw: st.DrawFn) -> str:
 
 
 @given(mutations())
-def test_mutations_of_each_format(text: str) -> None:
+def test_mutated_grids_give_a_grid_or_an_error(text: str) -> None:
     check(text)
 
 
-# Each unit behind one of the beginnings in turn; all pairs are in the campaign.
+# The suite combines each unit with one beginning; the campaign runs all pairs.
 BEGINNINGS = ["", "[", "<tr><td>", "\\begin{matrix}"]
 UNITS = [*FRAGMENTS, "1 ", "1 -", "1  ", "1\n", "[' ", '<a "', "\\cline{"]
 PAIRS = [
@@ -132,10 +132,10 @@ PAIRS = [
 
 
 @pytest.mark.parametrize(("before", "unit"), one_in(len(BEGINNINGS), PAIRS))
-def test_sixteen_thousand_of_anything(before: str, unit: str) -> None:
+def test_long_repetitions_give_a_grid_or_an_error(before: str, unit: str) -> None:
     text = before + unit * GRID_LIMITS.characters
     check(text[: GRID_LIMITS.characters - 1] + ("]" if before == "[" else ""))
 
 
-def test_a_text_beyond_the_limit_costs_nothing() -> None:
+def test_a_text_far_beyond_the_limit_is_refused_at_once() -> None:
     check("[" * 10_000_000)

@@ -1,4 +1,4 @@
-"""Each format gives the cells that were written in it, and refuses what is no single grid."""
+"""Each format reads back the cells written in it, and refuses a text that is not one grid."""
 
 import pytest
 from hypothesis import given, settings
@@ -18,30 +18,30 @@ def cells(text: str) -> list[list[str]]:
 
 @together("name", FORMATS)
 @together("rows", [POSE, CALLS])
-def test_a_matrix_comes_back_as_written(name: str, rows: Rows) -> None:
+def test_each_format_reads_back_its_cells(name: str, rows: Rows) -> None:
     assert cells(FORMATS[name](rows)) == rows
 
 
-# Where blanks alone separate, a sum or product with blanks is read by MATLAB's rule.
+# In formats with blanks as separators, MATLAB's rule keeps spaced sums and products in one cell.
 @together("name", FORMATS)
 def test_blanks_and_commas_in_brackets_split_nothing(name: str) -> None:
     assert cells(FORMATS[name](ROUND)) == ROUND
 
 
-# Two operators in a row may begin or end a remark: /*
+# Two operators in a row may be the marks of a comment: /*
 WORDS = st.from_regex(r"[a-cqθ0-9](?:[*/]?[+-]?[a-c0-9]){0,3}", fullmatch=True)
 
 
 @settings(max_examples=12)
 @given(rows=st.lists(st.lists(WORDS, min_size=3, max_size=3), min_size=2, max_size=5))
-def test_any_words_come_back(rows: list[list[str]]) -> None:
+def test_each_format_reads_back_random_cells(rows: list[list[str]]) -> None:
     assert {name: cells(write(rows)) for name, write in FORMATS.items()} == dict.fromkeys(
         FORMATS, rows
     )
 
 
 @together("name", sorted(FORMATS))
-def test_line_ends_of_any_system(name: str) -> None:
+def test_windows_line_ends_and_blank_lines_change_nothing(name: str) -> None:
     text = FORMATS[name](POSE).replace("\r\n", "\n")
     assert cells(text.replace("\n", "\r\n")) == POSE
     assert cells("\n" + text + "\n\n") == POSE
@@ -77,7 +77,7 @@ def test_line_ends_of_any_system(name: str) -> None:
         ("[sin q1 cos (q2) 0]", [["sin q1", "cos (q2)", "0"]]),
         ("[sin^2 q1 atan2 (y, x)]", [["sin^2 q1", "atan2 (y, x)"]]),
         ("[90 deg 90 ° -45 deg]", [["90 deg", "90 °", "-45 deg"]]),
-        # the star of a joint variable is no product with what stands in the next column
+        # the star that marks a joint variable does not multiply it by the next column
         ("[0 d3* 0; 1 2 3]", [["0", "d3*", "0"], ["1", "2", "3"]]),
         # commas and blanks
         ("[l1 c1 + l2 c12, 0; s1, 1]", [["l1 c1 + l2 c12", "0"], ["s1", "1"]]),
@@ -104,7 +104,7 @@ def test_line_ends_of_any_system(name: str) -> None:
         (r"\begin{bmatrix}a&b\\*[1.5ex]c&d\end{bmatrix}", [["a", "b"], ["c", "d"]]),
         (r"\begin{bmatrix}a\&x&{b&y}\end{bmatrix}", [[r"a\&x", "{b&y}"]]),
         (r"\begin{tabular*}{3cm}[t]{@{}l|p{2cm}@{}} a & b \end{tabular*}", [["a", "b"]]),
-        # a cell that begins with a bracket is no option of what stands in front of it
+        # a bracket at the beginning of a cell is not an option of the command before it
         (r"\begin{tabular}{cc} [a] + b & c \end{tabular}", [["[a] + b", "c"]]),
         (r"\begin{bmatrix*} [a] + b & c \end{bmatrix*}", [["[a] + b", "c"]]),
         (r"\begin{array}{cc} \hline [a] + b & (c) d \end{array}", [["[a] + b", "(c) d"]]),
@@ -130,7 +130,7 @@ def test_line_ends_of_any_system(name: str) -> None:
         ("<tr><td>θ<sub>1</sub><sup>*</sup><td><b>d</b><br>3", [["θ_{1}*", "d 3"]]),
         ("<tr><td>1 < 2 & 3<td>&lt;", [["1 < 2 & 3", "<"]]),
         ("<table><style>td{}</style><tr><td colspan='1'>a<td>b</table>", [["a", "b"]]),
-        # escapes in strings: a character of two units, and half a one
+        # escapes in strings: a surrogate pair, and half of one
         (r'[["\u03b8", "\ud835\udf03", "\ud800 a"]]', [["θ", "𝜃", "\ufffd a"]]),
         # spreadsheets
         ('"a ""x""",b\n"atan2(y, x)",c', [['a "x"', "b"], ["atan2(y, x)", "c"]]),
@@ -152,7 +152,7 @@ def test_line_ends_of_any_system(name: str) -> None:
         ("a  link length\n1  2x", [["a", "link length"], ["1", "2x"]]),
     ],
 )  # fmt: skip
-def test_what_is_written(text: str, expected: list[list[str]]) -> None:
+def test_cells_of_a_written_text(text: str, expected: list[list[str]]) -> None:
     assert cells(text) == expected
 
 
@@ -162,7 +162,7 @@ def test_what_is_written(text: str, expected: list[list[str]]) -> None:
         ("[c1 -s1; s1 c1]", "blank_before_sign", "-s1"),
         ("[l1 c1 + l2 c12, 0; s1, 1]", "commas_separate", "l1 c1 + l2 c12, 0; s1, 1"),
         ("a b\nc d", "blank_columns", "a"),
-        # a script: its numbers are told and not used, on lines of their own or on one
+        # a script: a note lists its numbers, which are not used
         (
             "a1 = 0.4; % m\na2 = .3;\nT = [a1, a2; 0, 1];\ndisp(T)",
             "given_numbers",
@@ -171,7 +171,7 @@ def test_what_is_written(text: str, expected: list[list[str]]) -> None:
         ("clc; a1 = 4e-1; q1 = sym('q1'); T = [a1, q1; 0, 1];", "given_numbers", "a1 = 4e-1"),
     ],
 )
-def test_two_readings_are_told(text: str, code: str, marked: str) -> None:
+def test_an_ambiguous_reading_has_a_note(text: str, code: str, marked: str) -> None:
     grid = read_grid(text)
     [note] = grid.notes
     assert grid.size == "2 × 2"
@@ -179,7 +179,7 @@ def test_two_readings_are_told(text: str, code: str, marked: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["MATLAB", "nested list", "CSV", "Markdown", "bmatrix"])
-def test_one_reading_needs_no_note(name: str) -> None:
+def test_an_unambiguous_reading_has_no_note(name: str) -> None:
     assert read_grid(MATRICES.get(name, FORMATS[name])(POSE)).notes == ()
 
 
@@ -197,7 +197,7 @@ def refusal(text: str) -> GridError:
         ("q1", "no_grid", "q1"),
         ("0 0 0 q1", "no_grid", "0 0 0 q1"),
         ("atan2(y, x)", "no_grid", "atan2(y, x)"),
-        # what stands around a matrix may change it
+        # text around a matrix may change it
         ("[1 2; 3 4]'", "text_around", "'"),
         ("[1 2; 3 4]*[5; 6]", "text_around", "*[5; 6]"),
         ("[1 2; 3 4] [5 6; 7 8]", "text_around", "5 6; 7 8"),
@@ -213,7 +213,7 @@ def refusal(text: str) -> GridError:
         ("inv([1 2; 3 4])", "unknown_call", "inv"),
         ("np.linalg.inv([[1, 2], [3, 4]])", "unknown_call", "np.linalg.inv"),
         ("L(1) = Link([0 0 a1 0]);\nR = SerialLink(L)", "unknown_call", "Link"),
-        # a value that a letter of the matrix is given, and that is no plain number
+        # a letter of the matrix is assigned a value that is not a plain number
         ("a1 = 0.4; q1 = pi/2;\nT = [a1, q1; 0, 1]", "given_value", "q1 = pi/2"),
         ("q1 = sym('q2');\nT = [a1, q1; 0, 1]", "given_value", "q1 = sym('q2')"),
         ("| a | b |\nsee below\n| c | d |", "text_around", "see below"),
@@ -250,7 +250,7 @@ def refusal(text: str) -> GridError:
         ("Matrix(2, 2, [1, 2, 3])", "wrong_count", "1, 2, 3"),
     ],
 )  # fmt: skip
-def test_refused_with_its_place(text: str, code: str, marked: str) -> None:
+def test_an_unreadable_text_is_refused_with_the_place(text: str, code: str, marked: str) -> None:
     error = refusal(text)
     assert (error.code, text[slice(*error.span)]) == (code, marked)
     assert str(error) == error.message
@@ -258,7 +258,7 @@ def test_refused_with_its_place(text: str, code: str, marked: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("behind", "named"),
+    ("after", "named"),
     [
         ("'", "`'`"),
         ("\u200b", "An invisible character"),
@@ -267,10 +267,10 @@ def test_refused_with_its_place(text: str, code: str, marked: str) -> None:
         (" []", "Empty brackets"),
     ],
 )
-def test_what_stands_next_to_a_matrix_is_named(behind: str, named: str) -> None:
-    message = refusal(f"[1 2; 3 4]{behind}").message
+def test_text_after_a_matrix_is_quoted(after: str, named: str) -> None:
+    message = refusal(f"[1 2; 3 4]{after}").message
     assert message.startswith((f"{named} stands next", f"{named} stand next"))
 
 
-def test_a_bracket_of_another_shape_names_both_places() -> None:
+def test_the_error_for_a_wrong_closing_bracket_names_both_places() -> None:
     assert "does not fit the ( at character 6" in refusal("[[1, (2], [3, 4]]").message

@@ -1,4 +1,4 @@
-"""Several matrices in one text: each with its name, in the order in which they stand."""
+"""Several matrices in one text are read in order, each with its name."""
 
 import pytest
 
@@ -75,7 +75,7 @@ def several(text: str) -> list[tuple[str, list[list[str]]]]:
         (r"$$\pmatrix{a&b\cr c&d\cr }\leqno{\tt (\%o1)}$$ $$\pmatrix{e&f\cr g&h\cr }$$", ""),
     ],
 )  # fmt: skip
-def test_what_is_written(text: str, names: str) -> None:
+def test_all_matrices_and_names_are_read(text: str, names: str) -> None:
     found = several(text)
     assert [rows for _, rows in found] == [FIRST, SECOND]
     divider = "|" if "|" in names else " "
@@ -84,7 +84,7 @@ def test_what_is_written(text: str, names: str) -> None:
 
 
 @pytest.mark.parametrize("name", sorted(set(MATRICES) - {"LaTeX rows"}))
-def test_each_format_of_a_matrix_may_stand_there_twice(name: str) -> None:
+def test_two_matrices_in_the_same_format_are_read(name: str) -> None:
     write = MATRICES[name]
     one, two = (write(POSE).removeprefix("A = ").removeprefix("T = ") for _ in range(2))
     one, two = (text.removeprefix("T =\n \n") for text in (one, two))
@@ -92,13 +92,13 @@ def test_each_format_of_a_matrix_may_stand_there_twice(name: str) -> None:
     assert [rows for _, rows in found] == [POSE, POSE]
 
 
-def test_one_matrix_is_one() -> None:
+def test_a_single_matrix_is_read_as_one() -> None:
     assert several("[a b; c d]") == [("", FIRST)]
     assert several(TEX[0]) == [("", FIRST)]
     assert several("(((a+b)*c, d), ((e+f)*g, h))") == [("", [["(a+b)*c", "d"], ["(e+f)*g", "h"]])]
 
 
-def test_one_that_cannot_be_read_leaves_the_others() -> None:
+def test_an_unreadable_matrix_does_not_affect_the_others() -> None:
     text = "A1 = [a b; c d]\nA2 = [e f; g h]'\nA3 = [e f; g h]"
     first, second, third = (each.grid for each in read_grids(text))
     assert isinstance(second, GridError)
@@ -120,7 +120,9 @@ def test_one_that_cannot_be_read_leaves_the_others() -> None:
         ("", "empty", ""),
     ],
 )
-def test_refused_with_its_place(text: str, code: str, marked: str | None) -> None:
+def test_an_unreadable_list_is_refused_with_the_place(
+    text: str, code: str, marked: str | None
+) -> None:
     with pytest.raises(GridError) as caught:
         read_grids(text)
     assert caught.value.code == code
@@ -128,7 +130,7 @@ def test_refused_with_its_place(text: str, code: str, marked: str | None) -> Non
         assert text[slice(*caught.value.span)] == marked
 
 
-def test_spans_are_places_in_the_whole_text() -> None:
+def test_spans_are_places_in_the_pasted_text() -> None:
     text = ">> A1\n\nA1 =\n\n[a, b]\n[c, d]\n\n% and the second\nA2 = [e f; g h];"
     for each in read_grids(text):
         assert not isinstance(each.grid, GridError)

@@ -1,6 +1,6 @@
-"""One table, written down as people and programs write it. Nothing here knows the reader.
+"""Write a table in each format, as people and programs do. Independent of the reader.
 
-``test_registry`` tries each format through the registry, and ``test_hostile`` any text at all.
+``test_registry`` reads each format back; ``test_hostile`` mutates the texts.
 """
 
 import csv
@@ -171,7 +171,7 @@ def one_blank(rows: Rows) -> str:
     return "\n".join(" ".join(row) for row in rows)
 
 
-# A table may have headers in each of these; a matrix may be written in all of them.
+# TABLES are formats for tables with headers. Matrices are written in TABLES and MATRICES.
 TABLES: Mapping[str, Callable[[Rows], str]] = {
     "CSV": delimited(","),
     "TSV": delimited("\t"),

@@ -1,4 +1,4 @@
-"""A translation and a screw axis from what a textbook says of them."""
+"""Construct translations and screw axes as textbooks describe them."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -7,7 +7,7 @@ from service.kinematics.transforms import Matrices, Numbers, identity
 
 
 def trans(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Matrices:
-    """Translation by ``(x, y, z)``."""
+    """Return the translation by ``(x, y, z)``."""
     x, y, z = np.broadcast_arrays(x, y, z)
     matrices = identity(x.shape)
     matrices[..., 0, 3] = x
@@ -17,10 +17,10 @@ def trans(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Matrices:
 
 
 def screw_axis(direction: ArrayLike, point: ArrayLike, pitch: ArrayLike = 0.0) -> Numbers:
-    """The screw axis ``(..., 6)`` along the unit vector ``direction`` through ``point``.
+    """Return the screw axis ``(..., 6)`` along the unit vector ``direction`` through ``point``.
 
-    ``pitch`` is the advance per radian; infinite for a sliding joint. Source: *Modern Robotics*,
-    definition 3.24.
+    ``pitch`` is the advance per radian; it is infinite for a prismatic joint. Source: *Modern
+    Robotics*, definition 3.24.
     """
     direction, point = np.broadcast_arrays(
         np.asarray(direction, dtype=np.float64), np.asarray(point, dtype=np.float64)

@@ -1,4 +1,4 @@
-"""Whole chains: poses against closed forms, regrouping against both products."""
+"""Whole chains: poses equal closed forms, and regrouping keeps the product."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -79,7 +79,7 @@ def test_a_pose_is_the_product_of_its_links(rows: list[Row[float]], convention: 
     np.testing.assert_allclose(pose(numeric(rows), convention), expected, atol=1e-12)
 
 
-def test_a_batch_is_each_of_its_lanes() -> None:
+def test_each_sample_of_a_batch_is_computed_independently() -> None:
     rng = np.random.default_rng(7)
     table = rng.uniform(-2, 2, (5, 4, 6))
     for convention in Convention:
@@ -89,19 +89,19 @@ def test_a_batch_is_each_of_its_lanes() -> None:
         np.testing.assert_allclose(together, alone, atol=1e-14)
 
 
-# Closed forms as the lectures and Spong, Hutchinson, Vidyasagar print them.
+# Closed forms from the lectures and from Spong, Hutchinson, Vidyasagar.
 q1, q2, q3, q4, l1, l2, l3, l4 = LETTERS = sp.symbols("q1 q2 q3 q4 l1 l2 l3 l4")
 cos, sin = sp.cos, sp.sin
 
 
 def plane(angle: Any, x: Any, y: Any) -> Any:
-    """A turn about z, and a place in the plane."""
+    """Return the pose with a turn about z at a point of the plane."""
     c, s = cos(angle), sin(angle)
     return sp.Matrix([[c, -s, 0, x], [s, c, 0, y], [0, 0, 1, 0], [0, 0, 0, 1]])
 
 
 def tool_down(angle: Any, x: Any, y: Any, z: Any) -> Any:
-    """A tool that points down."""
+    """Return the pose of a tool that points down."""
     c, s = cos(angle), sin(angle)
     return sp.Matrix([[c, s, 0, x], [s, -c, 0, y], [0, 0, -1, z], [0, 0, 0, 1]])
 
@@ -138,7 +138,7 @@ CLOSED_FORMS = {
             l1 - l4 - q4,
         ),
     ),
-    "RRRP, proximal": ClosedForm(
+    "RRRP, modified": ClosedForm(
         MODIFIED,
         [(0, 0, l1, q1), (l2, 0, 0, q2), (l3, HALF, l4, q3), (0, 0, q4, 0)],
         tool_down(
@@ -221,8 +221,8 @@ POSES = {name: function_of_letters(robot.pose) for name, robot in CLOSED_FORMS.i
 
 
 @given(values=VALUES)
-def test_the_cartesian_arms_tip(values: list[float]) -> None:
-    """Spong, Hutchinson, Vidyasagar, problem 3-7: the tip is at (d3, d2, d1)."""
+def test_the_tip_of_the_cartesian_arm_is_at_its_displacements(values: list[float]) -> None:
+    """Source: Spong, Hutchinson, Vidyasagar, problem 3-7."""
     d1, d2, d3 = values[:3]
     table = numeric([(0, -QUARTER, d1, 0), (0, -QUARTER, d2, -QUARTER), (0, 0, d3, 0)])
     np.testing.assert_allclose(pose(table, STANDARD)[:3, 3], [d3, d2, d1], atol=1e-12)

@@ -1,4 +1,4 @@
-"""Link transforms against the product of their four elementary matrices."""
+"""Link transforms, compared with the product of four elementary matrices."""
 
 import numpy as np
 from hypothesis import given
@@ -26,15 +26,19 @@ def shift(axis: int, length: float) -> Array:
 
 
 @given(LENGTH, ANGLE, LENGTH, ANGLE)
-def test_the_standard_link(a: float, alpha: float, d: float, theta: float) -> None:
-    """A_i = Rot_z(θ) Trans_z(d) Trans_x(a) Rot_x(α); MEAM 520, More Denavit-Hartenberg (DH)."""
+def test_a_standard_link_is_the_product_of_elementary_transforms(
+    a: float, alpha: float, d: float, theta: float
+) -> None:
+    """Source: MEAM 520, More Denavit-Hartenberg (DH)."""
     expected = turn("z", theta) @ shift(2, d) @ shift(0, a) @ turn("x", alpha)
     np.testing.assert_allclose(standard_link(a, alpha, d, theta), expected, atol=1e-12)
 
 
 @given(LENGTH, ANGLE, LENGTH, ANGLE)
-def test_the_modified_link(a: float, alpha: float, d: float, theta: float) -> None:
-    """Rot_x(α) Trans_x(a) Rot_z(θ) Trans_z(d); Robotic Fundamentals, Forward Kinematics."""
+def test_a_modified_link_is_the_product_of_elementary_transforms(
+    a: float, alpha: float, d: float, theta: float
+) -> None:
+    """Source: Robotic Fundamentals, Forward Kinematics."""
     expected = turn("x", alpha) @ shift(0, a) @ turn("z", theta) @ shift(2, d)
     np.testing.assert_allclose(modified_link(a, alpha, d, theta), expected, atol=1e-12)
 
@@ -49,8 +53,8 @@ def test_the_two_dh_conditions_hold(alpha: float, theta: float) -> None:
     np.testing.assert_allclose(meets[:2], 0, atol=1e-12)
 
 
-def test_the_printed_links_of_the_stanford_arm() -> None:
-    """A_1 and A_2 of MEAM 520, More Denavit-Hartenberg (DH), at one value of the joints."""
+def test_links_of_the_stanford_arm_are_as_printed() -> None:
+    """Source: A_1 and A_2 of MEAM 520, More Denavit-Hartenberg (DH), at one joint value."""
     c, s = np.cos(0.4), np.sin(0.4)
     first = [[c, 0, -s, 0], [s, 0, c, 0], [0, -1, 0, 0], [0, 0, 0, 1]]
     second = [[c, 0, s, 0], [s, 0, -c, 0], [0, 1, 0, 0.3], [0, 0, 0, 1]]

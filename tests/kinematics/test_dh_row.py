@@ -1,4 +1,4 @@
-"""The two DH conditions, each broken alone, and the row where both hold."""
+"""The two DH conditions, each violated alone, and the row if both hold."""
 
 import doctest
 
@@ -15,7 +15,7 @@ RNG = np.random.default_rng(6)
 BOTH = list(Convention)
 
 
-def test_the_worked_example() -> None:
+def test_the_example_in_the_docstring_is_right() -> None:
     results = doctest.testmod(dh_row)
     assert (results.attempted >= 1, results.failed) == (True, 0)
 
@@ -29,21 +29,21 @@ def test_a_link_transform_has_its_own_row(convention: Convention) -> None:
     np.testing.assert_allclose(row(link, convention), cells, atol=1e-12)
 
 
-def test_x1_not_at_right_angles_to_z0() -> None:
-    """Turned about y by 0.3, x_1 rises out of the plane by sin 0.3; it still meets z_0."""
+def test_dh1_fails_if_x1_is_not_perpendicular_to_z0() -> None:
+    """A turn by 0.3 about y tilts x_1 out of the plane by sin 0.3; x_1 still meets z_0."""
     transform = trans(0.5, 0.0, 0.2) @ rot_y(0.3)
     assert dh1_residual(transform, Convention.STANDARD) == pytest.approx(-np.sin(0.3))
     assert dh2_residual(transform, Convention.STANDARD) == pytest.approx(0.0)
 
 
-def test_x1_passes_z0() -> None:
-    """Shifted along y_0 by 0.4 and not turned about z, x_1 passes z_0 at that distance."""
+def test_dh2_fails_if_x1_does_not_meet_z0() -> None:
+    """With a shift by 0.4 along y_0 and no turn about z, x_1 passes z_0 at this distance."""
     transform = trans(0.5, 0.4, 0.2) @ rot_x(0.3)
     assert dh1_residual(transform, Convention.STANDARD) == pytest.approx(0.0)
     assert dh2_residual(transform, Convention.STANDARD) == pytest.approx(0.4)
 
 
-def test_x1_along_z0() -> None:
+def test_both_residuals_are_right_if_x1_is_parallel_to_z0() -> None:
     transform = trans(0.3, 0.4, 0.2) @ rot_y(-np.pi / 2)
     assert dh1_residual(transform, Convention.STANDARD) == pytest.approx(1.0)
     assert dh2_residual(transform, Convention.STANDARD) == pytest.approx(0.5)

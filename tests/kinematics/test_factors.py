@@ -1,4 +1,4 @@
-"""A table as the product of screws, held against the link transforms written out in textbooks."""
+"""The factors of a table, compared with the link transforms of textbooks."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def test_the_product_of_the_factors_is_the_pose(convention: Convention) -> None:
 
 
 @BOTH
-def test_a_cell_is_found_where_it_was_put(convention: Convention) -> None:
+def test_each_cell_has_its_factor_and_kind(convention: Convention) -> None:
     factors = factors_of(TABLE, convention)
     for row in range(len(TABLE)):
         for column in range(4):
@@ -41,7 +41,7 @@ def test_lengths_are_measured_in_the_unit(convention: Convention) -> None:
 
 
 @pytest.mark.parametrize("written", list(Convention))
-def test_the_frames_on_the_axes_are_those_of_each_convention(written: Convention) -> None:
+def test_axis_frames_are_those_of_the_wanted_convention(written: Convention) -> None:
     factors = factors_of(TABLE, written)
     z_first = written is Convention.STANDARD
     for wanted in Convention:
@@ -51,7 +51,7 @@ def test_the_frames_on_the_axes_are_those_of_each_convention(written: Convention
         np.testing.assert_allclose(found[-1], pose(TABLE, written), atol=1e-12)
 
 
-def test_a_screw_is_read_back_and_another_transform_is_none() -> None:
+def test_a_screw_is_read_back_and_other_transforms_deviate() -> None:
     axes, sizes = np.array([0, 2]), RNG.uniform(-1, 1, (2, 2, 3))
     made = screws(axes, sizes[:, 0], sizes[:, 1])
     np.testing.assert_allclose(made[0], trans(sizes[0, 0], 0, 0) @ rot_x(sizes[0, 1]), atol=1e-12)

@@ -1,4 +1,4 @@
-"""Joint screws against the numeric derivative of the forward kinematics, ranks from textbooks."""
+"""Joint screws, compared with the numeric derivative of the pose, and ranks from textbooks."""
 
 from collections.abc import Sequence
 
@@ -36,7 +36,7 @@ BAXTER: Rows = [
     (0, H, 0, -0.6),
     (0, 0, 0.229525, 0.9),
 ]
-# As printed in the lecture: rows 5 and 6 turn about one line (robots.md, "Errata").
+# As printed in the lecture: joints 5 and 6 have the same axis (robots.md, "Errata").
 PRINTED: Rows = [
     (0, H, 0.3, 0.3),
     (0, H, 0.2, -0.9),
@@ -55,7 +55,7 @@ ARMS = [
 
 
 def table_of(rows: Rows, convention: Convention) -> NDArray[np.float64]:
-    """The table at one sample; the modified one has a row more for the tool."""
+    """Return the table at one sample; a modified table has an extra row for the tool."""
     standard = [(float(a), float(alpha), float(d), float(theta)) for a, alpha, d, theta in rows]
     if convention is Convention.MODIFIED:
         standard = modified_rows(standard, 0.0)
@@ -65,7 +65,7 @@ def table_of(rows: Rows, convention: Convention) -> NDArray[np.float64]:
 def numeric(
     table: NDArray[np.float64], convention: Convention, joints: int, prismatic: Sequence[bool]
 ) -> NDArray[np.float64]:
-    """Each column as the logarithm of T(q + δ) T(q)⁻¹, over δ."""
+    """Return the Jacobian, each column as the logarithm of T(q + δ) T(q)⁻¹ divided by δ."""
     step = 1e-4
     columns = []
     for row in range(joints):
@@ -92,7 +92,7 @@ def test_screws_are_the_derivative_of_the_pose(
     assert rank(found) == expected
 
 
-# The matrix logarithm that tells the screws here overflows on turns of 1e-140.
+# Round, because the matrix logarithm overflows for turns of 1e-140.
 angles = st.floats(-3, 3).map(lambda angle: round(angle, 6))
 lengths = st.floats(-1, 1).map(lambda length: round(length, 6))
 
@@ -102,7 +102,9 @@ lengths = st.floats(-1, 1).map(lambda length: round(length, 6))
     st.data(),
     st.sampled_from(Convention),
 )
-def test_screws_of_any_table(rows: Rows, data: st.DataObject, convention: Convention) -> None:
+def test_screws_of_random_tables_are_the_derivative_of_the_pose(
+    rows: Rows, data: st.DataObject, convention: Convention
+) -> None:
     n = len(rows)
     prismatic = data.draw(st.lists(st.booleans(), min_size=n, max_size=n))
     table = table_of(rows, convention)
@@ -110,7 +112,7 @@ def test_screws_of_any_table(rows: Rows, data: st.DataObject, convention: Conven
     np.testing.assert_allclose(found[0], numeric(table, convention, n, prismatic), atol=1e-7)
 
 
-def test_lanes_are_apart() -> None:
+def test_each_sample_is_computed_independently() -> None:
     one, other = (table_of(rows, Convention.STANDARD) for rows in (STANFORD, PRINTED))
     prismatic = [i == 2 for i in range(6)]
     both = space_jacobian(
@@ -122,7 +124,7 @@ def test_lanes_are_apart() -> None:
     assert rank(both) == 6
 
 
-def test_which_joints_share_an_axis() -> None:
+def test_joints_with_the_same_axis_are_found() -> None:
     prismatic = [i == 2 for i in range(6)]
     printed = space_jacobian(
         table_of(PRINTED, Convention.STANDARD), Convention.STANDARD, range(6), prismatic
@@ -132,12 +134,12 @@ def test_which_joints_share_an_axis() -> None:
     stanford = space_jacobian(
         table_of(STANFORD, Convention.STANDARD), Convention.STANDARD, range(6), prismatic
     )
-    # Joint 3 slides along the axis that joint 4 turns about: two freedoms, not one.
+    # Joint 3 slides along the axis about which joint 4 turns: these are two degrees of freedom.
     assert not coincident(stanford).any()
     assert not dependent(stanford).any()
 
 
-def test_an_axis_turned_over_is_the_same_line() -> None:
+def test_opposite_axes_on_the_same_line_coincide() -> None:
     rows: Rows = [(0, np.pi, 0.1, 0.3), (0.2, 0, 0, 0.4)]
     found = space_jacobian(
         table_of(rows, Convention.STANDARD), Convention.STANDARD, range(2), [False, False]

@@ -1,4 +1,4 @@
-"""Angles and rotations against SciPy, all twelve sequences, about moving and fixed axes."""
+"""Angles and rotations, compared with SciPy for all twelve sequences, moving and fixed axes."""
 
 import doctest
 from typing import Any
@@ -29,7 +29,7 @@ ANGLES = RNG.uniform(-np.pi, np.pi, (40, 3))
 
 
 def scipy_rotation(sequence: str, angles: object, fixed: bool) -> Matrices:
-    """SciPy writes moving axes in capitals, fixed ones in small letters."""
+    """Return SciPy's rotation; SciPy uses upper case for moving and lower case for fixed axes."""
     name = sequence.lower() if fixed else sequence
     return np.asarray(Rotation.from_euler(name, np.asarray(angles)).as_matrix())
 
@@ -39,7 +39,7 @@ def scipy_angles(sequence: str, rotation: Matrices, fixed: bool) -> Matrices:
     return np.asarray(Rotation.from_matrix(rotation).as_euler(name))
 
 
-def test_the_worked_examples() -> None:
+def test_the_examples_in_docstrings_are_right() -> None:
     assert doctest.testmod(rotations).attempted >= 5
     assert doctest.testmod(rotations).failed == 0
 
@@ -51,7 +51,7 @@ def test_there_are_twelve_sequences() -> None:
 
 @together("fixed", [False, True])
 @together("sequence", SEQUENCES)
-def test_the_rotation_of_a_triple(sequence: str, fixed: bool) -> None:
+def test_the_rotation_of_a_triple_is_scipys(sequence: str, fixed: bool) -> None:
     np.testing.assert_allclose(
         from_angles(sequence, ANGLES, fixed=fixed),
         scipy_rotation(sequence, ANGLES, fixed),
@@ -61,7 +61,7 @@ def test_the_rotation_of_a_triple(sequence: str, fixed: bool) -> None:
 
 @together("fixed", [False, True])
 @together("sequence", SEQUENCES)
-def test_both_triples_of_a_rotation(sequence: str, fixed: bool) -> None:
+def test_both_triples_describe_the_rotation(sequence: str, fixed: bool) -> None:
     rotation = scipy_rotation(sequence, ANGLES, fixed)
     one = to_angles(sequence, rotation, fixed=fixed)
     other = other_triple(sequence, one)
@@ -73,7 +73,7 @@ def test_both_triples_of_a_rotation(sequence: str, fixed: bool) -> None:
 
 @together("fixed", [False, True])
 @together("sequence", SEQUENCES)
-def test_where_the_outer_axes_are_one_line(sequence: str, fixed: bool) -> None:
+def test_one_outer_angle_is_zero_if_the_outer_axes_coincide(sequence: str, fixed: bool) -> None:
     singular = [0.0, np.pi] if sequence in PROPER else [np.pi / 2, -np.pi / 2]
     for middle in singular:
         rotation = scipy_rotation(sequence, [[0.7, middle, -1.1]], fixed)
@@ -85,7 +85,7 @@ def test_where_the_outer_axes_are_one_line(sequence: str, fixed: bool) -> None:
 
 
 @pytest.mark.parametrize("sequence", SEQUENCES)
-def test_a_first_angle_may_be_chosen_where_the_outer_axes_are_one_line(sequence: str) -> None:
+def test_the_first_angle_is_free_if_the_outer_axes_coincide(sequence: str) -> None:
     middle = 0.0 if sequence in PROPER else np.pi / 2
     rotation = scipy_rotation(sequence, [[0.7, middle, -1.1]], fixed=False)
     chosen = np.array([[2.5, middle]])
@@ -93,8 +93,8 @@ def test_a_first_angle_may_be_chosen_where_the_outer_axes_are_one_line(sequence:
     np.testing.assert_allclose(scipy_rotation(sequence, triple, False), rotation, atol=1e-12)
 
 
-def test_fixed_axes_from_the_left_moving_axes_from_the_right() -> None:
-    """Direct Kinematics (Part 2), §1.5, against SciPy's two kinds of sequence."""
+def test_turns_about_fixed_axes_multiply_from_the_left() -> None:
+    """Source: Direct Kinematics (Part 2), §1.5, compared with SciPy's two kinds of sequence."""
     turns = [about(axis, ANGLES[:, i]) for i, axis in enumerate("XZY")]
     for fixed in (True, False):
         np.testing.assert_allclose(
@@ -104,8 +104,8 @@ def test_fixed_axes_from_the_left_moving_axes_from_the_right() -> None:
         )
 
 
-def test_steps_about_both_kinds_of_axes() -> None:
-    """Fixed z by φ, then the moving x by θ, then fixed y by ψ: R_y(ψ) R_z(φ) R_x(θ)."""
+def test_steps_about_fixed_and_moving_axes_can_be_mixed() -> None:
+    """Fixed z by φ, then moving x by θ, then fixed y by ψ is R_y(ψ) R_z(φ) R_x(θ)."""
     found = composed([(about("Z", 0.3), True), (about("X", 0.5), False), (about("Y", 0.7), True)])
     expected = Rotation.from_euler("YZX", [0.7, 0.3, 0.5]).as_matrix()
     np.testing.assert_allclose(found, expected, atol=1e-15)

@@ -1,4 +1,4 @@
-"""Screws against SciPy's matrix exponential and the examples of Lynch and Park."""
+"""Screws, compared with SciPy's matrix exponential and the examples of Lynch and Park."""
 
 import doctest
 
@@ -27,7 +27,7 @@ RNG = np.random.default_rng(5)
 
 
 def bracket(screw: Numbers) -> Numbers:
-    """[S], written out entry by entry."""
+    """Return the 4×4 matrix [S] of a screw."""
     w1, w2, w3, v1, v2, v3 = screw
     return np.array([[0, -w3, w2, v1], [w3, 0, -w1, v2], [-w2, w1, 0, v3], [0, 0, 0, 0.0]])
 
@@ -45,21 +45,21 @@ SCREWS = {
 }
 
 
-def test_the_worked_examples() -> None:
+def test_the_examples_in_docstrings_are_right() -> None:
     results = doctest.testmod(screws)
     assert (results.attempted >= 2, results.failed) == (True, 0)
 
 
 @together("name", SCREWS)
 @together("amount", [0.0, 1e-9, 0.7, -2.9, 11.0])
-def test_the_exponential_is_that_of_the_matrix(name: str, amount: float) -> None:
+def test_the_exponential_equals_the_matrix_exponential(name: str, amount: float) -> None:
     screw = SCREWS[name]
     np.testing.assert_allclose(
         exponential(screw, amount), expm(bracket(screw) * amount), atol=1e-12
     )
 
 
-def test_a_batch_is_its_members() -> None:
+def test_each_member_of_a_batch_is_computed_independently() -> None:
     batch = np.array(list(SCREWS.values()))
     amounts = RNG.uniform(-3, 3, (7, len(batch)))
     motions = exponential(batch, amounts)
@@ -68,7 +68,7 @@ def test_a_batch_is_its_members() -> None:
         np.testing.assert_allclose(motions[i, j], exponential(batch[j], amounts[i, j]), atol=1e-14)
 
 
-def test_infinite_pitch_has_no_turn() -> None:
+def test_a_screw_with_infinite_pitch_does_not_turn() -> None:
     assert screw_axis([0, 1, 0], [3, 4, 5], np.inf).tolist() == [0, 0, 0, 0, 1, 0]
     mixed = screw_axis([0, 1, 0], [3, 4, 5], np.array([np.inf, 0.0]))
     assert (mixed + 0.0).tolist() == [[0, 0, 0, 0, 1, 0], [0, 1, 0, -5, 0, 3]]
@@ -79,7 +79,7 @@ def test_the_pitch_is_the_advance_per_radian() -> None:
     np.testing.assert_allclose(motion, trans(0, 0, np.pi / 2), atol=1e-14)
 
 
-def test_a_car_turning() -> None:
+def test_the_twist_of_a_turning_car_is_that_of_the_book() -> None:
     """Modern Robotics, example 3.23: V_s = (0,0,2,−2,−4,0), V_b = (0,0,−2,2.8,4,0).
 
     r_s = (2,−1,0), r_b = (2,−1.4,0), ω = 2, and T_sb = [[−1,0,0,4],[0,1,0,0.4],[0,0,−1,0],…].
@@ -92,7 +92,7 @@ def test_a_car_turning() -> None:
     np.testing.assert_allclose(moved(transform, body), space, atol=1e-14)
 
 
-def test_the_adjoint_goes_with_the_exponential() -> None:
+def test_the_adjoint_commutes_with_the_exponential() -> None:
     """T e^{[S]θ} T⁻¹ = e^{[Ad_T S]θ} (Modern Robotics, eq. 3.91)."""
     transform = rot_z(0.4) @ trans(0.3, -0.2, 0.9) @ rot_x(1.1)
     for screw in SCREWS.values():
@@ -106,15 +106,15 @@ def test_the_adjoint_goes_with_the_exponential() -> None:
     )
 
 
-def test_the_cross_product_as_a_matrix() -> None:
+def test_skew_is_the_matrix_of_the_cross_product() -> None:
     one, other = RNG.normal(size=(2, 5, 3))
     np.testing.assert_allclose(
         (skew(one) @ other[..., None])[..., 0], np.cross(one, other), atol=1e-15
     )
 
 
-def test_the_rrrp_arm_of_modern_robotics() -> None:
-    """FKinSpace and FKinBody's own example: Modern Robotics, code library, chapter 4."""
+def test_both_products_give_the_pose_of_the_book() -> None:
+    """Source: the example of FKinSpace and FKinBody, Modern Robotics, code library, chapter 4."""
     home = np.array([[-1.0, 0, 0, 0], [0, 1, 0, 6], [0, 0, -1, 2], [0, 0, 0, 1]])
     space = np.array([[0.0, 0, 1, 4, 0, 0], [0, 0, 0, 0, 1, 0], [0, 0, -1, -6, 0, -0.1]])
     body = np.array([[0.0, 0, -1, 2, 0, 0], [0, 0, 0, 0, 1, 0], [0, 0, 1, 0, 0, 0.1]])
@@ -125,8 +125,8 @@ def test_the_rrrp_arm_of_modern_robotics() -> None:
     np.testing.assert_allclose(moved(home, body), space, atol=1e-12)
 
 
-def test_the_planar_rpr_arm() -> None:
-    """The closed form: x = (L1 + θ2) c1 + L2 c13, rotation θ1 + θ3 about z."""
+def test_both_products_give_the_closed_form_of_the_planar_rpr_arm() -> None:
+    """The closed form is x = (L1 + θ2) c1 + L2 c13, with the rotation θ1 + θ3 about z."""
     l1, l2 = 0.7, 0.4
     one, two, three = amounts = RNG.uniform(-1, 1, (3, 6))
     space = np.array([[0.0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 0, 0], [0, 0, 1, 0, -l1, 0]])
@@ -142,14 +142,14 @@ def test_the_planar_rpr_arm() -> None:
 
 
 @pytest.mark.parametrize("angle", [0.4, 1.1, -0.7])
-def test_the_axis_of_a_turn(angle: float) -> None:
-    """SciPy's exponential of an axis without pitch, and the axis again."""
+def test_the_axis_of_a_turn_is_found(angle: float) -> None:
+    """The turn is SciPy's exponential of an axis without pitch."""
     axis = screw_axis(np.array([0.36, -0.48, 0.8]), np.array([0.5, 0.1, -0.4]))
     displacement = expm(bracket(axis) * angle)
     np.testing.assert_allclose(turning_axis(displacement, angle), axis, atol=1e-12)
 
 
-def test_what_is_no_turn_gives_an_axis_of_another_motion() -> None:
+def test_other_displacements_give_an_axis_of_another_motion() -> None:
     axis = screw_axis(np.array([0.0, 0.0, 1.0]), np.array([0.5, 0.1, 0.0]))
     with_pitch = expm(bracket(axis + np.array([0, 0, 0, 0, 0, 0.3])) * 0.4)
     twice = expm(bracket(axis) * 0.8)
@@ -160,7 +160,7 @@ def test_what_is_no_turn_gives_an_axis_of_another_motion() -> None:
         assert error > 0.05 or abs(length - 1) > 0.05
 
 
-def test_the_axis_of_a_slide() -> None:
+def test_the_axis_of_a_slide_is_found() -> None:
     displacement = trans(0.0, 0.6, 0.8)
     np.testing.assert_allclose(sliding_axis(displacement, 1.0), [0, 0, 0, 0, 0.6, 0.8])
     np.testing.assert_allclose(exponential(sliding_axis(displacement, 0.5), 0.5), displacement)

@@ -1,4 +1,4 @@
-"""Rotations against SciPy's, translations and inverses against the definition."""
+"""Rotations, compared with SciPy, and translations and inverses by their definitions."""
 
 from collections.abc import Callable
 
@@ -78,14 +78,14 @@ def test_batches_broadcast() -> None:
     assert rot_x(0.0).dtype == rot_x(0).dtype == np.float64
 
 
-def test_the_inverse_leaves_its_argument_alone() -> None:
+def test_the_inverse_does_not_change_its_argument() -> None:
     transform = trans(1.0, 2.0, 3.0)
     before = transform.copy()
     inverse(transform)
     assert (transform == before).all()
 
 
-def test_what_is_rigid() -> None:
+def test_only_rotations_with_translations_are_rigid() -> None:
     right = Rotation.from_rotvec([0.3, -0.4, 0.5]).as_matrix()
     transforms = np.tile(np.eye(4), (5, 1, 1))
     transforms[:, :3, :3] = right

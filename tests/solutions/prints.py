@@ -1,7 +1,7 @@
-"""Model solutions as programs print them: one matrix, and all link transforms in one text.
+"""Hand in model solutions as programs print them: one matrix, or all link transforms in one text.
 
-``python -m tests.solutions.prints`` hands in all of them, ``test_printers`` some.
-The printers that SymPy does not have are written here after what the programs print.
+``python -m tests.solutions.prints`` hands in all of them, ``test_printers`` a sample.
+Printers that SymPy lacks are written here; they imitate the programs.
 """
 
 import argparse
@@ -33,7 +33,7 @@ def rows(matrix: sp.Matrix, entry: Callable[[sp.Expr], str]) -> list[list[str]]:
     return [[entry(matrix[i, j]) for j in range(matrix.cols)] for i in range(matrix.rows)]
 
 
-# --- other programs' entries, after SymPy's
+# --- entries as other programs print them, made from SymPy's print
 
 
 def of_maxima(entry: sp.Expr) -> str:
@@ -46,7 +46,7 @@ def of_maxima_tex(entry: sp.Expr) -> str:
 
 
 def of_matlab_latex(entry: sp.Expr) -> str:
-    r"""MATLAB's ``latex``: ``a_{1}\,\cos\left(\theta _{1}\right)``."""
+    r"""Print like MATLAB's ``latex``: ``a_{1}\,\cos\left(\theta _{1}\right)``."""
     text = sp.latex(entry, mul_symbol=r"\,")
     text = re.sub(r"\\(theta|alpha|phi)_", r"\\\1 _", text)
     text = re.sub(r"\\(cos|sin)\{\\left\(", r"\\\1\\left(", text)
@@ -54,7 +54,7 @@ def of_matlab_latex(entry: sp.Expr) -> str:
 
 
 def of_texform(entry: sp.Expr, *, greek: bool) -> str:
-    r"""Mathematica's ``TeXForm``: ``\text{a1} \cos \left(\theta _1\right)``."""
+    r"""Print like Mathematica's ``TeXForm``: ``\text{a1} \cos \left(\theta _1\right)``."""
 
     def named(symbol: sp.Symbol) -> str:
         stem, index = re.fullmatch(r"([A-Za-z]+?)_?(\d*)", symbol.name).groups()  # type: ignore[union-attr]
@@ -204,7 +204,7 @@ PRINTERS: Mapping[str, Printer] = {**SYMPY, **LATEX, **NUMPY, **OTHERS}
 DRAWN = ("pretty", "pretty, ASCII", "MATLAB pretty", "Mathematica MatrixForm", "Maxima display")
 
 
-# --- what stands in front of a matrix and behind it
+# --- the text before and after a matrix
 
 AROUND: Mapping[str, Callable[[str], str]] = {
     "alone": lambda text: text,
@@ -252,7 +252,7 @@ IN_BRACKETS: Mapping[str, Join] = {
 
 
 class Print(NamedTuple):
-    """A text that gets full marks in a part of an exercise."""
+    """A printed model answer, which must get full marks in a part of an exercise."""
 
     exercise: str
     part: str
@@ -271,7 +271,7 @@ def matrix_of(exercise: Exercise, algebra: Algebra, entries: Sequence[Sequence[s
 
 
 def matrices(exercise: Exercise) -> Iterator[tuple[str, list[sp.Matrix]]]:
-    """The model matrices of each part: several of a list of link transforms."""
+    """Yield each part's id and model matrices: all link transforms, or a list of one matrix."""
     algebra = Algebra(exercise)
     for solution in solved(exercise).parts:
         answer = solution.answer
@@ -283,24 +283,24 @@ def matrices(exercise: Exercise) -> Iterator[tuple[str, list[sp.Matrix]]]:
 
 
 def ways_around(name: str) -> Mapping[str, Callable[[str], str]]:
-    """What may stand around one matrix; a drawing begins on a line of its own."""
+    """Return the texts that may surround one matrix. A drawn matrix must begin on a new line."""
     left_out = {"named", "product"} if name in DRAWN else set()
     return {way: AROUND[way] for way in AROUND if way not in left_out}
 
 
 def ways_together(name: str) -> Mapping[str, Join]:
-    """The ways in which all link transforms may stand in one text."""
+    """Return the ways to write all link transforms in one text."""
     if name in DRAWN:
         more = ["in order"] if name.startswith("pretty") else []
         return {way: LISTS[way] for way in ("MATLAB", "prompts", "headings", *more)}
     is_latex = "latex" in name or "TeX" in name or "tex" in name
-    # A display has its rows side by side in brackets, so a list of it is one matrix.
+    # A display encloses each row in brackets, so a list of displays would be one matrix.
     listed: Mapping[str, Join] = {} if name == "MATLAB display" else IN_BRACKETS
     return {**LISTS, **(OF_LATEX if is_latex else listed)}
 
 
 def prints(exercise: Exercise) -> Iterator[Print]:
-    """Every print of every matrix of an exercise."""
+    """Yield every print of every matrix of an exercise."""
     for part_id, found in matrices(exercise):
         spec = exercise.part(part_id)
         for name, printer in PRINTERS.items():
@@ -323,20 +323,20 @@ def _wrapped(wrap: Callable[[str], str], matrix: sp.Matrix, printer: Printer) ->
     return wrap(printer(matrix))
 
 
-# Powers and roots in drawings, and very wide ones; in Julia 1 // 2, which is 0 in Python.
-_ADVISED = {
+# Refusals that are right: drawings with powers and roots or too wide; Julia's 1 // 2 (0 in Python).
+_RIGHTLY_REFUSED = {
     "pretty": frozenset({"drawn_matrix", "too_long"}),
     "julia_code": frozenset({"comment"}),
 }
 
 
 def refused(each: Print, exercise: Exercise) -> str:
-    """Why a print does not get full marks; nothing if it does, or is refused with advice."""
+    """Return why a print does not get full marks; "" if it does, or is rightly refused."""
     text = each.text
     report = part(handed_in(exercise, {each.part: text}), each.part)
     codes = {message.code for message in report.feedback}
     codes |= {m.code for row in report.rows for cell in row.cells for m in cell.feedback}
-    if full_marks(report) or codes & _ADVISED.get(each.name.partition(",")[0], frozenset()):
+    if full_marks(report) or codes & _RIGHTLY_REFUSED.get(each.name.partition(",")[0], frozenset()):
         return ""
     return f"{report.verdict.value}: {', '.join(sorted(codes))}"
 

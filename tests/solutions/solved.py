@@ -1,4 +1,4 @@
-"""Model solutions of the shipped exercises, each worked out once in a process."""
+"""Model solutions of the shipped exercises, each computed once in a process."""
 
 from collections.abc import Callable
 from typing import TypeVar
@@ -9,17 +9,17 @@ from service.solutions import solve
 Answer = TypeVar("Answer")
 
 
-def once_for_each(work_out: Callable[[Exercise], Answer]) -> Callable[[Exercise], Answer]:
-    """The same function, which keeps what it returned for each version of each exercise."""
+def memoized_by_exercise(compute: Callable[[Exercise], Answer]) -> Callable[[Exercise], Answer]:
+    """Memoize a function of an exercise by the exercise's id and version."""
     known: dict[tuple[str, str], Answer] = {}
 
     def of(exercise: Exercise) -> Answer:
         key = (exercise.id, exercise.version)
         if key not in known:
-            known[key] = work_out(exercise)
+            known[key] = compute(exercise)
         return known[key]
 
     return of
 
 
-solved = once_for_each(solve)
+solved = memoized_by_exercise(solve)

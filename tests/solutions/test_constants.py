@@ -1,4 +1,4 @@
-"""Robots of numbers: each constant of the model solution is one number, and it is right."""
+"""Robots given in numbers: each constant in the model solution is one correct number."""
 
 from collections.abc import Callable
 
@@ -8,7 +8,7 @@ from service.catalogue import Exercise
 from service.grading import Submission, grade
 from service.solutions import solve
 
-# a, alpha, d, theta without its variable.
+# a, alpha, d, and theta without the joint variable.
 ROWS = [
     (0.0612, 0.31, 0.0892, 0.1),
     (-0.425, 0.2, 0.011, 0.2),
@@ -49,7 +49,7 @@ home = true
 
 
 def link(a: float, alpha: float, d: float, theta: float) -> np.ndarray:
-    """The distal link transform. Source: Spong et al., eq. 3.10."""
+    """Return the standard link transform. Source: Spong et al., eq. 3.10."""
     ca, sa, ct, st = np.cos(alpha), np.sin(alpha), np.cos(theta), np.sin(theta)
     return np.array(
         [[ct, -st * ca, st * sa, a * ct], [st, ct * ca, -ct * sa, a * st], [0, sa, ca, d],
@@ -57,7 +57,7 @@ def link(a: float, alpha: float, d: float, theta: float) -> np.ndarray:
     )  # fmt: skip
 
 
-def test_the_numbers_are_those_of_the_chain(make_exercise: Callable[[str], Exercise]) -> None:
+def test_the_numbers_equal_those_of_the_chain(make_exercise: Callable[[str], Exercise]) -> None:
     exercise = make_exercise(NUMERIC)
     poses = [np.eye(4)]
     for row in ROWS:
@@ -99,7 +99,7 @@ title = "Pose"
 """
 
 
-def test_what_cancels_is_0_and_lengths_stay_letters(
+def test_cancelled_terms_are_0_and_lengths_stay_symbols(
     make_exercise: Callable[[str], Exercise],
 ) -> None:
     exercise = make_exercise(ONE_TWIST)

@@ -1,4 +1,4 @@
-"""The matrices have the form that the textbooks print."""
+"""The matrices of model solutions have the form that textbooks print."""
 
 import re
 from collections.abc import Mapping
@@ -56,7 +56,9 @@ def entries(pose: Shown) -> list[list[str]]:
 
 
 @pytest.mark.parametrize("exercise_id", POSES)
-def test_the_pose(exercise_id: str, catalogue: Mapping[str, Exercise]) -> None:
+def test_a_pose_has_the_form_of_the_textbook(
+    exercise_id: str, catalogue: Mapping[str, Exercise]
+) -> None:
     pose = solved(catalogue[exercise_id]).pose
     assert pose is not None
     assert entries(pose) == POSES[exercise_id]
@@ -67,7 +69,7 @@ def stanford(catalogue: Mapping[str, Exercise]) -> ModelSolution:
     return solved(catalogue["stanford-arm"])
 
 
-def test_the_stanford_arm_is_nested_as_the_textbook_nests_it(stanford: ModelSolution) -> None:
+def test_the_pose_of_the_stanford_arm_has_the_textbooks_brackets(stanford: ModelSolution) -> None:
     assert stanford.pose is not None
     first = [row[0] for row in entries(stanford.pose)]
     assert first == [
@@ -79,7 +81,7 @@ def test_the_stanford_arm_is_nested_as_the_textbook_nests_it(stanford: ModelSolu
 
 
 def test_the_link_transforms_of_the_stanford_arm(stanford: ModelSolution) -> None:
-    """As MEAM 520, More Denavit-Hartenberg, prints A_1 and A_2."""
+    """The expected A_1 and A_2 are from MEAM 520, More Denavit-Hartenberg."""
     assert [link.label for link in stanford.links] == ["1", "2", "3", "4", "5", "6"]
     assert stanford.links[0].text == (
         "[c1, 0,  -s1, 0;\n s1, 0,  c1,  0;\n 0,  -1, 0,   0;\n 0,  0,  0,   1]"
@@ -105,15 +107,15 @@ def test_the_table_is_as_the_author_wrote_it(stanford: ModelSolution) -> None:
     assert r"$2$ & $0$ & $90^{\circ}$ & $d_{2}$ & $\theta_{2}$ \\" in table.latex
 
 
-def test_a_wrist_has_its_joint_angles_for_zyz(catalogue: Mapping[str, Exercise]) -> None:
+def test_the_zyz_angles_of_a_wrist_are_its_joint_angles(catalogue: Mapping[str, Exercise]) -> None:
     answers = solved(catalogue["spherical-wrist"]).answers
     assert answers["zyz"] == ["theta4", "theta5", "theta6"]
 
 
-def test_the_roll_pitch_yaw_of_the_spatial_arm_are_not_the_lectures(
+def test_the_spatial_arm_has_the_correct_roll_pitch_yaw_angles(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """The lecture prints β = θ2 + θ3, which its own formula does not give."""
+    """The lecture prints β = θ2 + θ3, which contradicts its own formula."""
     answers = solved(catalogue["spatial-rrr"]).answers
     assert answers["rpy"] == ["theta1", "-theta2 - theta3", "pi/2"]
 

@@ -1,4 +1,4 @@
-"""For every exercise the model solution, handed in, gets full marks in every part."""
+"""The model solution of every exercise gets full marks in every part."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -16,12 +16,12 @@ IDS = sorted(file.stem for file in shipped_folder().glob("*.toml"))
 
 
 def posted(part: PartAnswer, solution: ModelSolution, form: str) -> object:
-    """The part's answer as JSON, or as text to be pasted."""
+    """Return the part's answer as JSON, or as text to paste."""
     if form == "json":
         return part.answer
-    if part.kind == "link_transforms":  # a list, whose matrices are each pasted
+    if part.kind == "link_transforms":  # a list of matrices, each of which is pasted
         return [getattr(link, form) for link in solution.links]
-    if part.text == "none":  # that there is no row is no formula
+    if part.text == "none":  # the answer that there is no row is only accepted as JSON
         return part.answer
     return getattr(part, form)
 
@@ -46,7 +46,7 @@ def test_the_model_solution_gets_full_marks(
 
 
 @pytest.mark.parametrize("exercise_id", IDS)
-def test_it_reads_back_within_the_limits_with_its_shorthand_explained(
+def test_each_shorthand_reads_back_to_its_meaning(
     exercise_id: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     exercise = catalogue[exercise_id]
@@ -54,7 +54,7 @@ def test_it_reads_back_within_the_limits_with_its_shorthand_explained(
         assert read(name, exercise.vocabulary).text() == meaning
 
 
-def test_the_longest_entry_may_be_handed_in(
+def test_the_longest_entry_is_within_the_limit(
     catalogue: Mapping[str, Exercise], figure: Callable[[str], None]
 ) -> None:
     poses = [pose for exercise in catalogue.values() if (pose := solved(exercise).pose)]

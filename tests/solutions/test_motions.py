@@ -1,4 +1,4 @@
-"""What is multiplied out in symbols is what the kinematics reckon in numbers."""
+"""Symbolic products of motions equal the numeric products of service.kinematics."""
 
 from collections.abc import Callable
 from typing import Any
@@ -71,7 +71,9 @@ def value(matrix: sympy.Matrix, at: list[float]) -> Numbers:
     table=st.lists(rows, min_size=1, max_size=6),
     at=st.lists(st.floats(-3, 3), min_size=7, max_size=7),
 )
-def test_a_chain(convention: Convention, table: list[Any], at: list[float]) -> None:
+def test_the_pose_of_a_chain_equals_the_numeric_pose(
+    convention: Convention, table: list[Any], at: list[float]
+) -> None:
     symbolic = multiplied(motions_of(table, convention)).matrix()
     expected = pose(numbers_of(table, at), convention)[0]
     np.testing.assert_allclose(value(symbolic, at), expected, atol=1e-12)
@@ -82,33 +84,33 @@ def test_a_chain(convention: Convention, table: list[Any], at: list[float]) -> N
     table=st.lists(rows, min_size=1, max_size=4),
     at=st.lists(st.floats(-3, 3), min_size=7, max_size=7),
 )
-def test_the_inverse(table: list[Any], at: list[float]) -> None:
+def test_the_inverse_undoes_the_motions(table: list[Any], at: list[float]) -> None:
     motions = motions_of(table, Convention.STANDARD)
     there, back = (value(multiplied(m).matrix(), at) for m in (motions, inverse(motions)))
     np.testing.assert_allclose(there @ back, np.eye(4), atol=1e-12)
 
 
-def test_parallel_axes_add_their_angles_up() -> None:
+def test_angles_about_parallel_axes_are_added() -> None:
     arm: list[Motion] = [Turn(Z, Q[0]), Shift(X), Turn(Z, Q[1]), Shift(X)]
     found = multiplied([*arm, Turn(X, sympy.pi), Turn(Z, Q[2])])
     assert found.rotation[0, 0] == sympy.cos(Q[0] + Q[1] - Q[2])
     assert found.position[0] == sympy.cos(Q[0]) + sympy.cos(Q[0] + Q[1])
 
 
-def test_a_turn_and_the_turn_back_leave_nothing() -> None:
+def test_a_turn_and_its_inverse_cancel() -> None:
     found = multiplied([Turn(Y, Q[0]), Shift(Y), Turn(-Y, Q[0])])
     assert found.rotation == sympy.eye(3)
     assert list(found.position) == [0, 1, 0]
 
 
-def test_a_fixed_rotation_stands_where_it_is_put() -> None:
+def test_a_fixed_rotation_is_applied_at_its_place() -> None:
     quarter = rotation_about(Z, sympy.pi / 2)
     found = multiplied([Fixed(quarter), Shift(X), Turn(X, Q[0]), Fixed(quarter.T)])
     assert list(found.position) == [0, 1, 0]
     assert found.rotation == rotation_about(Y, Q[0])
 
 
-def test_a_slanted_axis() -> None:
+def test_a_turn_about_a_slanted_axis_keeps_the_axis() -> None:
     slant = sympy.ImmutableMatrix([0, sympy.Rational(3, 5), sympy.Rational(4, 5)])
     found = multiplied([Turn(slant, Q[0])]).rotation
     assert list(found * slant) == [0, sympy.Rational(3, 5), sympy.Rational(4, 5)] or np.allclose(

@@ -1,4 +1,4 @@
-"""Euler angles as formulas, against SciPy's reading of the same rotation."""
+"""Euler angles as formulas, compared with SciPy."""
 
 from itertools import permutations, product
 
@@ -36,13 +36,13 @@ def test_the_angles_give_the_rotation(sequence: str, chain: str, axes: str) -> N
         expected = expected @ turn.as_matrix()
     angles = euler_angles(CHAINS[chain], sequence, axes)
     numbers = [float(angle.subs(AT)) for angle in angles]
-    # SciPy writes turns about fixed axes in small letters.
+    # In SciPy, lower case letters mean fixed axes.
     name = sequence if axes == "moving" else sequence.lower()
     found = Rotation.from_euler(name, numbers).as_matrix()
     np.testing.assert_allclose(found, expected, atol=1e-12)
 
 
-def test_a_chain_of_the_sequence_keeps_its_own_angles() -> None:
+def test_turns_in_the_requested_sequence_keep_their_angles() -> None:
     wrist: list[Motion] = [Turn(Z, q1), Turn(Y, -q2), Turn(Z, q3 + sympy.pi / 2)]
     assert euler_angles(wrist, "ZYZ", "moving") == (q1, -q2, q3 + sympy.pi / 2)
 
@@ -50,12 +50,14 @@ def test_a_chain_of_the_sequence_keeps_its_own_angles() -> None:
 @pytest.mark.parametrize(
     ("sign", "other", "quarter"), list(product([1, -1], [1, -1], [0, sympy.pi / 2]))
 )
-def test_an_angle_by_its_sine_and_cosine(sign: int, other: int, quarter: sympy.Expr) -> None:
+def test_an_angle_is_found_from_its_sine_and_cosine(
+    sign: int, other: int, quarter: sympy.Expr
+) -> None:
     sine, cosine = sign * sympy.sin(q1 + quarter), other * sympy.cos(q1 + quarter)
     found = as_angle(sine, cosine)
     assert not found.has(sympy.atan2)
     assert (sympy.sin(found), sympy.cos(found)) == (sine, cosine)
 
 
-def test_an_angle_of_no_such_form_is_an_atan2() -> None:
+def test_other_sines_and_cosines_give_an_atan2() -> None:
     assert as_angle(q1, q2) == sympy.atan2(q1, q2)

@@ -1,4 +1,4 @@
-"""For every exercise the model table, pasted in every format, gets full marks."""
+"""The model table of every exercise, pasted in every format, gets full marks."""
 
 from collections.abc import Mapping
 
@@ -15,7 +15,7 @@ IDS = sorted(file.stem for file in shipped_folder().glob("*.toml"))
 
 
 @pytest.mark.parametrize("exercise_id", IDS)
-def test_the_model_table_pasted_in_every_format(
+def test_the_model_table_gets_full_marks_in_every_format(
     exercise_id: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     exercise = catalogue[exercise_id]

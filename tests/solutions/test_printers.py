@@ -1,6 +1,6 @@
-"""For every exercise the model solution gets full marks, printed by any program.
+"""The model solution of every exercise gets full marks as other programs print it.
 
-``prints`` holds the printers of matrices and hands in all of them; here are some of each exercise.
+``prints`` has the printers of matrices and hands in all prints; this file hands in a sample.
 """
 
 from collections.abc import Callable, Mapping
@@ -20,7 +20,7 @@ from tests.grading.support.submitting import full_marks, handed_in
 from tests.samples import one_in
 from tests.solutions.prints import PRINTERS as MATRIX_PRINTERS
 from tests.solutions.prints import Print, prints, refused
-from tests.solutions.solved import once_for_each, solved
+from tests.solutions.solved import memoized_by_exercise, solved
 
 IDS = sorted(file.stem for file in shipped_folder().glob("*.toml"))
 PRINTERS: Mapping[str, Callable[[sympy.Expr], str]] = {
@@ -33,7 +33,7 @@ _expressions: dict[tuple[str, str | float], sympy.Expr] = {}
 
 
 def expression(exercise: Exercise, entry: str | float) -> sympy.Expr:
-    """The entry as a SymPy expression, made once for all printers."""
+    """Return the entry as a SymPy expression (memoized)."""
     key = (exercise.id, entry)
     if key not in _expressions:
         _expressions[key] = Algebra(exercise).of(read(entry, exercise.vocabulary))
@@ -41,7 +41,7 @@ def expression(exercise: Exercise, entry: str | float) -> sympy.Expr:
 
 
 def printed(answer: object, exercise: Exercise, printer: Callable[[sympy.Expr], str]) -> object:
-    """The same answer with every formula read, made a SymPy expression, and printed."""
+    """Return the answer with every formula converted to SymPy and printed by ``printer``."""
     if isinstance(answer, dict):
         return {key: printed(value, exercise, printer) for key, value in answer.items()}
     if isinstance(answer, list):
@@ -49,21 +49,21 @@ def printed(answer: object, exercise: Exercise, printer: Callable[[sympy.Expr], 
     if isinstance(answer, bool) or not isinstance(answer, str | int | float):
         return answer
     text = printer(expression(exercise, answer))
-    # Full names and \\left( make the longest entries of six and seven joints exceed what one entry
-    # may hold; those stand as they were, and the figure tells how many.
+    # With full names and \\left(, the longest entries of six and seven joints exceed the limit.
+    # They are not replaced; the test reports their number.
     return text if len(text) <= LIMITS.characters else answer
 
 
-def _same(before: object, after: object) -> int:
-    """How many long entries were left as they were."""
+def _unchanged_entries(before: object, after: object) -> int:
+    """Return the number of long entries that were not replaced."""
     if isinstance(before, list) and isinstance(after, list):
-        return sum(map(_same, before, after))
+        return sum(map(_unchanged_entries, before, after))
     return int(isinstance(before, str) and before == after and len(before) > 100)
 
 
 @pytest.mark.parametrize("printer", PRINTERS)
 @pytest.mark.parametrize("exercise_id", one_in(3, IDS))
-def test_the_model_solution_as_sympy_prints_it(
+def test_the_model_solution_gets_full_marks_as_sympy_prints_it(
     exercise_id: str,
     printer: str,
     catalogue: Mapping[str, Exercise],
@@ -77,7 +77,7 @@ def test_the_model_solution_as_sympy_prints_it(
         else printed(part.answer, exercise, PRINTERS[printer])
         for part in solution.parts
     }
-    kept = sum(_same(part.answer, answers[part.part]) for part in solution.parts)
+    kept = sum(_unchanged_entries(part.answer, answers[part.part]) for part in solution.parts)
     if kept:
         figure(
             f"{exercise_id}, {printer}: {kept} entries too long as printed, handed in as they were"
@@ -86,12 +86,12 @@ def test_the_model_solution_as_sympy_prints_it(
         assert full_marks(part), part
 
 
-# So many prints of each exercise, others for each, in a fixed choice.
+# The number of prints for each exercise. The choice is random, but fixed for each exercise.
 SAMPLE = 6
 
 
 @pytest.mark.parametrize("exercise_id", one_in(3, IDS))
-def test_matrices_and_link_transforms_as_programs_print_them(
+def test_matrices_get_full_marks_as_programs_print_them(
     exercise_id: str, catalogue: Mapping[str, Exercise]
 ) -> None:
     exercise = catalogue[exercise_id]
@@ -108,18 +108,18 @@ LONG = (
 
 
 @pytest.mark.parametrize("printer", one_in(4, LONG))
-def test_the_pose_of_seven_joints_multiplied_out(
+def test_the_expanded_pose_of_seven_joints_gets_full_marks(
     printer: str, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """The longest pose that a book of exercises asks for: entries of 1,100 characters in text."""
+    """This is the longest pose in textbook exercises: entries of 1,100 characters."""
     exercise = catalogue["baxter-left-arm"]
     write = partial(MATRIX_PRINTERS[printer], multiplied_out(exercise))
     assert refused(Print(exercise.id, "pose", printer, write), exercise) == ""
 
 
-@once_for_each
+@memoized_by_exercise
 def multiplied_out(exercise: Exercise) -> sympy.Matrix:
-    """The product of the link matrices of SHV eq. 3.10, expanded and not simplified."""
+    """Return the product of the link matrices (SHV eq. 3.10), expanded and not simplified."""
     table = exercise.robot.tables[Convention.STANDARD]
     algebra = Algebra(exercise)
 

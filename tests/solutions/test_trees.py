@@ -1,4 +1,4 @@
-"""SymPy's expressions in the students' notation."""
+"""SymPy expressions printed in students' notation."""
 
 from collections.abc import Callable
 
@@ -37,7 +37,7 @@ def arm(make_exercise: Callable[[str], Exercise]) -> Exercise:
     return make_exercise(ARM)
 
 
-# What an author or the algebra writes, and how it is printed.
+# A formula, and how the model solution prints it.
 FORMULAS = {
     "cos(q1 + q2)": "c12",
     "sin(q2)": "sin(q2)",  # s2 is a length here
@@ -72,7 +72,7 @@ FORMULAS = {
 
 
 @pytest.mark.parametrize("formula", FORMULAS)
-def test_a_formula_in_a_textbooks_form(formula: str, arm: Exercise) -> None:
+def test_a_formula_is_printed_in_a_textbooks_form(formula: str, arm: Exercise) -> None:
     algebra, writer = Algebra(arm), Writer(arm)
     written = to_text(writer.number(algebra.of(read(formula, arm.vocabulary))))
     assert written == FORMULAS[formula]
@@ -91,7 +91,7 @@ ANGLES = {
 
 
 @pytest.mark.parametrize("formula", ANGLES)
-def test_an_angle_means_the_same_to_those_who_work_in_degrees(formula: str, arm: Exercise) -> None:
+def test_a_printed_angle_means_the_same_in_degrees(formula: str, arm: Exercise) -> None:
     algebra, writer = Algebra(arm), Writer(arm)
     expected = algebra.of(read(formula, arm.vocabulary, quantity="angle"))
     written = to_text(writer.angle(expected))
@@ -101,7 +101,7 @@ def test_an_angle_means_the_same_to_those_who_work_in_degrees(formula: str, arm:
         assert sympy.simplify(algebra.of(again) - expected) == 0
 
 
-def test_the_shorthand_is_explained(arm: Exercise) -> None:
+def test_the_meaning_of_each_shorthand_is_recorded(arm: Exercise) -> None:
     algebra, writer = Algebra(arm), Writer(arm)
     writer.number(algebra.of(read("cos(q1 + q2) + sin(q1)", arm.vocabulary)))
     assert writer.used == {"c12": "cos(q1 + q2)", "s1": "sin(q1)"}

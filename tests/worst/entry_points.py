@@ -36,7 +36,7 @@ PREVIEWS, FRAMES = "many-previews", "frames"
 ENTRIES = (GRADE, ATTEMPTS, PREVIEW, PREVIEWS, FRAMES, FILE)
 _PATHS = {PREVIEW: "/v1/preview", PREVIEWS: "/v1/previews", FRAMES: "/v1/frames"}
 _CACHES = (
-    *reader._remembered, reader._parsed, reading_work._remembered,
+    *reader._memoized, reader._parsed, reading_work._memoized,
     reading_work._of_word, words.split, decimals.decimals_of,
 )  # fmt: skip
 

@@ -32,7 +32,7 @@ from service.contract.frames import (
 )
 from service.contract.preview import PreviewError
 from service.expressions import Expression
-from service.figures.figure import plainest_view, subject_of
+from service.figures.figure import default_view, subject_of
 from service.figures.geometry.mechanism import Configuration, MovableMechanism, mechanism_of
 from service.figures.geometry.view import View
 from service.figures.table_figure import SeenMechanism, WrittenChain, table_figure
@@ -58,7 +58,7 @@ class _Mechanisms:
         if key not in self._kept:
             subject = subject_of(exercise)
             mechanism = mechanism_of(subject.reference, numbers)
-            self._kept[key] = mechanism, subject.view or plainest_view(mechanism, numbers)
+            self._kept[key] = mechanism, subject.view or default_view(mechanism, numbers)
             while len(self._kept) > _KEPT:
                 self._kept.popitem(last=False)
         self._kept.move_to_end(key)

@@ -13,19 +13,19 @@ NAMES: Final = {
     "Φ": "Phi", "Ψ": "Psi", "Ω": "Omega",
 }  # fmt: skip
 LETTERS: Final = {name: letter for letter, name in NAMES.items()}
-# Other shapes of the same letter: ϑ is θ, ϕ is φ, the micro sign is μ.
+# Variants of the same letter: ϑ is θ, ϕ is φ, the micro sign is μ.
 VARIANTS: Final = {"ϑ": "θ", "ϕ": "φ", "ϵ": "ε", "ϱ": "ρ", "ς": "σ", "ϖ": "π", "µ": "μ", "Ω": "Ω",
                    "∆": "Δ", "ϰ": "κ"}  # fmt: skip
 CLASS: Final = "".join(NAMES)
-# A letter's name begins a word: theta1, but not the eta in beta.
+# A letter's name must begin a word: theta1, but not the eta in beta.
 _SPELLED: Final = "|".join(sorted(LETTERS, key=len, reverse=True))
 _PARTS: Final = re.compile(rf"(?<![^\W\d_])(?:{_SPELLED})|.", re.DOTALL)
 
 
 def spellings(name: str) -> set[str]:
-    """All ways to write ``name``, with each Greek letter as such or spelled out.
+    """Return all ways to write ``name``: each Greek letter as a letter or as its name.
 
-    The letters stay letters in the text itself: spelled out there, ``bη`` would read as beta.
+    Student texts are not converted this way, because ``bη`` would become ``beta``.
     """
     both = NAMES | LETTERS
     parts = [{part, both.get(part, part)} for part in _PARTS.findall(name)]

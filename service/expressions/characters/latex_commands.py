@@ -38,11 +38,11 @@ SPACES: Final = frozenset({
     "bigl", "Bigl", "biggl", "Biggl", "bigr", "Bigr", "biggr", "Biggr", "bigm", "middle",
     "mleft", "mright", "relax", "nonumber", "notag", "strut", "allowbreak",
 })  # fmt: skip
-# Commands that style the rest of the group that they stand in: {\it q}.
+# Commands that style the rest of their group: {\it q}.
 SWITCHES: Final = frozenset({
     "rm", "it", "bf", "sf", "tt", "sl", "em", "cal", "mit", "normalfont", "upshape", "bfseries",
 })  # fmt: skip
-# Commands that mean nothing, and whose argument means nothing.
+# Commands that are skipped together with their argument.
 IGNORED: Final = frozenset({"hspace", "vspace", "phantom", "hphantom", "vphantom", "label"})
 BLANK_SYMBOLS: Final = frozenset(",;:!> /()[]")
 
@@ -51,7 +51,7 @@ COMMAND: Final = re.compile(r"\\(?:([A-Za-z]+)\*?|(.))", re.DOTALL)
 ENVIRONMENT: Final = re.compile(
     r"\s*\{\s*(?:equation|displaymath|math|align|aligned|gather|gathered|split|multline)\*?\s*\}"
 )
-# The sign for a product of SymPy's latex(..., mul_symbol="ldot").
+# The product sign of SymPy's latex(..., mul_symbol="ldot").
 DOT_BETWEEN_SPACES: Final = re.compile(r"\\,\s*\.\s*\\,")
 # A letter as Mathematica writes it in plain text: \[Theta].
 NAMED_LETTER: Final = re.compile(r"\\\[(Capital|Curly)?([A-Z][a-z]+)\]")
@@ -64,7 +64,7 @@ RAISED_STAR: Final = re.compile(rf"\^\s*(?:{_STAR}(?!\*)|\{{\s*{_STAR}\s*\}})|â‹
 
 
 def known_prefix(name: str) -> str | None:
-    """The longest known command that ``name`` begins with: cosq -> cos."""
+    """Return the longest known command that ``name`` begins with, or None: cosq -> cos."""
     for end in range(len(name) - 1, 1, -1):
         if name[:end] in FUNCTIONS or name[:end] in PLAIN:
             return name[:end]
@@ -72,7 +72,7 @@ def known_prefix(name: str) -> str | None:
 
 
 def brace_partners(source: str) -> dict[int, int]:
-    """The place of the closing brace for that of each opening one that has a partner."""
+    """Map the place of each opening brace to the place of its closing brace, if it has one."""
     partners: dict[int, int] = {}
     opened: list[int] = []
     for match in _BRACE.finditer(source):

@@ -1,8 +1,8 @@
 r"""Characters as typed -> plain characters, each with its place in the text as typed.
 
-A character with one meaning is read: × · − ² ₁ ½ ° π, the shapes of a Greek letter, and LaTeX.
-A character that looks like another one, or cannot be seen, is named in an error and never guessed.
-\frac{a}{b} becomes ⟨{a}/{b}⟩, where ⟨ and ⟩ are brackets that no student can type.
+Unambiguous characters (× · − ² ₁ ½ ° π, variants of Greek letters) and LaTeX are converted. For a
+look-alike or invisible character, the error names it; nothing is guessed.
+\frac{a}{b} becomes ⟨{a}/{b}⟩, where ⟨ and ⟩ are private brackets that no student can type.
 """
 
 import re
@@ -19,12 +19,12 @@ _INDEX: Final = re.compile(rf"[A-Za-z0-9{greek.CLASS} _*]*")
 # An index as Word writes it in one line: θ_(1).
 _BRACKETED_INDEX: Final = re.compile(r"\(\s*([A-Za-z0-9]+)\s*\)")
 _PLAIN_INDEX: Final = re.compile(r"_[A-Za-z0-9]+")
-# An index that is not joined to its name by the underscore alone.
+# An index with a blank before the underscore, or in round brackets.
 _SPACED_INDEX: Final = re.compile(r" _|_\(")
 
 
 def normalise(source: str) -> Characters:
-    """``source`` in plain characters. Raises UnreadableError for a character that is not read."""
+    """Return ``source`` in plain characters. Raises UnreadableError for an unreadable character."""
     if (
         _PLAIN.fullmatch(source)
         and "^*" not in source
@@ -35,14 +35,14 @@ def normalise(source: str) -> Characters:
 
 
 class _Normaliser(CharacterWriter):
-    """One pass over the source, a run of plain characters or a LaTeX command at a time."""
+    """Converts the source in one pass: runs of plain characters, and LaTeX commands."""
 
     def run(self) -> Characters:
         self._range(0, len(self.source), 0)
         return Characters("".join(self.letters), self.starts, self.ends)
 
     def _range(self, position: int, end: int, depth: int) -> None:
-        """Read ``source[position:end]``, nested in ``depth`` arguments of LaTeX commands."""
+        """Convert ``source[position:end]``, which is inside ``depth`` arguments of commands."""
         if depth > LIMITS.depth:
             raise UnreadableError("beyond", (position, end), limit="depth")
         while position < end:
@@ -81,14 +81,14 @@ class _Normaliser(CharacterWriter):
     # --- indices and powers
 
     def _caret(self, at: int, stop: int, depth: int) -> int:
-        """Read ^, unless it raises a circle (degrees) or a star (the joint variable's marker)."""
+        """Read ^ as a power, a raised circle (degrees) or a raised star (joint variable)."""
         if circle := latex_commands.RAISED_CIRCLE.match(self.source, at):
             return self._emit("°", at, circle.end())
         star = latex_commands.RAISED_STAR.match(self.source, at)
         if star is None:
             return self._emit("^", at, at + 1)
         end = star.end()
-        # The index may stand behind the star: θ^*_1.
+        # The index may follow the star: θ^*_1.
         index = _PLAIN_INDEX.match(self.source, end)
         if index is not None:
             self._copy(*index.span())
@@ -100,7 +100,7 @@ class _Normaliser(CharacterWriter):
 
     def _underscore(self, at: int, end: int, depth: int) -> int:
         r"""Read _1, _{12}, _\alpha and _{\theta_1}: an index of letters and digits."""
-        self._close_up()
+        self._attach_index()
         start = self._skip_blanks(at + 1, end)
         if start < end and self.source[start] == "{":
             stop = self._partner(start, end)
@@ -121,7 +121,7 @@ class _Normaliser(CharacterWriter):
             raise UnreadableError("subscript", (at, after), index=self.source[slice(*inside)])
         self._emit("_", at, inside[0])
         stars: list[Span] = []
-        # An underscore before each letter says that the index is one: l_{1h} is no product of l_1.
+        # An underscore before each letter keeps the index whole: l_{1h} is not l_1 times h.
         mark = "_" if not text.isdigit() else ""
         written = ""
         for letter, place in zip(text, zip(content.starts, content.ends, strict=True), strict=True):
@@ -131,7 +131,7 @@ class _Normaliser(CharacterWriter):
                 self._emit(f"{written}{letter}", *place)
                 written = mark
         self.ends[-1] = after
-        # The blank keeps q_{1}2 from becoming q12.
+        # Add a blank so that q_{1}2 does not become q12.
         self._emit(" " if self.source[after : after + 1].isdigit() else "", at, at)
         for star in stars:
             self._emit(unicode.MARKER, *star)
@@ -158,7 +158,7 @@ class _Normaliser(CharacterWriter):
         return self._structure(name, at, after, end, depth)
 
     def _structure(self, name: str, at: int, after: int, end: int, depth: int) -> int:
-        """Read a command that has to do with what stands around it."""
+        """Read a command that has arguments or affects its surroundings."""
         if name in latex_commands.STYLES:
             is_word = name == "operatorname"
             return self._styled(self._argument(at, after, end), at, depth, is_word=is_word)
@@ -178,7 +178,7 @@ class _Normaliser(CharacterWriter):
         raise UnreadableError(causes.get(name, "command"), (at, after), name=name)
 
     def _without_meaning(self, name: str, at: int, after: int, end: int) -> int | None:
-        """The end of a command that means nothing together with its argument, else None."""
+        """Return the end of a command that is skipped with its argument; None for others."""
         if name in latex_commands.IGNORED:
             return self._argument(at, after, end)[2]
         environment = latex_commands.ENVIRONMENT.match(self.source, after, end)
@@ -201,7 +201,7 @@ class _Normaliser(CharacterWriter):
         raise UnreadableError("command", (at, after), name=symbol)
 
     def _function(self, name: str, at: int, after: int) -> int:
-        r"""Emit a function's name, so that a\sin x is not asin x, and \sin d_3 not sind_3."""
+        r"""Emit a function's name, with blanks: a\sin x is not asin x, and \sin d_3 not sind_3."""
         if self.letters and self.letters[-1].isalpha():
             self._emit(" ", at, at)
         self._emit(name, at, after)
@@ -213,7 +213,7 @@ class _Normaliser(CharacterWriter):
     def _styled(
         self, argument: tuple[int, int, int], at: int, depth: int, *, is_word: bool = False
     ) -> int:
-        """Read the argument of a command that only styles it; return where to go on."""
+        """Read the argument of a styling command; return the place after it."""
         start, stop, after = argument
         inside = self.source[start:stop]
         is_word = is_word or sum(map(str.isalpha, inside)) > 1
@@ -228,7 +228,7 @@ class _Normaliser(CharacterWriter):
         return after
 
     def _without_blanks(self, first: int) -> None:
-        r"""Join \text{$\theta $1}, as Mathematica prints a name with a Greek letter."""
+        r"""Remove the blanks that Mathematica prints in names: \text{$\theta $1}."""
         kept = [i for i in range(first, len(self.letters)) if self.letters[i] != " "]
         letters, starts, ends = self.letters, self.starts, self.ends
         places = [(letters[i], starts[i], ends[i]) for i in kept]
@@ -237,7 +237,7 @@ class _Normaliser(CharacterWriter):
             self._emit(*place)
 
     def _switch(self, at: int, after: int, end: int, depth: int) -> int:
-        r"""Read {\rm cos} as \mathrm{cos}; a switch that begins no group means nothing."""
+        r"""Read {\rm cos} as \mathrm{cos}; skip a switch that does not begin a group."""
         if not self.letters or self.letters[-1] != "{" or self.source[self.starts[-1]] != "{":
             return self._emit(" ", at, after)
         opener = self.starts[-1]

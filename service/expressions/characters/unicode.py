@@ -1,4 +1,4 @@
-"""Single characters: the plain spelling of each, and those that only look like a plain one."""
+"""Single characters: their plain spellings, and look-alikes of plain characters."""
 
 import re
 import unicodedata
@@ -7,8 +7,8 @@ from typing import Final
 from service.expressions.characters import greek
 from service.expressions.errors import Cause
 
-# Brackets around a fraction with a bar, which groups its parts, and the star of a joint variable.
-# No student types them: a typed character of Unicode's private area is refused.
+# Brackets around a fraction with a bar, and the star that marks a joint variable. No student can
+# type them: a typed character of Unicode's private area is refused.
 OPEN: Final = "\ue000"
 CLOSE: Final = "\ue001"
 MARKER: Final = "\ue002"
@@ -22,8 +22,8 @@ _OPERATORS: Final = {
     "ˆ": "^",
     "ℓ": "l",
     "度": "°",
-    # Word's brackets that are not drawn, and the two signs that MathML and Word put between a
-    # function and its argument, and between factors. A blank: sin⁡2⁢q is the sine of 2q.
+    # Word's invisible brackets, and the invisible signs that MathML and Word put between a function
+    # and its argument, and between factors. As blanks, they make sin⁡2⁢q the sine of 2q.
     "〖": "{",
     "〗": "}",
     "\u2061": " ",
@@ -47,7 +47,7 @@ LOOK_ALIKES: Final = dict(
         strict=True,
     )
 )
-# Unicode does not call these invisible, but they are blank.
+# These characters are blank, but not invisible by their Unicode category.
 _BLANKS: Final = frozenset("\u115f\u1160\u2800\u3164\uffa0")
 _CAUSES: Final[dict[str, Cause]] = {
     **dict.fromkeys("±∓", "plus_minus"),
@@ -61,12 +61,12 @@ _FRACTION: Final = re.compile("[0-9]⁄[0-9]+")
 
 
 def is_invisible(letter: str) -> bool:
-    """Whether ``letter`` has no shape of its own: a control, a format or a combining mark."""
+    """True if ``letter`` is a control character, a format character or a combining mark."""
     return letter in _BLANKS or unicodedata.category(letter) in {"Cf", "Cc", "Mn", "Me"}
 
 
 def plain(letter: str) -> str | None:
-    """The plain spelling of one character, or None where it has none."""
+    """Return the plain spelling of one character, or None if it has none."""
     if " " <= letter <= "~" or letter in greek.NAMES:
         return letter
     if letter in _SPELLINGS:
@@ -79,7 +79,7 @@ def plain(letter: str) -> str | None:
 
 
 def _compatible(letter: str) -> str | None:
-    """The plain character that ``letter`` is a form of according to Unicode, or None."""
+    """Return the plain character that is Unicode's compatible form of ``letter``, or None."""
     form = unicodedata.normalize("NFKC", letter)
     if _FRACTION.fullmatch(form):
         return f"{OPEN}{form.replace('⁄', '/')}{CLOSE}"
@@ -89,5 +89,5 @@ def _compatible(letter: str) -> str | None:
 
 
 def cause(letter: str) -> Cause:
-    """The reason why a character without a plain spelling cannot be read."""
+    """Return the reason why a character without a plain spelling cannot be read."""
     return _CAUSES.get(letter) or ("invisible" if is_invisible(letter) else "character")

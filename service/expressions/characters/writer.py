@@ -1,4 +1,4 @@
-"""The plain characters of a text so far, and the places where they were typed."""
+"""Write plain characters with their places in the typed text; read subscripts and superscripts."""
 
 import re
 from collections.abc import Mapping
@@ -9,18 +9,18 @@ from service.expressions.characters import latex_commands, unicode
 from service.expressions.errors import UnreadableError
 
 _DECIMAL_COMMA: Final = re.compile(r"(?<=[0-9])\{,\}(?=[0-9])")
-# Longer words in braces are no stem of a name.
+# Words in braces that are longer cannot be the stem of a name.
 _LONGEST_STEM: Final = 24
 _POWER: Final = re.compile(r"[+-]?[0-9]+|[A-Za-z]")
-# These separate cells or lines, and not the factors of a product.
+# These separate cells or lines, so they do not stand for a product.
 BREAKS: Final = frozenset("\t\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029")
 
 
 @dataclass(frozen=True, slots=True)
 class Characters:
-    """Plain text, and for each of its characters the [start, end) in the text as typed.
+    """Plain text, with the [start, end) of each character in the text as typed.
 
-    ``starts`` and ``ends`` are None where nothing was changed.
+    ``starts`` and ``ends`` are None if the text was not changed.
     """
 
     text: str
@@ -29,7 +29,7 @@ class Characters:
 
 
 class CharacterWriter:
-    """Writes plain characters, and reads what LaTeX and Unicode put around them."""
+    """The plain characters written so far, with helpers to read LaTeX arguments and indices."""
 
     def __init__(self, source: str, partners: dict[int, int] | None = None) -> None:
         self.source = source
@@ -52,8 +52,8 @@ class CharacterWriter:
             self.ends.append(end)
         return end
 
-    def _close_up(self) -> None:
-        r"""Let an index stand right behind its name: \theta _1, {\theta}_1, {\rm c}_1."""
+    def _attach_index(self) -> None:
+        r"""Remove blanks and braces before an index: \theta _1, {\theta}_1, {\rm c}_1."""
         letters = self.letters
         while letters and letters[-1] == " " and self.source[self.starts[-1]] in " \\":
             self._drop(len(letters) - 1)
@@ -61,7 +61,7 @@ class CharacterWriter:
             return
         for at in range(len(letters) - 2, max(-1, len(letters) - _LONGEST_STEM - 2), -1):
             if letters[at] == "{":
-                # Behind these a brace holds an index, a power or the operand of a root.
+                # After these, a brace encloses an index, a power or the operand of a root.
                 if at + 2 < len(letters) and (at == 0 or letters[at - 1] not in "_^√"):
                     letters[at] = " "
                     self._drop(len(letters) - 1)
@@ -73,21 +73,21 @@ class CharacterWriter:
         del self.letters[at:], self.starts[at:], self.ends[at:]
 
     def _subscript_run(self, at: int) -> int:
-        """Read ₁₂: one index."""
-        self._close_up()
+        """Read subscript characters such as ₁₂ as one index; return the place after them."""
+        self._attach_index()
         end = self._end_of_run(at, unicode.SUBSCRIPTS)
         if self.source[end : end + 1] in {"₊", "₋"}:
             raise UnreadableError("subscript", (at, end + 1), index=self.source[at:end])
         for place in range(at, end):
             digit = unicode.SUBSCRIPTS[self.source[place]]
-            # As in ``_underscore``: l₁ₕ is no product of l₁.
+            # As in ``_underscore``: l₁ₕ is not l₁ times h.
             self._emit(digit if digit.isdigit() and place > at else f"_{digit}", place, place + 1)
         if self.source[end : end + 1].isdigit():
             self._emit(" ", end, end)
         return end
 
     def _superscript_run(self, at: int) -> int:
-        """Read ⁻¹: one power."""
+        """Read superscript characters such as ⁻¹ as one power; return the place after them."""
         end = self._end_of_run(at, unicode.SUPERSCRIPTS)
         if self.source[at:end] == "⁰" and self.source[at - 1 : at].isdigit():
             raise UnreadableError("raised_zero", (at, end))
@@ -95,7 +95,7 @@ class CharacterWriter:
         is_simple = _POWER.fullmatch(power) is not None
         self._emit("^" if is_simple else "^(", at, at)
         self._spell(unicode.SUPERSCRIPTS, at, end)
-        # The blank keeps x²3 from becoming x^23.
+        # Add a blank so that x²3 does not become x^23.
         self._emit(" " if is_simple else ")", end, end)
         return end
 
@@ -110,7 +110,7 @@ class CharacterWriter:
             self._emit(table[self.source[place]], place, place + 1)
 
     def _argument(self, at: int, after: int, end: int) -> tuple[int, int, int]:
-        """The [start, stop) of a command's argument, and the place behind it."""
+        """Return the [start, stop) of a command's argument, and the place after it."""
         start = self._skip_blanks(after, end)
         if start >= end or self.source[start] in "}+-*/)]":
             raise UnreadableError("argument", (at, after), name=self.source[at:after])
@@ -127,7 +127,7 @@ class CharacterWriter:
         return at
 
     def _partner(self, at: int, end: int) -> int:
-        """The place of the brace that closes the one at ``at``."""
+        """Return the place of the brace that closes the one at ``at``."""
         if self.partners is None:
             self.partners = latex_commands.brace_partners(self.source)
         place = self.partners.get(at, end)

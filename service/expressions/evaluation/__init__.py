@@ -1,1 +1,1 @@
-"""A syntax tree -> numbers."""
+"""Evaluate a syntax tree."""

@@ -1,8 +1,8 @@
-"""The rounded decimals of a formula, and its values where they were other numbers.
+"""Find the rounded decimals of a formula, and evaluate it with slightly different decimals.
 
-A decimal number with three or more figures is taken for one that was rounded or cut off: 1.57 may
-stand for π/2. The *unit* of a decimal is 1 in the last place that was written, 0.01 for 1.57. A
-*shift* says by how many units the intended number is larger than the one that was written.
+A decimal number with three or more figures is assumed to be rounded or cut off: 1.57 may mean π/2.
+The *unit* of a decimal is 1 in its last place, 0.01 for 1.57. A *shift* is the number of units by
+which the intended number exceeds the written one.
 """
 
 from functools import lru_cache
@@ -21,15 +21,15 @@ from service.expressions.reader import Expression
 from service.expressions.tree import Binary, Call, Negation, Node, Number, SymbolNode, Unit
 from service.expressions.vocabulary.symbols import Symbol
 
-# Half of two figures would be five per cent: 1.6 is no π/2.
+# With two figures, half a unit could be five per cent: 1.6 does not mean π/2.
 LEAST_FIGURES: Final = 3
 
 
 class Decimals:
-    """The rounded decimals of one formula, from left to right. Immutable.
+    """The ``m`` rounded decimals of one formula, from left to right. Immutable.
 
-    ``units`` ``(m,)`` are their units; ``m`` may be 0. ``sign`` is that of the only one where the
-    formula is nothing else, and 0 for any other formula.
+    ``units`` ``(m,)`` are their units. If the whole formula is one decimal, ``sign`` is its sign, 1
+    or -1; else it is 0.
     """
 
     __slots__ = ("_names", "_numbers", "_program", "sign", "units")
@@ -44,10 +44,10 @@ class Decimals:
         self.sign: Final = _sign(replaced)
 
     def shifted(self, shifts: NDArray[np.float64], values: SymbolValues) -> SampleArray:
-        """The values ``(K, samples)`` of the formula with its decimals moved in K ways.
+        """Return the values ``(K, samples)`` of the formula for each row of ``shifts`` ``(K, m)``.
 
-        ``(K, 1)`` where no symbol is used. ``shifts`` is ``(K, m)``. NaN or infinite where the
-        formula is undefined; nothing warns.
+        The shape is ``(K, 1)`` if the formula has no symbols. Undefined values are NaN or infinite,
+        without warnings.
         """
         assert isinstance(self._program, Program)
         moved = self._numbers + shifts * self.units
@@ -57,20 +57,20 @@ class Decimals:
         return result
 
 
-# The grading asks for those of one answer several times.
+# Grading needs the decimals of the same answer several times.
 @lru_cache(maxsize=128)
 def decimals_of(expression: Expression) -> Decimals:
-    """The rounded decimals of an expression."""
+    """Return the rounded decimals of an expression (memoized)."""
     return Decimals(expression.tree)
 
 
 def _name(i: int) -> str:
-    # No symbol is called so.
+    # No symbol can have this name.
     return f"~{i}"
 
 
 def _sign(replaced: Node) -> int:
-    """1 or -1 where nothing but a decimal stands in the tree, with names for them; else 0."""
+    """Return 1 or -1 if the tree is one renamed decimal with or without a minus; else 0."""
     match replaced:
         case SymbolNode(Symbol(name)) if name == _name(0):
             return 1
@@ -81,7 +81,7 @@ def _sign(replaced: Node) -> int:
 
 
 def _with_names(node: Node, found: list[Number]) -> Node:
-    """``node`` with names for its rounded decimals, which are added to ``found``."""
+    """Return ``node`` with symbols for its rounded decimals, which are appended to ``found``."""
     match node:
         case Number():
             if _unit(node.literal) == 0.0:
@@ -101,9 +101,9 @@ def _with_names(node: Node, found: list[Number]) -> Node:
 
 
 def _unit(literal: str) -> float:
-    """The unit of a decimal number with enough figures; 0 for a number that is exact as written.
+    """Return the unit of a decimal with at least three figures; 0 for any other number.
 
-    Zeros before the first other digit are no figures.
+    Leading zeros are not figures.
     """
     mantissa, _, exponent = literal.lower().partition("e")
     whole, _, fraction = mantissa.partition(".")

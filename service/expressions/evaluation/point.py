@@ -1,7 +1,7 @@
-"""The value of a tree at one point, where many trees are tried that share most of their nodes.
+"""Evaluate many trees that share most of their nodes at one point, in plain floats.
 
-A program (see ``samples``) evaluates one tree at many samples. Here many trees are evaluated at one
-point, in plain floats; the known values of one tree's nodes serve all trees built from them.
+The memoized values of one tree's nodes are used for all trees built from these nodes. To evaluate
+one tree at many samples, see ``samples``.
 """
 
 import math
@@ -26,14 +26,14 @@ _FUNCTIONS: Final[dict[str, Callable[..., float]]] = {
     "sin": math.sin, "cos": math.cos, "tan": math.tan, "asin": math.asin, "acos": math.acos,
     "atan": math.atan, "atan2": math.atan2, "sqrt": math.sqrt, "abs": abs, "exp": math.exp,
 }  # fmt: skip
-# math.pow refuses a root of a negative number; ** would answer with a complex one.
-_JOINED: Final[dict[str, Callable[[float, float], float]]] = {
+# math.pow raises an error for a root of a negative number; ** would return a complex number.
+_OPERATORS: Final[dict[str, Callable[[float, float], float]]] = {
     "+": add, "-": sub, "*": mul, "/": truediv, "^": math.pow,
 }  # fmt: skip
 
 
 def known_values(tree: Node, at: Mapping[str, float]) -> Known:
-    """The value of each node of ``tree`` by the node's id, for as long as the tree lives."""
+    """Map the id of each node of ``tree`` to its value. Valid as long as the tree exists."""
     known: Known = {}
     _learn(tree, at, known)
     return known
@@ -46,9 +46,9 @@ def _learn(node: Node, at: Mapping[str, float], known: Known) -> None:
 
 
 def value_at(node: Node, at: Mapping[str, float], known: Known) -> float:
-    """The value of ``node`` where the symbols have the values ``at``; nan where it has none.
+    """Return the value of ``node`` for the symbols' values ``at``; nan if it is undefined.
 
-    A node whose id is in ``known`` is not evaluated again.
+    Nodes whose ids are in ``known`` are not evaluated again.
     """
     try:
         return _value(node, at, known)
@@ -62,7 +62,7 @@ def _value(node: Node, at: Mapping[str, float], known: Known) -> float:
         return value
     if isinstance(node, Binary):
         left, right = _value(node.left, at, known), _value(node.right, at, known)
-        return _JOINED[node.operator](left, right)
+        return _OPERATORS[node.operator](left, right)
     if isinstance(node, Call):
         return _FUNCTIONS[node.function](*[_value(part, at, known) for part in node.arguments])
     if isinstance(node, SymbolNode):

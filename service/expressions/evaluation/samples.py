@@ -1,17 +1,18 @@
-"""A tree -> a program that computes its values at all samples at once.
+"""Compile a tree to a program that computes its values at all samples at once.
 
-A program is one tuple of the tree's parts, one behind the other. Each part begins with its key,
-which is the part in reverse Polish notation, and gives the places of its operands. This is
-2*cos(theta1):
+A program is one flat tuple of the tree's parts. Each part begins with its key, which is the part in
+reverse Polish notation, followed by its function and the places of its operands. The program of
+2*cos(theta1) is:
 
      0  "#2.0", None, 2.0
      3  "theta1", None
      5  "theta1 cos", "cos", 3, None
      9  "#2.0 theta1 cos *", "*", 0, 5
 
-Equal parts have equal keys, so that programs with a common ``memo`` compute cos(theta1) only once.
-Parts without symbols are computed here. Thousands of texts are remembered by their programs: the
-garbage collector does not visit a tuple of texts and numbers, but visits every tree and closure.
+Equal parts have equal keys, so programs with a common ``memo`` compute cos(theta1) only once. Parts
+without symbols are folded to constants. The programs of thousands of texts are memoized as flat
+tuples, because the garbage collector skips a tuple of strings and numbers but visits every tree and
+closure.
 """
 
 import operator
@@ -29,22 +30,22 @@ SampleArray = NDArray[np.float64]
 SymbolValues = Mapping[str, SampleArray]
 Memo = dict[str, Any]
 Function = Callable[..., Any]
-# Parts in a row, operands before their function, the whole last. A part is its key, the name of its
-# function and the places of its operands. A symbol has no function; a constant has None and its
-# value. A part that is too long to be met again has no key.
+# Consecutive parts, operands before their function; the whole expression is last. A part is its
+# key, the name of its function and the places of its operands. A symbol is its key and None; a
+# constant is its key, None and its value. The key of a part too long to occur again is None.
 Steps = tuple[Any, ...]
 
 _RADIANS: Final = {"deg": pi / 180, "rad": 1.0}
-# These may give a finite value for one that is not: 1/(1/0) must not be 0.
+# These may give a finite value for a non-finite operand, but 1/(1/0) must not be 0.
 _MAY_HIDE_NON_FINITE: Final = frozenset({"/", "^", "atan", "atan2", "exp"})
-# These may be undefined or infinite where their operands are neither.
+# These may be undefined or infinite although all operands are finite.
 _MAY_BE_NON_FINITE: Final = frozenset({"/", "^", "tan", "asin", "acos", "sqrt", "exp"})
-# A longer part is hardly written twice, and all such keys together would fill the memory.
+# Longer parts rarely occur twice, and their keys would need much memory.
 _LONGEST_KEY: Final = 100
 
 
 def _strict(function: Function) -> Function:
-    """``function``, but undefined wherever one of its operands is not finite."""
+    """Return ``function`` changed so that it gives nan wherever an operand is not finite."""
 
     def apply(*operands: Any) -> Any:
         finite = np.isfinite(operands[0])
@@ -61,7 +62,7 @@ _FUNCTIONS: Final[dict[str | None, Function]] = {
     "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "sqrt": np.sqrt, "abs": np.absolute,
     "exp": np.exp,
 }  # fmt: skip
-# Python's own arithmetic gives the same bits in a tenth of the time, and warns of nothing.
+# Python's own arithmetic gives the same bits in a tenth of the time, without warnings.
 _EXACT: Final[dict[str, Function]] = {
     "+": operator.add, "-": operator.sub, "*": operator.mul, "negative": operator.neg,
 }  # fmt: skip
@@ -70,10 +71,10 @@ _FUNCTIONS.update({strict: _strict(_FUNCTIONS[name]) for name, strict in _STRICT
 
 
 class Program:
-    """The program of one expression, which uses at least one symbol. Immutable.
+    """The program of one expression with at least one symbol. Immutable.
 
-    ``whole`` is the place of the expression itself in its steps; ``symbol`` is the name of the
-    symbol where it is nothing else.
+    ``whole`` is the place of the whole expression in ``steps``. If the expression is a single
+    symbol, ``symbol`` is its name; else None.
     """
 
     __slots__ = ("steps", "symbol", "whole")
@@ -84,10 +85,10 @@ class Program:
         self.symbol: Final[str | None] = steps[0] if whole == 0 else None
 
     def __call__(self, values: SymbolValues, memo: Memo) -> Any:
-        """The value for each sample, given the ``values`` of each symbol, of shape (samples,).
+        """Return the value for each sample, given the ``values`` of each symbol, ``(samples,)``.
 
-        The memo is empty, or was used at the same values. Where a part is undefined, the
-        whole is; numpy warns of it, unless warnings are off.
+        ``memo`` must be empty or used before with the same values. An undefined part makes the
+        whole undefined; numpy warns of it unless warnings are off.
         """
         if not memo:
             memo.update(values)
@@ -96,7 +97,7 @@ class Program:
 
 
 def _value(steps: Steps, at: int, memo: Memo) -> Any:
-    """The value of the part at ``at``, which is not in the memo."""
+    """Compute the value of the part at ``at``, which is not in the memo yet."""
     key, name = steps[at], steps[at + 1]
     if name is None:
         if key[0] != "#":
@@ -121,7 +122,7 @@ def _value(steps: Steps, at: int, memo: Memo) -> Any:
 
 
 def compile_tree(tree: Node) -> Program | float:
-    """The program of ``tree``, or its value where it has no symbols."""
+    """Return the program of ``tree``, or its value if it has no symbols."""
     compiler = _Compiler()
     whole = compiler.part(tree)
     value = compiler.constants.get(whole)
@@ -134,7 +135,7 @@ def _sine_or_cosine_key(function: str, symbol: str) -> str:
 
 
 class _Compiler:
-    """The steps of one tree, and by place the constants and the parts that may be non-finite."""
+    """The steps of one tree, and the places of constants and of parts that may be non-finite."""
 
     __slots__ = ("constants", "maybe_non_finite", "steps")
 
@@ -144,8 +145,8 @@ class _Compiler:
         self.maybe_non_finite: set[int | None] = set()
 
     def part(self, node: Node) -> int:
-        """Append the steps of ``node``; return its place."""
-        # A chain of types takes a third of the time of ``match``, and this is on the grading path.
+        """Append the steps of ``node``; return their place."""
+        # Comparing types takes a third of the time of ``match``, and this is on the grading path.
         kind = type(node)
         if kind is Binary:
             left, right = self.part(node.left), self.part(node.right)  # type: ignore[union-attr]
@@ -169,7 +170,7 @@ class _Compiler:
         return self._constant(pi)
 
     def _sine_or_cosine(self, function: str, symbol: str) -> int:
-        """Append the sine or cosine of a symbol, for a matrix has hundreds; return its place."""
+        """Append the sine or cosine of a symbol; return its place. A fast path."""
         steps = self.steps
         at = len(steps)
         steps += (symbol, None, _sine_or_cosine_key(function, symbol), function, at, None)
@@ -184,14 +185,14 @@ class _Compiler:
         return at
 
     def _apply(self, name: str, left: int, right: int | None = None) -> int:
-        """Append a function of parts, folded where all of them are constants; return its place."""
+        """Append a function of parts, or its value if all are constants; return its place."""
         constants, steps = self.constants, self.steps
         if constants:
             if name == "^" and right is not None and constants.get(right) == 2.0:
-                self._take_out(right)
+                self._remove(right)
                 name, right = "²", None
             if left in constants and (right is None or right in constants):
-                return self._folded(name, self._take_out(left, right))
+                return self._folded(name, self._remove(left, right))
         at = len(steps)
         if self.maybe_non_finite and not self.maybe_non_finite.isdisjoint((left, right)):
             name = _STRICT.get(name, name)
@@ -206,8 +207,8 @@ class _Compiler:
         steps += (key, name, left, right)
         return at
 
-    def _take_out(self, *places: int | None) -> list[float]:
-        """Take out the constants at these places, which are the last steps; return their values."""
+    def _remove(self, *places: int | None) -> list[float]:
+        """Remove the constants at these places, which are the last steps; return their values."""
         taken = [at for at in places if at is not None]
         self.maybe_non_finite.difference_update(taken)
         del self.steps[taken[0] :]

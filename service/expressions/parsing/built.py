@@ -1,6 +1,6 @@
-"""Functions that are no nodes of a tree, but are built from others: sec, pow, hypot.
+"""Build functions such as sec, pow and hypot from the functions that a tree may contain.
 
-So that whatever works on trees knows one form of each formula.
+This way, a formula has the same tree in all its spellings.
 """
 
 from collections.abc import Sequence
@@ -14,8 +14,8 @@ _OPERATORS: Final[dict[str, Operator]] = {
 }  # fmt: skip
 
 
-def built(name: str, arguments: Sequence[Node], start: int, end: int) -> Node:
-    """The function ``name`` of ``BUILT`` of ``arguments``, which are as many as it takes."""
+def build_function(name: str, arguments: Sequence[Node], start: int, end: int) -> Node:
+    """Return the tree of a function of ``BUILT``. The number of arguments must be right."""
     if name in RECIPROCALS:
         one = Number(1.0, "1", start, start)
         return Binary("/", one, Call(RECIPROCALS[name], tuple(arguments), start, end), start, end)

@@ -1,9 +1,9 @@
-"""Where a student works in degrees: which bare numbers of a tree are degrees.
+"""Add the unit of degrees to bare numbers in a tree, for a student who works in degrees.
 
-An angle context is the argument of sin, cos and tan, and the whole of an entry that asks for an
-angle. There a constant term without π, a unit or an inverse function is in degrees; joint variables
-and angle symbols hold radians. ``cos(q1 + 90)`` becomes ``cos(q1 + 90deg)``. The argument of sind,
-cosd and tand is such a context wherever a student works; they become sin, cos and tan.
+An angle context is the argument of sin, cos or tan, or a whole entry that is an angle. In it, a
+constant term is in degrees unless it contains π, a unit or an inverse function; joint variables and
+angle symbols are in radians. ``cos(q1 + 90)`` becomes ``cos(q1 + 90deg)``. The argument of sind,
+cosd or tand is an angle context for every student; these functions become sin, cos and tan.
 """
 
 from typing import NamedTuple
@@ -24,7 +24,7 @@ from service.expressions.vocabulary.functions import INVERSE, OF_DEGREES, TRIGON
 
 
 class _Facts(NamedTuple):
-    """Facts of a node: whether it has no symbol, is an angle in radians, and is one by its π."""
+    """Facts about a node: it has no symbol, it is an angle in radians, it is an angle by its π."""
 
     constant: bool
     angle: bool
@@ -32,22 +32,22 @@ class _Facts(NamedTuple):
 
 
 def in_degrees(tree: Node, *, is_angle: bool, notes: list[Note]) -> Node:
-    """``tree`` with the unit of degrees on the bare constants in its angle contexts.
+    """Return ``tree`` with the unit of degrees on bare constants in angle contexts.
 
-    ``is_angle`` tells whether the whole entry is an angle. A constant written with π stays in
-    radians and is added to ``notes``.
+    ``is_angle`` is True if the whole entry is an angle. A constant written with π stays in radians,
+    with a note in ``notes``.
     """
     conversion = _Conversion(tree, notes, TRIGONOMETRIC)
     return conversion.angle(tree) if is_angle else conversion.plain(tree)
 
 
 def without_degree_functions(tree: Node, *, notes: list[Note]) -> Node:
-    """``tree`` with cos(60deg) for cosd(60), for a student who works in radians."""
+    """Return ``tree`` with cos(60deg) for cosd(60), for a student who works in radians."""
     return _Conversion(tree, notes, frozenset()).plain(tree)
 
 
 class _Conversion:
-    """One conversion, which finds the facts of each node once."""
+    """One conversion of a tree. The facts about each node are computed once."""
 
     def __init__(self, tree: Node, notes: list[Note], functions: frozenset[str]) -> None:
         self.notes = notes
@@ -61,7 +61,7 @@ class _Conversion:
         return facts
 
     def plain(self, node: Node) -> Node:
-        """Convert the angle contexts inside ``node``, which is not one itself."""
+        """Convert the angle contexts inside ``node``, which is not an angle context itself."""
         match node:
             case Binary(operator, left, right):
                 return Binary(operator, self.plain(left), self.plain(right), node.start, node.end)
@@ -97,7 +97,7 @@ class _Conversion:
                 return self.plain(node)
 
     def _constant(self, node: Node) -> Node:
-        """Give a constant term its unit, unless it carries one."""
+        """Add degrees to a constant term, unless it is an angle already."""
         facts = self.facts[id(node)]
         if facts.pi:
             message = (
@@ -110,7 +110,7 @@ class _Conversion:
         return Unit(self.plain(node), "deg", node.start, node.end)
 
     def _product(self, node: Node, left: Node, right: Node) -> Node:
-        """Find the one factor that is the angle: 2*(q1 + 45), k*90."""
+        """Convert the one factor that is an angle: 2*(q1 + 45), k*90."""
         one, other = self.facts[id(left)], self.facts[id(right)]
         angles = one.angle, other.angle
         if angles == (False, False):
@@ -121,7 +121,7 @@ class _Conversion:
 
 
 def _facts(node: Node, below: list[_Facts]) -> _Facts:
-    """The facts of ``node``, given those of its children."""
+    """Return the facts about ``node``, given the facts about its children."""
     constant = all(facts.constant for facts in below)
     angle = any(facts.angle for facts in below)
     pi = any(facts.pi for facts in below)
@@ -135,7 +135,7 @@ def _facts(node: Node, below: list[_Facts]) -> _Facts:
         case Call("abs"):
             return _Facts(constant, angle, pi)
         case Call(function):
-            # A sine is no angle, whatever its argument.
+            # A sine is not an angle, even if its argument is one.
             return _Facts(constant, function in INVERSE, False)
         case _:
             return _Facts(constant, angle, pi)

@@ -1,6 +1,6 @@
-r"""An equation whose left side is a name: x = l1 c1, p_x := l1 c1, T(1,4) = l1 c1, = cos(q1).
+r"""Equations whose left side is a name: x = l1 c1, p_x := l1 c1, T(1,4) = l1 c1, = cos(q1).
 
-Its value is the right side. The left side becomes blanks, so that all places stay as typed.
+Only the right side is read. The left side is replaced by blanks, so that all places are unchanged.
 """
 
 import re
@@ -33,19 +33,19 @@ _LEFT: Final = re.compile(
 )
 _EQUALS: Final = re.compile(r"=|≔|\\coloneqq(?![A-Za-z])|≈|≡|\\(?:approx|equiv)(?![A-Za-z])|[<>≤≥]")
 _WORD: Final = re.compile(r"[A-Za-z]+[0-9]*")
-# Names in brackets, which may be the factors of a product. The time is none.
+# A name in brackets, which may be a factor of a product. The time, as in q1(t), is not a factor.
 _OF_NAMES: Final = re.compile(r"[(\[{]\s*+(?!t\s*+\))[^0-9\s]")
 
 
 class LeftSide(NamedTuple):
-    """The name in front of an equals sign, with single blanks; ``span`` holds both, [from, to)."""
+    """The name before an equals sign, with single blanks. ``span`` includes the equals sign."""
 
     name: str
     span: Span
 
 
 def left_side(source: str, vocabulary: Vocabulary) -> LeftSide | None:
-    """The name before the equals sign of an equation; None for any other text."""
+    """Return the name before the equals sign of an equation; None for any other text."""
     if "=" not in source and "≔" not in source and r"\coloneqq" not in source:
         return None
     found = _LEFT.match(source)
@@ -57,7 +57,7 @@ def left_side(source: str, vocabulary: Vocabulary) -> LeftSide | None:
 
 
 def right_side(source: str, vocabulary: Vocabulary) -> tuple[str, Note | None]:
-    """``source`` with blanks for the name before its equals sign, and a note on that."""
+    """Return ``source`` with blanks for a name and its equals sign, and a note if there are any."""
     left = left_side(source, vocabulary)
     if left is None:
         return source, None
@@ -69,7 +69,7 @@ def right_side(source: str, vocabulary: Vocabulary) -> tuple[str, Note | None]:
 
 
 def _is_name(found: re.Match[str], vocabulary: Vocabulary) -> bool:
-    """Whether the side is a name, and neither a function nor a product: cos, l1 (c1 + c2)."""
+    """True if the left side is a name, and not a function or a product: cos, l1 (c1 + c2)."""
     words = _WORD.findall(found["name"] or "")
     pieces = split(words[-1], vocabulary) if words else None
     if pieces is None:

@@ -1,6 +1,6 @@
 r"""Tokens -> a syntax tree, by recursive descent.
 
-The grammar, in which a word in capitals is a token and { } may stand any number of times:
+In the grammar, a word in capitals is a token, and { } repeats any number of times, also none:
 
     sum       = product { (PLUS | MINUS) product }
     product   = signed { (STAR | SLASH) signed | JOIN power }
@@ -14,15 +14,15 @@ The grammar, in which a word in capitals is a token and { } may stand any number
     bare_call = FUNCTION argument
     argument  = simple { UNIT } [ POWER exponent ] | simple TIGHT power | bare_call
 
-``JOIN`` is a product that is not written: ``2q1``, ``l1 c1``, ``a(b)``. ``TIGHT`` is one that stays
-inside the argument of a function without brackets: ``sin 2q1`` is ``sin(2q1)``. Such a function
-takes one operand, so ``sin q1 * l1`` is ``sin(q1)*l1``. ``OPEN`` and ``CLOSE`` surround a fraction
-that stands as one, ``½`` or ``\frac{a}{b}``. A power of a power has two readings, so ``2^3^2`` is
-not in the grammar.
+``JOIN`` is a product without a sign: ``2q1``, ``l1 c1``, ``a(b)``. ``TIGHT`` is such a product in
+the argument of a function without brackets: ``sin 2q1`` is ``sin(2q1)``. Such a function takes one
+operand, so ``sin q1 * l1`` is ``sin(q1)*l1``. ``OPEN`` and ``CLOSE`` enclose a fraction that is one
+unit, ``½`` or ``\frac{a}{b}``. A power of a power has two readings, so ``2^3^2`` is not in the
+grammar.
 
-Only brackets are parsed by recursion, and the lexer lets at most ``LIMITS.depth`` of them be open.
-Whatever else may be repeated without end (signs, roots, powers, functions without brackets) waits
-on a list for its operand, so that no text comes near Python's recursion limit.
+Only brackets are parsed by recursion, and the lexer allows at most ``LIMITS.depth`` open brackets.
+All else that can be repeated (signs, roots, powers, functions without brackets) is kept in a list
+until its operand is parsed, so no text comes near Python's recursion limit.
 """
 
 from collections.abc import Callable, Sequence
@@ -37,14 +37,14 @@ from service.expressions.tree import Node, Operator
 # Signs, powers and functions that wait for their operand.
 _Pending = list[Callable[[Node], Node]]
 _SIMPLE: Final = frozenset({"NAME", "NUMBER"})
-_BEHIND: Final = frozenset({"UNIT", "POWER"})
+_POSTFIXES: Final = frozenset({"UNIT", "POWER"})
 _SUMS: Final[dict[str, Operator]] = {"PLUS": "+", "MINUS": "-"}
 
 
 def parse(tokens: Sequence[Token], builder: Builder) -> Node:
-    """The tree that ``builder`` makes of ``tokens``, which end in ``END``.
+    """Return the tree that ``builder`` makes of ``tokens``, whose last token is ``END``.
 
-    Raises UnreadableError, with the index of the first token that cannot follow those before it.
+    Raises UnreadableError with the index of the first token that the grammar does not allow.
     """
     parser = _Parser(tokens, builder)
     tree = parser.sum()
@@ -53,10 +53,10 @@ def parse(tokens: Sequence[Token], builder: Builder) -> Node:
 
 
 class _Parser:
-    """The grammar's rules; ``at`` is the index of the next token.
+    """One method for each rule of the grammar; ``at`` is the index of the next token.
 
-    The method ``power`` holds the rules from ``power`` to ``postfix``, ``bare_call`` and
-    ``argument``, so that they need no recursion.
+    The method ``power`` implements the rules ``power``, ``exponent``, ``postfix``, ``bare_call``
+    and ``argument`` without recursion.
     """
 
     __slots__ = ("at", "builder", "tokens")
@@ -67,7 +67,7 @@ class _Parser:
         self.at = 0
 
     def take(self, terminal: str) -> Token:
-        """The next token, which must be a ``terminal``."""
+        """Consume and return the next token, which must be a ``terminal``."""
         token = self.tokens[self.at]
         if token[0] != terminal:
             raise self.unexpected()
@@ -75,7 +75,7 @@ class _Parser:
         return token
 
     def unexpected(self) -> UnreadableError:
-        """The error that the next token cannot follow those before it."""
+        """Return the error for a next token that the grammar does not allow."""
         place = self.tokens[self.at][2:]
         return UnreadableError("grammar", place, tokens=self.tokens, index=self.at)
 
@@ -103,9 +103,9 @@ class _Parser:
                 return left
 
     def signed(self) -> Node:
-        # Fast, for most factors are such: a name or a number with nothing before or behind it.
+        # A fast path for most factors: a name or a number without a sign, a unit or a power.
         tokens, at = self.tokens, self.at
-        if tokens[at][0] in _SIMPLE and tokens[at + 1][0] not in _BEHIND:
+        if tokens[at][0] in _SIMPLE and tokens[at + 1][0] not in _POSTFIXES:
             self.at += 1
             node: Node = tokens[at][1]
             return node
@@ -125,7 +125,7 @@ class _Parser:
             self.at += 1
 
     def power(self, pending: _Pending) -> Node:
-        """The next power, after the ``pending`` signs before it have been applied to it."""
+        """Parse the next power, and apply the ``pending`` signs to it."""
         tokens, builder = self.tokens, self.builder
         is_argument = is_exponent = False
         while True:

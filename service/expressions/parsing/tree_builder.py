@@ -1,6 +1,6 @@
-"""A node for each rule of the grammar, and notes where others may read the text otherwise.
+"""Build the node of each rule of the grammar, and note passages with another possible reading.
 
-The parser calls each method once the rule's operands are built.
+The parser calls the method of a rule after the rule's operands are built.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -8,7 +8,7 @@ from typing import Final
 
 from service.expressions.errors import Note, UnreadableError, shortened
 from service.expressions.limits import LIMITS
-from service.expressions.parsing.built import built
+from service.expressions.parsing.built import build_function
 from service.expressions.parsing.lexing.literal_notes import on_call, on_shorthand, on_sum
 from service.expressions.parsing.lexing.tokens import Token
 from service.expressions.tree import (
@@ -26,8 +26,8 @@ from service.expressions.tree import (
 from service.expressions.vocabulary.functions import ARITY, BUILT, INVERSE, OF_DEGREES
 from service.expressions.vocabulary.symbols import Symbol
 
-_LOOKED_AT: Final = 64
-# Notes that a number was read in radians.
+_MOST_PARTS: Final = 64
+# The codes of notes that a number was read in radians.
 _ON_RADIANS: Final = frozenset({"bare_radians", "mixed_units"})
 
 
@@ -46,7 +46,7 @@ class Builder:
         *,
         degrees: bool = False,
     ) -> None:
-        """``turning`` are the variables of the joints that turn, by joint."""
+        """``turning`` maps each revolute joint to its variable."""
         self.source = source
         self.notes = notes
         self.turning = turning
@@ -69,7 +69,7 @@ class Builder:
         return Binary("*", left, right, left.start, right.end)
 
     def divide(self, left: Node, right: Node) -> Node:
-        """Build left / right, with a note on ``sin q1/2``; √2/2 has one reading only."""
+        """Build left / right, with a note on ``sin q1/2``, but not on √2/2."""
         if not (
             type(left) is Call and left.function == "sqrt" and type(left.arguments[0]) is Number
         ):
@@ -77,7 +77,7 @@ class Builder:
         return Binary("/", left, right, left.start, right.end)
 
     def join(self, left: Node, right: Node) -> Node:
-        """Build a product that is not written, with a note on ``1/2q1``."""
+        """Build a product without a sign, with a note on ``1/2q1``."""
         if type(left) is Binary and left.operator == "/" and self._is_open(left):
             message = (
                 f"This was read from left to right, as ({self._text(left)})*{self._text(right)}. "
@@ -99,21 +99,21 @@ class Builder:
         return Negation(operand, sign, operand.end)
 
     def keep(self, sign: int, operand: Node) -> Node:
-        """Build +operand, which is the operand."""
+        """Return the operand for +operand; its span includes the sign."""
         operand.start = sign
         return operand
 
     def raise_to(self, base: Node, caret: int, exponent: Node) -> Node:
         """Build base ^ exponent.
 
-        Raises UnreadableError for 90^0, whose 0 may be the sign of degrees.
+        Raises UnreadableError for 90^0, which may mean 90°.
         """
         if type(exponent) is Number and not exponent.value and self._may_be_degrees(base):
             raise UnreadableError("raised_zero", (caret, exponent.end), power=True)
         return Binary("^", base, exponent, base.start, exponent.end)
 
     def unit(self, operand: Node, unit: UnitName, end: int) -> Node:
-        """Build an operand with a unit. Raises UnreadableError where it is not a number."""
+        """Build an operand with a unit. Raises UnreadableError for an angle or a length."""
         span = (operand.start, end)
         for node in _outside_calls(operand):
             if type(node) is Unit or (type(node) is Call and node.function in INVERSE):
@@ -142,7 +142,7 @@ class Builder:
     def call(self, function: Token, arguments: list[Node], end: int) -> Node:
         """Build a function of arguments in brackets.
 
-        Raises UnreadableError for a wrong number of them.
+        Raises UnreadableError for a wrong number of arguments.
         """
         _, (name, _), start, _ = function
         if name == "atan" and len(arguments) == 2 and self._is_mathematica(function):
@@ -160,7 +160,7 @@ class Builder:
     def bare_call(self, function: Token, argument: Node) -> Node:
         """Build a function of one argument without brackets.
 
-        Raises UnreadableError for a function of two.
+        Raises UnreadableError for a function that needs brackets.
         """
         name = function[1][0]
         if _arity(name) != 1 or name == "deg" or name == "rad":
@@ -175,14 +175,14 @@ class Builder:
         _, (name, power), start, _ = function
         if name in OF_DEGREES:
             self.degree_functions = True
-            # Numbers inside are in degrees after all.
+            # The numbers inside are in degrees, so remove notes that they were read in radians.
             inside = (each for each in self.notes if each.span[0] >= start)
             untrue = [each for each in inside if each.code in _ON_RADIANS]
             self.notes[:] = [each for each in self.notes if each not in untrue]
         self._add_note(on_call(name, arguments[0], self.turning, degrees=self.degrees))
         call: Node = Call(name, arguments, start, end)
         if name in BUILT:
-            call = built(name, arguments, start, end)
+            call = build_function(name, arguments, start, end)
             self.grouped.add(id(call))
         if power is None:
             return call
@@ -193,25 +193,25 @@ class Builder:
         return self.source[start:end] == "ArcTan" and self.source[end : end + 1] == "["
 
     def _angle_of_point(self, function: Token, arguments: list[Node], end: int) -> Node:
-        """Build ArcTan[x, y], whose order is the other than that of atan2(y, x)."""
+        """Build atan2(y, x) from Mathematica's ArcTan[x, y]."""
         (_, (_, power), start, stop), (x, y) = function, arguments
         message = "Mathematica's ArcTan[x, y] was read as atan2(y, x)."
         self._note("atan2_order", message, start, end)
         return self._called(("FUNCTION", ("atan2", power), start, stop), (y, x), end)
 
     def _may_be_degrees(self, base: Node) -> bool:
-        """Whether ``base`` is made of numbers alone, and is not the ten of 3*10^0."""
+        """True if ``base`` consists of numbers, and is not the ten of 3*10^0."""
         if type(base) is Number and base.literal == "10":
             times = ("*", "×", "·", "⋅", r"\cdot", r"\times")
             return not self.source[: base.start].rstrip().endswith(times)
         return all(type(part) in {Number, Negation, Binary} for part in _outside_calls(base))
 
     def _is_open(self, node: Node) -> bool:
-        """Whether ``node`` was written without brackets around it; a bar counts as brackets."""
+        """True if ``node`` was written without brackets or a fraction bar."""
         return id(node) not in self.grouped and id(node) not in self.barred
 
     def _note_degrees(self, left: Node, right: Node) -> None:
-        """Note 90 + 45°, where only one of the two is in degrees."""
+        """Note a sum such as 90 + 45°, in which only one number is in degrees."""
         for one, other in ((left, right), (right, left)):
             number = other.operand if type(other) is Negation else other
             if type(one) is not Unit or one.unit != "deg" or type(number) is not Number:
@@ -225,7 +225,7 @@ class Builder:
                 self._note("mixed_units", message, number.start, number.end)
 
     def _note_order(self, y: Node, x: Node, start: int, end: int) -> None:
-        """Note atan2(c1, s1) and atan2(x, y), whose arguments seem to be swapped."""
+        """Note atan2(c1, s1) or atan2(x, y), whose arguments seem to be swapped."""
         first, second = _names(y), _names(x)
         for ours, theirs in (("sin", "cos"), ("y", "x")):
             if theirs in first and ours in second and not {ours} & first and not {theirs} & second:
@@ -252,7 +252,7 @@ class Builder:
         self._note("bare_argument", message, start, end)
 
     def _note_bare(self, left: Node) -> None:
-        """Note where ``left`` ends in a function without brackets: sin q1/2 is (sin q1)/2."""
+        """Note if ``left`` ends with a function without brackets: sin q1/2 is (sin q1)/2."""
         last = left
         while type(last) is Binary and self._is_open(last) and last.right.end == last.end:
             last = last.right
@@ -265,7 +265,7 @@ class Builder:
 
 
 def _outside_calls(node: Node) -> Iterator[Node]:
-    """The parts of ``node`` that are of its own kind: the argument of a sine is none."""
+    """Yield the parts of ``node`` that are not inside a function other than abs."""
     pending = [node]
     while pending:
         part = pending.pop()
@@ -275,11 +275,11 @@ def _outside_calls(node: Node) -> Iterator[Node]:
 
 
 def _names(node: Node) -> set[str]:
-    """The functions called, and the stems of the symbols used, anywhere in ``node``."""
+    """Return the functions and the stems of symbols in ``node``, of at most 64 parts."""
     found: set[str] = set()
     pending = [node]
-    # The arguments of atan2 may be long, and stand in one another.
-    for _ in range(_LOOKED_AT):
+    # The arguments of atan2 may be long and nested.
+    for _ in range(_MOST_PARTS):
         if not pending:
             break
         part = pending.pop()
@@ -292,7 +292,7 @@ def _names(node: Node) -> set[str]:
 
 
 def _arity(name: str, arguments: Sequence[Node] = ()) -> int:
-    """How many values a function takes; as many as there are where it takes any number."""
+    """Return the number of arguments that a function takes; any number is right for some."""
     number = BUILT.get(name)
     return ARITY.get(name, 1) if number is None else number or len(arguments)
 

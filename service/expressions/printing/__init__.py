@@ -1,1 +1,1 @@
-"""A syntax tree -> text, LaTeX, MathML."""
+"""Print a syntax tree as text, LaTeX or MathML."""

@@ -1,27 +1,27 @@
-"""The one rule for brackets of the three printers.
+"""The rule for brackets that all three printers share.
 
-An operand stands in brackets where it binds less than its place needs, and where a sign would
-stand behind an operator. A drawn formula (LaTeX, MathML) needs fewer of them than text: the bar of
-a fraction groups what a ``/`` does not. But a power needs more: ``90°`` and ``1·10⁻³`` are more
-than one sign there.
+An operand needs brackets if it binds less tightly than its place requires, or if its sign would
+follow an operator. A drawn formula (LaTeX, MathML) needs fewer brackets than text for quotients,
+because a fraction bar groups, but more for the base of a power, because ``90°`` and ``1·10⁻³``
+consist of several signs.
 """
 
 from typing import Final
 
 from service.expressions.tree import Binary, Negation, Node, Number, Unit
 
-# How tightly a form binds, and how tightly an operand has to bind in a place.
+# How tightly a node binds, and how tightly an operand must bind in a place.
 SUM, PRODUCT, SIGNED, POWER, ATOM = range(5)
 _OPERATORS: Final = {"+": SUM, "-": SUM, "*": PRODUCT, "/": PRODUCT, "^": POWER}
 
 
 def needs_brackets(node: Node, place: int, *, signed: bool, drawn: bool = True) -> bool:
-    """Whether ``node`` needs brackets as an operand in ``place``, in a drawn formula or in text.
+    """True if ``node`` needs brackets as an operand in ``place``, in a drawn formula or in text.
 
-    ``signed`` tells whether it would put a sign behind an operator.
+    ``signed`` is True if its sign would follow an operator.
     """
     precedence = ATOM
-    # A chain of types takes a third of the time of ``match``.
+    # Comparing types takes a third of the time of ``match``.
     kind = type(node)
     if kind is Binary:
         operator = node.operator  # type: ignore[union-attr]
@@ -34,12 +34,12 @@ def needs_brackets(node: Node, place: int, *, signed: bool, drawn: bool = True) 
 
 
 def is_power_of_ten(node: Node) -> bool:
-    """Whether ``node`` is a number that is drawn as a product: ``1e-3``."""
+    """True if ``node`` is a number that is drawn as a product: ``1e-3``."""
     return type(node) is Number and "e" in node.literal.lower()
 
 
 def begins_with_digit(node: Node) -> bool:
-    """Whether ``node`` is drawn with a digit first, so that a product before it needs a dot."""
+    """True if ``node`` is drawn with a digit first, so that a product needs a dot before it."""
     match node:
         case Number():
             return True
@@ -48,7 +48,7 @@ def begins_with_digit(node: Node) -> bool:
         case Binary("^" | "*", left):
             return begins_with_digit(left)
         case Binary("/", left):
-            # A product needs its dot before a bar, too: 2½ is no product.
+            # A product needs a dot before a fraction, too: 2½ is not read as a product.
             return type(left) is not Negation
         case _:
             return False

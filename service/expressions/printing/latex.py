@@ -1,4 +1,4 @@
-"""A tree -> LaTeX, as typed and not rearranged."""
+"""Print a tree as LaTeX, as typed and not rearranged."""
 
 from typing import Final
 
@@ -19,7 +19,7 @@ _FUNCTIONS: Final = {
 
 
 def to_latex(node: Node) -> str:
-    """``node`` in LaTeX, for math mode."""
+    """Return ``node`` in LaTeX for math mode."""
     match node:
         case Number(literal=literal):
             return number(literal)
@@ -42,7 +42,7 @@ def _binary(node: Binary) -> str:
     if operator == "^":
         return _power(left, right)
     if operator == "/":
-        # The sign of -π/2 stands before the bar, as it was typed.
+        # The sign of -π/2 is drawn before the fraction, as typed.
         sign, upper = ("-", left.operand) if isinstance(left, Negation) else ("", left)
         return rf"{sign}\frac{{{to_latex(upper)}}}{{{to_latex(right)}}}"
     if operator == "*":
@@ -52,7 +52,7 @@ def _binary(node: Binary) -> str:
 
 
 def number(literal: str) -> str:
-    r"""A number in LaTeX: 1e-3 -> 1 \cdot 10^{-3}."""
+    r"""Return a number in LaTeX: 1e-3 -> 1 \cdot 10^{-3}."""
     mantissa, _, exponent = literal.lower().partition("e")
     return rf"{mantissa} \cdot 10^{{{int(exponent)}}}" if exponent else mantissa
 

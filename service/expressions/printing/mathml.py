@@ -1,4 +1,4 @@
-"""A tree -> presentation MathML, as typed and not rearranged."""
+"""Print a tree as presentation MathML, as typed and not rearranged."""
 
 import re
 from html import escape  # that of xml.sax would load an HTTP client
@@ -18,7 +18,7 @@ from service.expressions.vocabulary.symbols import Symbol
 
 _NAMES: Final = {"asin": "arcsin", "acos": "arccos", "atan": "arctan"}
 _OPERATORS: Final = {"+": "<mo>+</mo>", "-": "<mo>−</mo>"}
-# The LaTeX that a symbol may declare: a letter or a word, an index, and something raised.
+# The LaTeX that a symbol may declare: a letter or a word, an index, and a superscript.
 _WORD: Final = r"\\(?:mathrm|text|mathit|operatorname)\{([^{}]*)\}"
 _IN_COMMAND: Final = re.compile(_WORD)
 _PART: Final = rf"(?:\\[A-Za-z]+|\{{(?:[^{{}}]|{_WORD})*\}}|[A-Za-z0-9*'])"
@@ -32,12 +32,12 @@ _APPLY: Final = "<mo>&#x2061;</mo>"
 
 
 def to_mathml(node: Node) -> str:
-    """``node`` as one ``<math>`` element."""
+    """Return ``node`` as one ``<math>`` element."""
     return f'<math xmlns="http://www.w3.org/1998/Math/MathML">{_row(node)}</math>'
 
 
 def _row(node: Node) -> str:
-    """``node`` as one element."""
+    """Return ``node`` as one element inside ``<math>``."""
     match node:
         case Number(literal=literal):
             return _number(literal)
@@ -63,7 +63,7 @@ def _binary(node: Binary) -> str:
         return f"<msup>{_at(left, ATOM)}{_row(right)}</msup>"
     if operator == "/":
         if isinstance(left, Negation):
-            # The sign of -π/2 stands before the bar, as it was typed.
+            # The sign of -π/2 is drawn before the fraction, as typed.
             return _mrow(f"<mo>−</mo><mfrac>{_row(left.operand)}{_row(right)}</mfrac>")
         return f"<mfrac>{_row(left)}{_row(right)}</mfrac>"
     if operator == "*":
@@ -85,7 +85,7 @@ def _number(literal: str) -> str:
 
 
 def _variable(symbol: Symbol) -> str:
-    """A symbol as its LaTeX shows it: a letter with an index below and a mark above it."""
+    """Return a symbol as its LaTeX shows it: a letter with a subscript and a superscript."""
     match = None if symbol.latex is None else _LATEX.fullmatch(symbol.latex)
     if match is None:
         stem, index = stem_and_index(symbol.name)
@@ -107,7 +107,7 @@ def _unbraced(part: str) -> str:
 
 
 def _identifier(text: str) -> str:
-    """A letter, a word or an index, which may stand in a LaTeX command."""
+    """Return the element of a letter, a word or an index, given in LaTeX."""
     in_command = _IN_COMMAND.fullmatch(text)
     plain = in_command[1] if in_command else text.removeprefix("\\")
     plain = _STARS.get(plain, plain)
@@ -134,7 +134,7 @@ def _at(node: Node, place: int, *, first: bool = False) -> str:
 
 
 def _begins_with_sign(node: Node) -> bool:
-    """Whether a sign comes first, be it in brackets or above a bar."""
+    """True if ``node`` is drawn with a sign first, also in brackets or above a fraction bar."""
     while type(node) is Binary and node.operator != "^":
         node = node.left
     return type(node) is Negation

@@ -1,6 +1,6 @@
-"""The spelling of a student: the names, the unit of angles and the shorthand of the formulas.
+"""A student's spelling: the names of symbols, the unit of angles and the shorthand in formulas.
 
-A formula that answers a student is printed in it: ``q1 - 90°`` is not answered by
+Reports print formulas in the student's spelling: a student who writes ``q1 - 90°`` does not read
 ``theta1 - pi/2``.
 """
 
@@ -24,7 +24,7 @@ from service.expressions.tree import (
 from service.expressions.vocabulary.symbols import Symbol, Vocabulary, normal_form
 
 _LOWERED: Final = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
-# A word and an index behind it: θ_1, th1, q₁. LaTeX and q[0] are left aside.
+# A word followed by an index: θ_1, th1, q₁; not LaTeX and not q[0].
 _INDEXED: Final = re.compile(rf"([A-Za-z{greek.CLASS}]+_?)([0-9]+|[₀-₉]+)")
 _NAME: Final = re.compile(rf"[A-Za-z{greek.CLASS}][A-Za-z0-9_₀-₉{greek.CLASS}]*")
 _SHORT: Final = re.compile(r"[cs](?:_?[0-9]+|_\{[0-9]+\}|[₀-₉]+)")
@@ -32,7 +32,7 @@ _SHORT_NAME: Final = re.compile(r"[cs][0-9]+")
 _DEGREE_SIGN: Final = re.compile(r"[°º˚∘]|\\circ|\\degree")
 _DEGREE_WORD: Final = re.compile(r"(?<![A-Za-z])deg")
 _PI: Final = re.compile(r"π|(?<![A-Za-z])[Pp]i(?![A-Za-z])")
-# Nobody writes a constant angle of more than a whole turn in radians.
+# A constant angle of more than a whole turn in radians is meant in degrees.
 _WHOLE_TURN: Final = 6.2832
 _BARE: Final = ""
 
@@ -41,10 +41,10 @@ _BARE: Final = ""
 class Spelling:
     """How formulas are printed.
 
-    ``names`` are the symbols' names as typed, by their canonical names; a symbol that is not in it
-    keeps its own. ``degree`` stands behind a number of degrees: "deg", "°", or nothing where bare
-    numbers are degrees. ``in_degrees`` says that a constant angle is such a number, and no fraction
-    of π. With ``shorthand`` cos(q1 + q2) is c12.
+    ``names`` maps canonical names of symbols to typed names; other symbols keep their canonical
+    name. ``degree`` is printed after a number of degrees: "deg", "°", or "" if bare numbers are
+    degrees. With ``in_degrees``, constant angles are printed in degrees, not as fractions of π.
+    With ``shorthand``, cos(q1 + q2) is printed as c12.
     """
 
     names: Mapping[str, str] = field(default_factory=dict)
@@ -54,11 +54,11 @@ class Spelling:
     shorthand: bool = False
 
     def name(self, symbol: Symbol) -> str:
-        """The symbol's name."""
+        """Return the name under which the symbol is printed."""
         return self.names.get(symbol.name, symbol.name)
 
     def in_shorthand(self, call: Call) -> str | None:
-        """The sine or cosine of a sum of joint angles in shorthand; None where it has none."""
+        """Return a sine or cosine of joint angles in shorthand, or None if it has no shorthand."""
         if not self.shorthand or call.function not in ("sin", "cos"):
             return None
         joints = _added_joints(call.arguments[0])
@@ -67,7 +67,7 @@ class Spelling:
         return f"{call.function[0]}{''.join(map(str, joints))}"
 
     def renamed(self, node: Node) -> Node:
-        """The tree with symbols of the student's names, for LaTeX."""
+        """Return the tree with symbols renamed to the student's names, to print as LaTeX."""
         match node:
             case SymbolNode(symbol) if symbol.name in self.names:
                 name = _spelled_out(self.names[symbol.name])
@@ -87,7 +87,7 @@ PLAIN: Final = Spelling()
 
 
 class TypedFormula(NamedTuple):
-    """A formula as typed and as a tree; ``degrees`` says that bare angles in it are degrees."""
+    """A formula as typed and as a tree; ``degrees`` is True if its bare angles are degrees."""
 
     source: str
     tree: Node
@@ -95,12 +95,12 @@ class TypedFormula(NamedTuple):
 
 
 def _spelled_out(name: str) -> str:
-    """The name with its Greek letters as words and a plain index: θ_1 is theta1."""
+    """Return the name with Greek letters as words and a plain index: θ_1 -> theta1."""
     return "".join(greek.NAMES.get(letter, letter) for letter in normal_form(name))
 
 
 def _added_joints(node: Node) -> list[int]:
-    """The joints whose angles are added up, from left to right; none for anything else."""
+    """Return the joints in a sum of joint angles, from left to right; [] for any other node."""
     match node:
         case SymbolNode(Symbol(kind="angle", joint=int(joint))):
             return [joint]
@@ -115,10 +115,10 @@ def _added_joints(node: Node) -> list[int]:
 
 
 class Habits(NamedTuple):
-    """What one formula shows of its writer's spelling.
+    """The spelling that one formula shows.
 
-    ``unit`` is what constant angles are written with, None where it shows none, ``names`` those of
-    its symbols as typed, by their canonical names.
+    ``unit`` is the unit of constant angles (see ``_unit``), or None if there are none. ``names``
+    maps canonical names of symbols to typed names.
     """
 
     unit: str | None
@@ -127,15 +127,15 @@ class Habits(NamedTuple):
 
 
 def habits_of(formula: TypedFormula, vocabulary: Vocabulary) -> Habits:
-    """Return what one formula shows of its writer's spelling."""
+    """Return the spelling that one formula shows."""
     has_shorthand = any(_is_short(node, formula) for node in _nodes(formula.tree))
     return Habits(_unit(formula), _names(formula, vocabulary), has_shorthand)
 
 
 def spelling_of(formulas: Iterable[Habits], vocabulary: Vocabulary, *, degrees: bool) -> Spelling:
-    """The spelling of formulas: what most of them do, of equals the first.
+    """Return the common spelling of formulas: the most frequent unit, and the first names.
 
-    ``degrees`` says that bare angles are degrees where no formula shows a unit.
+    ``degrees`` is True if the student works in degrees, for formulas that show no unit.
     """
     names: dict[str, str] = {}
     angles: Counter[str] = Counter()
@@ -146,7 +146,7 @@ def spelling_of(formulas: Iterable[Habits], vocabulary: Vocabulary, *, degrees: 
         names = {**formula.names, **names}
         shorthand = shorthand or formula.has_shorthand
     shorthand = shorthand and not any(map(_SHORT_NAME.fullmatch, vocabulary.by_name))
-    names |= _likewise(names, vocabulary)
+    names |= _names_by_analogy(names, vocabulary)
     most = angles.most_common(1)
     unit = most[0][0] if most else _BARE if degrees else "pi"
     found = Spelling({name: typed for name, typed in names.items() if typed != name}, "pi", "deg")
@@ -154,7 +154,7 @@ def spelling_of(formulas: Iterable[Habits], vocabulary: Vocabulary, *, degrees: 
 
 
 def spelling_for(formula: TypedFormula, common: Spelling, vocabulary: Vocabulary) -> Spelling:
-    """The spelling to answer one formula in: with its own names, and its own unit of angles."""
+    """Return the common spelling with the names and the unit of angles of one formula."""
     unit = _unit(formula)
     common = replace(common, names={**common.names, **_names(formula, vocabulary)})
     if unit is None:
@@ -169,9 +169,9 @@ def _with_unit(spelling: Spelling, unit: str, *, degrees: bool) -> Spelling:
 
 
 def _unit(formula: TypedFormula) -> str | None:
-    """What the constant angles in a formula are written with; None where it shows none.
+    """Return how a formula writes constant angles, or None if it has none.
 
-    That is "pi" or "π", or what stands behind a number of degrees.
+    The result is "pi" or "π", or the unit after a number of degrees: "deg", "°" or "".
     """
     source, tree, degrees = formula
     if type(tree) is SymbolNode:  # as most are
@@ -199,9 +199,9 @@ def _nodes(tree: Node) -> Iterator[Node]:
 
 
 def _names(formula: TypedFormula, vocabulary: Vocabulary) -> dict[str, str]:
-    """The names of the symbols in a formula as they were typed."""
+    """Map the canonical name of each symbol in a formula to its typed name."""
     names: dict[str, str] = {}
-    # In c12 stands a sum of angles without their names, and in a long formula many times.
+    # Shorthand such as c12 contains no names of angles. Remember it, because it may occur often.
     nameless: set[tuple[str, str]] = set()
     for node in _nodes(formula.tree):
         if isinstance(node, SymbolNode) and (name := node.symbol.name) not in names:
@@ -224,17 +224,17 @@ def _typed(node: Node, formula: TypedFormula) -> str:
 
 
 def _is_name(typed: str, symbol: Symbol, vocabulary: Vocabulary) -> bool:
-    """Whether what was typed is one of the symbol's names, and can be typed again."""
+    """True if ``typed`` is a name of the symbol that can be typed again."""
     if typed == symbol.name:
         return True
     known = _NAME.fullmatch(typed) and vocabulary.by_name.get(normal_form(typed))
     return known == symbol
 
 
-def _likewise(names: Mapping[str, str], vocabulary: Vocabulary) -> dict[str, str]:
-    """The names of the other joint variables in the way of those that were typed.
+def _names_by_analogy(names: Mapping[str, str], vocabulary: Vocabulary) -> dict[str, str]:
+    """Return names for the other joint variables, formed like the typed ones.
 
-    A student who writes q1 writes q2, and one who writes θ_1 writes θ_2.
+    A student who writes q1 also writes q2; a student who writes θ_1 also writes θ_2.
     """
     found: dict[str, str] = {}
     joints = [symbol for symbol in vocabulary.symbols if symbol.joint is not None]

@@ -1,4 +1,4 @@
-"""The stem and the index of a symbol's name: theta1 is θ with index 1."""
+"""Split a symbol's name into stem and index: theta1 is θ with index 1."""
 
 import re
 from typing import Final
@@ -11,13 +11,13 @@ _UNDERSCORED: Final = re.compile(r"([A-Za-z0-9]+)_([A-Za-z0-9_]+)")
 
 
 def stem_and_index(name: str) -> tuple[str, str]:
-    """The stem of ``name`` and its index, which is empty where there is none."""
+    """Return the stem and the index of ``name``; the index may be empty."""
     match = _INDEXED.fullmatch(name) or _UNDERSCORED.fullmatch(name)
     return (match[1], match[2].replace("_", "")) if match else (name, "")
 
 
 def symbol_latex(symbol: Symbol) -> str:
-    r"""The symbol in LaTeX: theta1 -> \theta_{1}."""
+    r"""Return the symbol in LaTeX: theta1 -> \theta_{1}."""
     if symbol.latex is not None:
         return symbol.latex
     stem, index = stem_and_index(symbol.name)

@@ -1,4 +1,4 @@
-"""A tree -> normal text, which reads back to the same tree."""
+"""Print a tree as normal text, which reads back to the same tree."""
 
 from service.expressions.printing.brackets import ATOM, POWER, PRODUCT, needs_brackets
 from service.expressions.printing.spelling import PLAIN, Spelling
@@ -6,7 +6,7 @@ from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, S
 
 
 def to_text(node: Node, spelling: Spelling = PLAIN) -> str:
-    """``node`` in normal text with every product written: in canonical names, or as spelled."""
+    """Return ``node`` as normal text with all product signs, in canonical names or ``spelling``."""
     match node:
         case Number(literal=literal):
             return literal

@@ -1,7 +1,7 @@
 """Repair rules, one file each: why a text cannot be read, and how to repair it.
 
-They are tried in order, and the first that knows the slip answers: it names the slip, its place
-and what would be right, and offers the repaired text where one is near.
+The rules are tried in order. The first rule that recognizes the slip returns the error: what is
+wrong, where, and what to write instead, with the repaired text if there is one.
 """
 
 from typing import Final
@@ -22,9 +22,8 @@ from service.expressions.repairs import (  # isort: skip
 )  # fmt: skip
 from service.expressions.repairs.failure import Failure, RepairRule
 
-# The first rule answers a text beyond the limits, so that no other meets one; then come the rules
-# for the whole text, those for characters and words, and those for the grammar. The last rule
-# answers everything.
+# The first rule refuses texts beyond the limits, so that no other rule meets them. Then come rules
+# for whole texts, for characters and words, and for the grammar. The last rule always applies.
 RULES: Final[tuple[RepairRule, ...]] = (
     beyond_limits, not_a_number, dash, empty, comment, quotes, equation, plus_minus, prose,
     interval, not_finite, invisible_character, look_alike_character, mixed_number, decimal_comma,
@@ -38,18 +37,18 @@ RULES: Final[tuple[RepairRule, ...]] = (
 )  # fmt: skip
 
 
-# These look through the whole text, and know slips of short ones.
-_OF_SHORT_TEXTS: Final = frozenset({
+# Rules that search the whole text for slips of short texts.
+_SHORT_TEXT_RULES: Final = frozenset({
     dash, comment, quotes, equation, plus_minus, prose, interval, transpose, braced_stem,
     function_of_time, raised_zero, letter_x, tan_of_two, decimal_comma, trailing_punctuation,
 })  # fmt: skip
-_OF_ANY_TEXT: Final = tuple(rule for rule in RULES if rule not in _OF_SHORT_TEXTS)
+_LONG_TEXT_RULES: Final = tuple(rule for rule in RULES if rule not in _SHORT_TEXT_RULES)
 
 
 def explain(failure: Failure) -> ExpressionError:
-    """The error for ``failure``; its suggestion is None or can be read."""
+    """Return the error for ``failure``. Its suggestion is None or a readable text."""
     is_long = len(failure.source) > LIMITS.repaired
-    rules = _OF_ANY_TEXT if is_long else RULES
+    rules = _LONG_TEXT_RULES if is_long else RULES
     error = next(found for rule in rules if (found := rule.repair(failure)) is not None)
     if is_long:
         error.suggestion = None

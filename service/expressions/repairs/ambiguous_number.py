@@ -1,11 +1,11 @@
-"""2e1, where e1 is a declared symbol."""
+"""2e1 if e1 is a declared symbol: a power of ten or a product."""
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 
 
-@answers("ambiguous_number")
+@for_causes("ambiguous_number")
 def repair(failure: Failure) -> Repair:
-    """Name both readings, and offer the product."""
+    """Name both readings, and suggest the product."""
     product = failure.details["product"]
     message = (
         f"{quoted(failure.written)} may be a power of ten or a product. "

@@ -1,15 +1,15 @@
-"""sin45, the sine of a number or of joint angles."""
+"""sin45: the sine of a number or of the sum of joint angles 4 and 5."""
 
 import re
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 
 _GOES_ON = re.compile(r"\.?\w+")
 
 
-@answers("ambiguous_shorthand")
+@for_causes("ambiguous_shorthand")
 def repair(failure: Failure) -> Repair:
-    """Ask for brackets around what goes on, as sin2q1 does; else name both readings."""
+    """Suggest brackets if the argument continues (sin2q1); else name both readings."""
     function, names = failure.details["function"], failure.details["names"]
     digits = "".join(letter for letter in failure.written if letter.isdigit())
     start, end = failure.span
@@ -23,7 +23,7 @@ def repair(failure: Failure) -> Repair:
         f"{quoted(failure.written)} has two readings. Write {function}({names}) for the "
         f"joint angles or {function}({digits}) for the number."
     )
-    # Behind cos12(q1) stands a factor or an argument.
+    # In cos12(q1), the bracket may be a factor or an argument.
     is_followed = failure.source[end : end + 1] in {"(", "[", "{"}
     plain = None if is_followed else failure.replaced(f"{function}({names})")
     return error(failure, "ambiguous_shorthand", message, plain)

@@ -1,11 +1,11 @@
-"""A star behind a joint variable that may mark it or multiply it: k*q1*+s1."""
+"""A star after a joint variable that may mark it or multiply it: k*q1*+s1."""
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 
 
-@answers("ambiguous_star")
+@for_causes("ambiguous_star")
 def repair(failure: Failure) -> Repair:
-    """Name both readings, and offer the one without the star."""
+    """Name both readings, and suggest the text without the star."""
     (start, end) = failure.details["star"]
     variable = failure.source[failure.span[0] : start].strip()
     message = (

@@ -1,11 +1,11 @@
 """A unit before a bracket: 2deg(q1), degrees(90)."""
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 
 
-@answers("ambiguous_unit")
+@for_causes("ambiguous_unit")
 def repair(failure: Failure) -> Repair:
-    """Ask for the unit behind the number."""
+    """Ask for the unit after the number."""
     if not failure.details["opens"]:
         return None
     message = (

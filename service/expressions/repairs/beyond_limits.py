@@ -1,12 +1,12 @@
-"""A text too long, too large or nested too deep to be read."""
+"""A text that is too long, too large or nested too deep."""
 
 from service.expressions.limits import LIMITS
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 
 
-@answers("beyond")
+@for_causes("beyond")
 def repair(failure: Failure) -> Repair:
-    """Name the limit."""
+    """Name the limit that is exceeded."""
     limit = failure.details["limit"]
     if limit == "characters":
         message = (

@@ -1,10 +1,10 @@
-"""2^3^2, which has two readings."""
+"""2^3^2, a power of a power, which has two readings."""
 
 from service.expressions.parsing.lexing.tokens import OPERAND_ENDS
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 
 
-@answers("grammar")
+@for_causes("grammar")
 def repair(failure: Failure) -> Repair:
     """Ask for brackets."""
     if failure.terminal() != "POWER" or failure.terminal(1) not in OPERAND_ENDS:

@@ -1,4 +1,4 @@
-"""A comment behind the expression: % in MATLAB and LaTeX, # in Python, // and /* in C."""
+"""A comment after the expression: % in MATLAB and LaTeX, # in Python, // and /* in C."""
 
 import re
 
@@ -11,14 +11,14 @@ _OPERATOR = re.compile(r"[-+*/^=(,]")
 
 
 def repair(failure: Failure) -> Repair:
-    """Offer the text before the comment, or one slash where // was a division."""
+    """Suggest the text before the comment, or one slash if // may be a division."""
     match = _COMMENT.search(failure.source)
     if match is None:
         return None
-    before, behind = failure.source[: match.start()].rstrip(), failure.source[match.end() :].strip()
-    if not before or (match.group() == "%" and not behind):
+    before, after = failure.source[: match.start()].rstrip(), failure.source[match.end() :].strip()
+    if not before or (match.group() == "%" and not after):
         return None
-    division = f"{before}/{behind}"
+    division = f"{before}/{after}"
     if match.group() == "//" and failure.repaired(division) == division:
         message = (
             "// is a comment in some languages and a whole-number division in others. "
@@ -26,8 +26,8 @@ def repair(failure: Failure) -> Repair:
         )
         return error(failure, "comment", message, division, match.span())
     span = match.start(), len(failure.source)
-    # Behind the sign stands no comment, but a part of the formula.
-    if not _WORD.search(behind) or _OPERATOR.match(behind) or _OPERATOR.match(before[-1:]):
+    # The text after the sign seems to be part of the formula, not a comment.
+    if not _WORD.search(after) or _OPERATOR.match(after) or _OPERATOR.match(before[-1:]):
         before = ""
     message = f"The text after {match.group()} looks like a comment. Write only the formula."
     return error(failure, "comment", message, before or None, span)

@@ -1,4 +1,4 @@
-r"""∛x and \sqrt[3]{x}: roots other than the square root."""
+r"""Roots other than the square root: ∛x, \sqrt[3]{x}."""
 
 from service.expressions.repairs.failure import refusal
 

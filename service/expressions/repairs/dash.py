@@ -8,7 +8,7 @@ _DASH = re.compile(r"[-–—−‐‑‒―]+")
 
 
 def repair(failure: Failure) -> Repair:
-    """Ask for 0: a dash may mean zero, and it may mean nothing."""
+    """Suggest 0, and say that a dash may mean zero or nothing."""
     if _DASH.fullmatch(failure.source.strip()) is None:
         return None
     message = "A dash may mean zero or nothing. If the value is zero, write 0."

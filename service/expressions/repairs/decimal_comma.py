@@ -1,19 +1,19 @@
-"""1,5 and 1’5 for 1.5."""
+"""A comma or an apostrophe as decimal point: 1,5 or 1’5 for 1.5."""
 
 import re
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 
 _THOUSANDS = re.compile(r"(?<![0-9.,])[1-9][0-9]{0,2}(?:,000)+(?![0-9])")
-# A number whose decimal mark is an apostrophe, and one in which it may part thousands.
+# A number with an apostrophe as decimal mark, and one in which it may separate thousands.
 _APOSTROPHE = re.compile(r"(?<![\w.,'’‘´`′°])[0-9]+(['’‘´`′])[0-9]+(?![0-9.,'’‘´`′])")
 _IN_THOUSANDS = re.compile(r"[1-9][0-9]{0,2}\W[0-9]{3}")
 _POINT = "Write one number with a point."
 
 
-@answers("grammar", "transpose")
+@for_causes("grammar", "transpose")
 def repair(failure: Failure) -> Repair:
-    """Offer a point; for 1,000, which may be a thousand, name both readings."""
+    """Suggest a point; for 1,000, which may be a thousand, name both readings."""
     if failure.cause == "transpose":
         return _apostrophe(failure)
     start, end = failure.span
@@ -29,7 +29,7 @@ def repair(failure: Failure) -> Repair:
 
 
 def _apostrophe(failure: Failure) -> Repair:
-    """Offer a point for 1’5; 1’000 may be a thousand, too."""
+    """Suggest a point for 1’5, but not for 1’000, which may be a thousand."""
     numbers = _APOSTROPHE.finditer(failure.source)
     number = next((match for match in numbers if match.span(1) == failure.span), None)
     if number is None:

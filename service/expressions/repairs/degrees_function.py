@@ -1,16 +1,16 @@
-"""acosd and rad2deg, which give degrees, where angles are in radians."""
+"""acosd and rad2deg, which return degrees, if angles are in radians."""
 
 import re
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 from service.expressions.vocabulary.functions import IN_DEGREES
 
 _MODULE = re.compile(r"[A-Za-z]+\.$")
 
 
-@answers("degrees")
+@for_causes("degrees")
 def repair(failure: Failure) -> Repair:
-    """Offer the function that gives the angle itself."""
+    """Suggest the function that returns the angle in radians: acos for acosd."""
     plain = IN_DEGREES.get(failure.details["name"], "")
     advice = f"Write {plain}, which gives the angle." if plain else "Write the angle itself."
     start, end = failure.span

@@ -4,14 +4,14 @@ import re
 
 from service.expressions.characters import greek
 from service.expressions.parsing.lexing.words import split
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 
 _DETACHED = re.compile(rf"([A-Za-z{greek.CLASS}]+)[ _]+([0-9]+)(?![0-9.])")
 
 
-@answers("name")
+@for_causes("name")
 def repair(failure: Failure) -> Repair:
-    """Offer the two joined, where that is a name."""
+    """Suggest name and index without the space, if the result is a known name."""
     match = _DETACHED.match(failure.source, failure.span[0])
     if match is None or match.end(1) != failure.span[1]:
         return None

@@ -1,8 +1,8 @@
-"""e, i and j, which are no constants here."""
+"""e, i and j, which are not constants here."""
 
 import re
 
-from service.expressions.repairs.failure import Failure, Repair, absent, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, undeclared
 
 _REASONS = {
     "e": "Write a power of Euler's number as exp(x).",
@@ -12,13 +12,13 @@ _REASONS = {
 _POWER = re.compile(r"\s?(?:\^|\*\*)\s?(?:\(([^()]*)\)|\{([^{}]*)\}|([A-Za-z0-9]+))")
 
 
-@answers("name")
+@for_causes("name")
 def repair(failure: Failure) -> Repair:
-    """Offer exp(x) for a power of e; say that there are no complex numbers."""
+    """Suggest exp(x) for a power of e; for i and j, say that there are no complex numbers."""
     reason = _REASONS.get(failure.details["run"])
     if reason is None:
         return None
-    message = f"{absent(failure)} {reason}"
+    message = f"{undeclared(failure)} {reason}"
     (start, end), suggestion = failure.span, None
     power = _POWER.match(failure.source, end) if failure.details["run"] == "e" else None
     if power is not None:

@@ -1,4 +1,4 @@
-"""The argument of a repair rule, its type, and helpers of several rules."""
+"""The input and the result of a repair rule, and helpers that several rules share."""
 
 from collections.abc import Callable
 from functools import wraps
@@ -7,15 +7,15 @@ from typing import Final, Protocol
 from service.expressions.errors import Cause, ExpressionError, Span, UnreadableError, quoted
 from service.expressions.vocabulary.symbols import Vocabulary
 
-# The error for a failure, or None for another slip; its suggestion may be unreadable.
+# The error that a rule returns, or None if it does not apply. The suggestion may be unreadable.
 Repair = ExpressionError | None
 
 
 class Failure:
     """A text that could not be read, and the ``error`` that stopped the reader.
 
-    ``repaired`` reads another text: it returns that text where it can be read, else its own
-    repaired text, else None.
+    ``repaired`` tries another text. It returns this text if it is readable, else its own repaired
+    text, else None.
     """
 
     __slots__ = ("cause", "details", "repaired", "source", "span", "vocabulary")
@@ -29,7 +29,7 @@ class Failure:
     ) -> None:
         self.source: Final = source
         self.vocabulary: Final = vocabulary
-        # Each rule asks for the cause.
+        # Copied from ``error``, because every rule uses it.
         self.cause: Final[Cause] = error.cause
         self.span: Final = error.span
         self.details: Final = error.details
@@ -41,35 +41,37 @@ class Failure:
         return self.source[self.span[0] : self.span[1]]
 
     def replaced(self, text: str, span: Span | None = None) -> str:
-        """The source with ``text`` in place of ``span``, by default the span of the error."""
+        """Return the source with ``span`` (default: that of the error) replaced by ``text``."""
         start, end = span or self.span
         return self.source[:start] + text + self.source[end:]
 
     def terminal(self, back: int = 0) -> str:
-        """The token that the grammar could not take, or the one ``back`` before it.
+        """Return the terminal of the token that the grammar does not allow, or ``back`` before it.
 
-        Empty where there is none, or where something else stopped the reader.
+        Empty if there is no such token, or if the cause is not the grammar.
         """
         at = self.details["index"] - back if self.cause == "grammar" else -1
         return "" if at < 0 else self.details["tokens"][at][0]
 
     def place(self, back: int = 0) -> Span:
-        """The place of the token that ``terminal`` names."""
+        """Return the place of the token whose terminal is ``self.terminal(back)``."""
         token = self.details["tokens"][self.details["index"] - back]
         return token[2], token[3]
 
 
 class RepairRule(Protocol):
-    """A module with the rule for one kind of slip."""
+    """A module with the repair rule for one kind of slip."""
 
     __name__: str
 
     def repair(self, failure: Failure, /) -> Repair:
-        """The error for ``failure``, or None for another slip; its suggestion may be unreadable."""
+        """Return the error for ``failure``, or None if the rule does not apply."""
 
 
-def answers(*causes: Cause) -> Callable[[Callable[[Failure], Repair]], Callable[[Failure], Repair]]:
-    """Ask the rule only where the reader stopped for one of these causes."""
+def for_causes(
+    *causes: Cause,
+) -> Callable[[Callable[[Failure], Repair]], Callable[[Failure], Repair]]:
+    """Decorate a rule so that it applies only to these causes."""
 
     def decorate(rule: Callable[[Failure], Repair]) -> Callable[[Failure], Repair]:
         @wraps(rule)
@@ -82,8 +84,8 @@ def answers(*causes: Cause) -> Callable[[Callable[[Failure], Repair]], Callable[
 
 
 def refusal(cause: Cause, code: str, message: str) -> Callable[[Failure], Repair]:
-    """The rule that answers each failure of this cause with this message."""
-    return answers(cause)(lambda failure: error(failure, code, message))
+    """Return a rule that gives every failure of this cause the same message."""
+    return for_causes(cause)(lambda failure: error(failure, code, message))
 
 
 def error(
@@ -93,12 +95,12 @@ def error(
     suggestion: str | None = None,
     span: Span | None = None,
 ) -> ExpressionError:
-    """The error for ``failure``, by default at its span."""
+    """Return an error at ``span``, by default the span of ``failure``."""
     return ExpressionError(code, message, span or failure.span, suggestion)
 
 
-def absent(failure: Failure) -> str:
-    """The sentence that the name in the text is not declared."""
+def undeclared(failure: Failure) -> str:
+    """Return the sentence that the name at the failure is not declared."""
     name = quoted(failure.written)
     if failure.vocabulary.of_books:
         return f"There is no {name} here."
@@ -106,11 +108,18 @@ def absent(failure: Failure) -> str:
 
 
 def position(span: Span) -> str:
-    """The first character of ``span``, counted from 1."""
+    """Return the place of the first character of ``span`` for a message: "character 1"."""
     return f"character {span[0] + 1}"
 
 
 __all__ = [
-    "Failure", "Repair", "RepairRule", "absent", "answers", "error", "position", "quoted",
+    "Failure",
+    "Repair",
+    "RepairRule",
+    "error",
+    "for_causes",
+    "position",
+    "quoted",
     "refusal",
+    "undeclared",
 ]  # fmt: skip

@@ -2,14 +2,14 @@
 
 import re
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 
 _OF_TIME = re.compile(r"\s*(?:\\left)?\(\s*t\s*(?:\\right)?\)")
 
 
-@answers("name")
+@for_causes("name")
 def repair(failure: Failure) -> Repair:
-    """Offer the names without (t)."""
+    """Suggest the text without (t)."""
     without_time, count = _OF_TIME.subn("", failure.source)
     if failure.details["run"] != "t" or not count:
         return None

@@ -1,17 +1,17 @@
-"""sin^-1(x), which some read as asin(x) and others as 1/sin(x), and sin^k(x)."""
+"""Powers of functions: sin^-1(x), which may mean asin(x) or 1/sin(x), and sin^k(x)."""
 
 import re
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 
 _INVERSE = re.compile(r"(-\s*1|[({]\s*-\s*1\s*[)}])(?![0-9.])")
-# The same in the source, however it was raised.
+# An exponent -1 in the source text, in any notation.
 _END = re.compile(r"[\s^*]*(?:⁻\s*¹|[({]*\s*[-−–]\s*1(?:\s*[)}])*)")
 
 
-@answers("function_power")
+@for_causes("function_power")
 def repair(failure: Failure) -> Repair:
-    """Offer the inverse function, or ask for brackets with a power."""
+    """Suggest the inverse function for ^-1; else ask for the power of a bracket."""
     name, exponent = failure.details["name"], failure.details["exponent"]
     place = failure.details["function"]
     if not exponent.strip():

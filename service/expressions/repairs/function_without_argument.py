@@ -1,11 +1,11 @@
 """A function without its argument: sin, sin(), sin * q1."""
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 
 
-@answers("grammar")
+@for_causes("grammar")
 def repair(failure: Failure) -> Repair:
-    """Ask for the argument; offer sin(-q1) for sin -q1."""
+    """Ask for the argument; suggest sin(-q1) for sin -q1."""
     if failure.terminal(1) == "FUNCTION":
         span = failure.place(1)
     elif [failure.terminal(back) for back in (2, 1, 0)] == ["FUNCTION", "LEFT", "RIGHT"]:

@@ -1,18 +1,18 @@
-"""Indices of programs that name no symbol: q[6] on six joints, or two styles in one text."""
+"""Indices in brackets that do not name a symbol (q[6] with six joints), or in mixed styles."""
 
 import re
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 
-# A whole number in brackets: what stands in front of it is the unknown name.
+# A whole number in brackets; then the name before it is unknown, not the index.
 _NUMBERED = re.compile(r"\[\s{0,8}\d+\s{0,8}\]")
 _PLAINLY = "Write the index without brackets."
 _COUNTING = {"[": "Python counts from 0, so", "(": "MATLAB counts from 1, so"}
 
 
-@answers("index", "name")
+@for_causes("index", "name")
 def repair(failure: Failure) -> Repair:
-    """Say how it was counted, and offer the plain name."""
+    """Say how the index is counted, and suggest the name without brackets."""
     if failure.cause == "name":
         return _no_number(failure)
     details, written = failure.details, quoted(failure.written)
@@ -39,7 +39,7 @@ def repair(failure: Failure) -> Repair:
 
 
 def _no_number(failure: Failure) -> Repair:
-    """Refuse q[i] and q[-1]."""
+    """Return the error for an index that is not a whole number: q[i], q[-1]."""
     start, end = failure.span
     if failure.source[end : end + 1] != "[" or _NUMBERED.match(failure.source, end):
         return None

@@ -1,4 +1,4 @@
-"""A range of values in place of one value: [0, pi], 0 < q1 < pi, -180..180."""
+"""A range of values instead of one value: [0, pi], 0 < q1 < pi, -180..180."""
 
 import re
 

@@ -3,12 +3,12 @@
 import unicodedata
 
 from service.expressions.characters.unicode import is_invisible
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 
 
-@answers("invisible")
+@for_causes("invisible")
 def repair(failure: Failure) -> Repair:
-    """Name the character; offer the text without any, but not without an accent."""
+    """Name the character; suggest the text without invisible characters, unless it is an accent."""
     letter = failure.written
     name = unicodedata.name(letter, f"U+{ord(letter):04X}").lower()
     if unicodedata.category(letter) in {"Mn", "Me"} and not "\ufe00" <= letter <= "\ufe0f":

@@ -1,9 +1,9 @@
-"""Units behind a length: 0.5 m, 30cm."""
+"""Units after a length: 0.5 m, 30cm."""
 
 import re
 
 from service.expressions.parsing.lexing.tokens import OPERAND_ENDS
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 
 _UNIT = re.compile(
     r"(?:k|c|m|d|µ|μ)?m|in|inch|inches|ft|foot|feet|(?:centi|milli)?met(?:er|re)s?|[°]?C|kg|s|N"
@@ -11,9 +11,9 @@ _UNIT = re.compile(
 _OPERANDS = OPERAND_ENDS - {"UNIT"}
 
 
-@answers("name")
+@for_causes("name")
 def repair(failure: Failure) -> Repair:
-    """Ask for the bare number; offer it for metres only, for cm and mm change its size."""
+    """Ask for the bare number. Suggest it only for metres, because cm and mm change its value."""
     if failure.details["before"] not in _OPERANDS or not _UNIT.fullmatch(failure.written):
         return None
     message = "Write lengths without a unit, in the unit of the exercise."

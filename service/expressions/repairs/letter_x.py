@@ -1,15 +1,15 @@
-"""The letter x for a product: 2 x q1."""
+"""The letter x as product sign: 2 x q1."""
 
 from service.expressions.parsing.lexing.tokens import OPERAND_ENDS
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 
 
-@answers("name")
+@for_causes("name")
 def repair(failure: Failure) -> Repair:
-    """Offer * where a value stands on either side."""
+    """Suggest * if there is a value on either side."""
     run, (start, end) = failure.details["run"], failure.span
-    behind = failure.source[end - len(run) + 1 :].strip()
-    if run[0] not in "xX" or not behind or failure.details["before"] not in OPERAND_ENDS:
+    after = failure.source[end - len(run) + 1 :].strip()
+    if run[0] not in "xX" or not after or failure.details["before"] not in OPERAND_ENDS:
         return None
     message, span = "The letter x is a name. Write * for a product.", (start, start + 1)
     return error(failure, "letter_x", message, failure.replaced("*", span), span)

@@ -1,14 +1,14 @@
-"""Letters of another alphabet that look like those of a formula."""
+"""Letters of another alphabet that look like Latin or Greek letters."""
 
 import unicodedata
 
 from service.expressions.characters.unicode import LOOK_ALIKES
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 
 
-@answers("look_alike")
+@for_causes("look_alike")
 def repair(failure: Failure) -> Repair:
-    """Name the letter, and offer the text with all such letters replaced."""
+    """Name the letter, and suggest the text with all look-alike letters replaced."""
     letter = failure.written
     plain = LOOK_ALIKES[letter]
     message = (

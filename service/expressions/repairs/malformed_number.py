@@ -1,11 +1,11 @@
 """A number with two points: 1.2.3."""
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 
 
-@answers("values")
+@for_causes("values")
 def repair(failure: Failure) -> Repair:
-    """Say that it has more than one point."""
+    """Say that the number has more than one point."""
     if not failure.details["number"] or "." not in failure.written:
         return None
     message = f"{quoted(failure.written)} has more than one decimal point."

@@ -1,16 +1,16 @@
-"""(q1 + q2]: a bracket closed by one of another kind."""
+"""A bracket that is closed by a bracket of another kind: (q1 + q2]."""
 
 import re
 
 from service.expressions.characters.unicode import CLOSE
-from service.expressions.repairs.failure import Failure, Repair, answers, error, position, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, position, quoted
 
 _COMMAND = re.compile(r"\\(?:[dtc]?frac|sqrt)\s{0,8}$")
 
 
-@answers("mismatch")
+@for_causes("mismatch")
 def repair(failure: Failure) -> Repair:
-    """Name both brackets and their places; offer the partner of the first."""
+    """Name both brackets and their places; suggest the closing bracket that fits."""
     opener, wanted = failure.details["opener"], failure.details["wanted"]
     first = quoted(failure.source[slice(*opener)])
     if wanted == CLOSE or failure.span[0] == failure.span[1]:

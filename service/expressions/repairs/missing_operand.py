@@ -1,14 +1,14 @@
 """An operator, a unit or brackets without an operand."""
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 from service.expressions.repairs.trailing_operator import OPERATORS
 
 _BEFORE_VALUE = OPERATORS | {"LEFT", "OPEN", "COMMA", "TIGHT", "JOIN"}
 
 
-@answers("grammar", "ambiguous_unit")
+@for_causes("grammar", "ambiguous_unit")
 def repair(failure: Failure) -> Repair:
-    """Name the place where a value is missing; offer pi for PI()."""
+    """Name the place of the missing value; suggest pi for PI()."""
     before, terminal = failure.terminal(1), failure.terminal()
     if before and before not in _BEFORE_VALUE:
         return None

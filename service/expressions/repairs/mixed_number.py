@@ -1,15 +1,15 @@
-r"""2½ and 2\frac{1}{2}, which are a sum in one notation and a product in the other."""
+r"""A number before a fraction, which may be a sum or a product: 2½, 2\frac{1}{2}."""
 
 import re
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 
 _NUMBER = re.compile(r"([0-9.]+)\s*$")
 
 
-@answers("mixed_number")
+@for_causes("mixed_number")
 def repair(failure: Failure) -> Repair:
-    """Offer the sum, as such a number is read aloud."""
+    """Name both readings, and suggest the sum."""
     fraction = failure.details["fraction"]
     start, end = failure.span
     number = _NUMBER.search(failure.source[:start])

@@ -1,4 +1,4 @@
-"""The known names that are nearest to an unknown one."""
+"""Find the known name that is most similar to an unknown one."""
 
 import difflib
 import re
@@ -7,21 +7,22 @@ from service.expressions.parsing.lexing.words import split
 from service.expressions.vocabulary.functions import IN_DEGREES, OF_DEGREES, PI, SPELLINGS
 from service.expressions.vocabulary.symbols import Vocabulary, normal_form
 
-# A longer run is no slip of one name, and comparing it would cost time.
+# A longer run is not one misspelt name, and comparing it would be slow.
 _LONGEST_SLIP = 24
 _FEWEST_LETTERS = 3
-# The likeness of names: cso is less like cos than coss is, though it is cos with letters exchanged.
+# The least similarity ratios. A name with exchanged letters (cso for cos) has a lower ratio than
+# one with an added letter (coss).
 _LEAST = 0.75
 _LEAST_OF_EXCHANGED = 0.6
 _DIGITS = re.compile(r"[0-9]+")
-# Rare names, which are never offered.
+# Rare names, which are never suggested.
 _OF_DEGREES = frozenset({*OF_DEGREES, *IN_DEGREES, "deg2rad", "rad2deg"})
 
 
 def other_case(run: str, vocabulary: Vocabulary, called: bool) -> str | None:
-    """``run`` with other capitals, where that is known, or None.
+    """Return the known name that differs from ``run`` only in letter case, or None.
 
-    ``called`` tells that a bracket follows.
+    ``called`` is True if a bracket follows.
     """
     if len(run) > _LONGEST_SLIP:
         return None
@@ -37,29 +38,29 @@ def other_case(run: str, vocabulary: Vocabulary, called: bool) -> str | None:
 
 
 def nearest(run: str, vocabulary: Vocabulary, called: bool) -> str | None:
-    """The known name nearest to ``run``, or None."""
+    """Return the known name that is most similar to ``run``, or None."""
     plain = normal_form(run)
     if not 1 < len(plain) <= _LONGEST_SLIP:
-        # One letter is as near to pi as to exp.
+        # A single letter is similar to too many names.
         return None
     pool = set(SPELLINGS) - _OF_DEGREES if called else _names(vocabulary)
-    # Another index, or a letter more or less of a short name, is another name.
+    # A name with another index is another name, and so is a short name with one letter changed.
     pool = {name for name in pool if _DIGITS.findall(name) == _DIGITS.findall(plain)}
     pool = {name for name in pool if _is_slip(name, plain)}
     close = difflib.get_close_matches(plain, sorted(pool), n=2, cutoff=_LEAST_OF_EXCHANGED)
     meanings = {vocabulary.by_name.get(name, name) for name in close}
     if len(meanings) > 1 and _ratio(plain, close[0]) == _ratio(plain, close[1]):
-        # Of theta1 and theta2 neither is meant more than the other.
+        # Two names with different meanings are equally similar.
         return None
     symbol = vocabulary.by_name.get(close[0]) if close else None
-    # The canonical name l_base for lbase; an alias, q1, stays as it is.
+    # Return the canonical name l_base for lbase, but keep an alias such as q1.
     if symbol is not None and normal_form(symbol.name) == close[0]:
         return symbol.name
     return close[0] if close else None
 
 
 def _is_slip(name: str, typed: str) -> bool:
-    """Whether both have three letters or more, and nearly the same ones."""
+    """True if both names have at least three letters, and nearly the same letters."""
     letters, other = _DIGITS.sub("", name), _DIGITS.sub("", typed)
     if min(len(letters), len(other)) < _FEWEST_LETTERS:
         return False

@@ -1,4 +1,4 @@
-"""true and false in place of a number."""
+"""true or false instead of a number."""
 
 from service.expressions.repairs.failure import refusal
 

@@ -1,4 +1,4 @@
-"""NaN, infinity, or a number too large for the machine."""
+"""NaN, infinity, or a number too large for a float."""
 
 from service.expressions.repairs.failure import refusal
 

@@ -1,13 +1,13 @@
-"""c3 or s7, where joint 3 slides and joint 7 is not there."""
+"""Shorthand with a joint that has no angle: c3 if joint 3 slides, s7 if there is no joint 7."""
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 
 
-@answers("invalid_shorthand")
+@for_causes("invalid_shorthand")
 def repair(failure: Failure) -> Repair:
-    """Say why that joint has no angle.
+    """Say why the joint has no angle.
 
-    No repaired text: to leave the joint out is to answer what the exercise asks.
+    There is no suggestion: leaving out the joint may be what the exercise tests.
     """
     joint = failure.details["joint"]
     if joint in failure.vocabulary.turning:

@@ -1,15 +1,15 @@
-"""± and +/-, which stand for two values."""
+"""± and +/-, which mean two values."""
 
 import re
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 
 _TYPED = re.compile(r"\+\s*/\s*-")
 
 
-@answers("plus_minus", "grammar")
+@for_causes("plus_minus", "grammar")
 def repair(failure: Failure) -> Repair:
-    """Ask for one of the two."""
+    """Ask for one of the two values."""
     typed = _TYPED.search(failure.source) if failure.cause == "grammar" else None
     if failure.cause == "grammar" and typed is None:
         return None

@@ -1,4 +1,4 @@
-"""Words in place of a value: variable, depends on theta, n/a."""
+"""Words instead of a value: variable, depends on theta, n/a."""
 
 import re
 
@@ -17,7 +17,7 @@ _NUMBERS = {"zero": "0", "one": "1", "two": "2", "ninety": "90", "half": "1/2", 
 
 
 def repair(failure: Failure) -> Repair:
-    """Ask for the value itself."""
+    """Ask for a number or a formula."""
     text = failure.source.strip().lower()
     number = _NUMBERS.get(text)
     if text not in _PHRASES and number is None and not _is_prose(failure):
@@ -27,7 +27,7 @@ def repair(failure: Failure) -> Repair:
 
 
 def _is_prose(failure: Failure) -> bool:
-    """Whether the text holds two words or more that mean nothing here, and no formula."""
+    """True if the text contains at least two unknown words and no formula."""
     if failure.cause != "name" or _FORMULA.search(failure.source):
         return False
     words = [word for word in _WORD.findall(failure.source) if len(word) > 1]

@@ -1,4 +1,4 @@
-"""Quotation marks, and names as programs declare them: 'q1', Symbol('q1')."""
+"""Names in quotation marks, or declared as in a program: 'q1', Symbol('q1')."""
 
 import re
 
@@ -7,12 +7,12 @@ from service.expressions.repairs.failure import Failure, Repair, error
 _QUOTED = re.compile(
     r"(?:\b(?:\w+\.)?(?:Symbol|symbols|sym|var|syms)\(\s*)?([\"'“”‘’])([^\"'“”‘’]*)[\"'“”‘’](\s*\))?"
 )
-# 1’5 is no name in quotation marks.
+# A mark between digits, as in 1’5, does not quote a name.
 _BETWEEN_DIGITS = re.compile(r"[0-9][\"'“”‘’]+[0-9]")
 
 
 def repair(failure: Failure) -> Repair:
-    """Offer the text without them."""
+    """Suggest the text without quotation marks."""
     match = _QUOTED.search(failure.source)
     if match is None or _BETWEEN_DIGITS.search(failure.source):
         return None

@@ -1,9 +1,9 @@
-"""A raised 0 or o behind a number, for the sign of degrees: 90⁰, 90^0, 90^o."""
+"""A raised 0 or o as degree sign: 90⁰, 90^0, 90^o."""
 
 import re
 
 from service.expressions.errors import Span
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 
 _LETTER = "[oO]"
 _STYLED = rf"(?:\\[a-z]+\s*\{{\s*{_LETTER}\s*\}}|{_LETTER})"
@@ -11,9 +11,9 @@ _STYLED = rf"(?:\\[a-z]+\s*\{{\s*{_LETTER}\s*\}}|{_LETTER})"
 _RAISED = re.compile(rf"\^\s*(?:\{{\s*{_STYLED}\s*\}}|{_STYLED})|(?<=[0-9])\s*o")
 
 
-@answers("raised_zero", "name")
+@for_causes("raised_zero", "name")
 def repair(failure: Failure) -> Repair:
-    """Offer the degree sign; 90^0 could be a power as well, so name both."""
+    """Suggest the degree sign; for 90^0, which may be a power, name both readings."""
     span = _raised_letter(failure) if failure.cause == "name" else failure.span
     if span is None:
         return None
@@ -27,7 +27,7 @@ def repair(failure: Failure) -> Repair:
 
 
 def _raised_letter(failure: Failure) -> Span | None:
-    """The place of the raised o that could not be read, with its brackets."""
+    """Return the place of a raised o at the failure, with ^ and brackets, or None."""
     if failure.written not in {"o", "O"}:
         return None
     start, end = failure.span

@@ -1,11 +1,11 @@
-"""c11, which names one joint twice."""
+"""Shorthand that names one joint twice: c11."""
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 
 
-@answers("invalid_shorthand")
+@for_causes("invalid_shorthand")
 def repair(failure: Failure) -> Repair:
-    """Ask for the sum to be written out."""
+    """Ask the student to write out the sum."""
     if failure.details["joint"] not in failure.vocabulary.turning:
         return None
     message = (

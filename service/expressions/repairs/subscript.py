@@ -1,20 +1,20 @@
-r"""An index that is no index: c_{\theta_1+\theta_2}, c_{12-4}, θ₁₊₂."""
+r"""A subscript that is a formula: c_{\theta_1+\theta_2}, c_{12-4}, θ₁₊₂."""
 
 import re
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 
 _FUNCTIONS = {"c": "cos", "s": "sin", "C": "cos", "S": "sin"}
-# In s_{1+2} the digits are joints, in a sum of angles they would be numbers.
+# Numbers in a subscript. In s_{1+2} they are joints; in a sum of angles they would be numbers.
 _BARE = re.compile(r"(?:^|[^A-Za-z0-9_{])\s*[0-9]")
-# Books write c_{12-4} for cos(θ1 + θ2 - θ4). Of c_{1-23} nobody can say where the minus ends.
+# Books write c_{12-4} for cos(θ1 + θ2 - θ4). In c_{1-23}, the minus may apply to 2 or to 23.
 _MINUS = str.maketrans("−–", "--")
 _JOINTS = re.compile(r"[1-9]{1,9}(?:\+[1-9]{1,9}|-[1-9](?![1-9])){1,9}")
 
 
-@answers("subscript")
+@for_causes("subscript")
 def repair(failure: Failure) -> Repair:
-    """Ask for the index alone; offer the cosine where c stands before a sum of angles or joints."""
+    """Ask for a plain index; suggest cos(…) for c with a sum of angles or joints as index."""
     start, end = failure.span
     inside = failure.details["index"]
     letter = failure.source[start - 1 : start]
@@ -34,7 +34,7 @@ def repair(failure: Failure) -> Repair:
 
 
 def _sum_of_joints(inside: str, failure: Failure) -> str:
-    """The sum of angles that an index such as 12-4 stands for; empty for any other index."""
+    """Return the sum of angles that an index such as 12-4 means; "" for any other index."""
     index = "".join(inside.split()).translate(_MINUS)
     if _JOINTS.fullmatch(index) is None:
         return ""

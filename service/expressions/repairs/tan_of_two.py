@@ -1,8 +1,8 @@
-"""tan2(y, x) for atan2(y, x)."""
+"""tan2(y, x) instead of atan2(y, x)."""
 
 import re
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 
 _TAN2 = re.compile(
     r"\\?(?:tan|tang|a ?tan|atang|artan|arctan|arctang)[ _]?\{?2\}?(?=\s*(?:\\left)?\()"
@@ -11,9 +11,9 @@ _TAN2 = re.compile(
 _KNOWN = {"atan2", "arctan2", r"\atan2", r"\arctan2"}
 
 
-@answers("name", "grammar")
+@for_causes("name", "grammar")
 def repair(failure: Failure) -> Repair:
-    """Offer atan2."""
+    """Suggest atan2."""
     match = _TAN2.search(failure.source)
     if match is None or match.end() > failure.span[1] or match.group() in _KNOWN:
         return None

@@ -1,14 +1,14 @@
-"""A text that ends in an operator."""
+"""A text that ends with an operator."""
 
 from service.expressions.parsing.lexing.tokens import END
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 
 OPERATORS = frozenset({"PLUS", "MINUS", "STAR", "SLASH", "POWER", "ROOT"})
 
 
-@answers("grammar")
+@for_causes("grammar")
 def repair(failure: Failure) -> Repair:
-    """Offer the text before it."""
+    """Suggest the text before the operator."""
     if failure.terminal() != END or failure.terminal(1) not in OPERATORS:
         return None
     start, end = span = failure.place(1)

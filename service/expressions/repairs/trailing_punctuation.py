@@ -1,11 +1,11 @@
-"""A full stop or a comma at the end, as behind a formula in a sentence."""
+"""A full stop or a comma at the end, as after a formula in a sentence."""
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 
 
-@answers("grammar", "character")
+@for_causes("grammar", "character")
 def repair(failure: Failure) -> Repair:
-    """Offer the text without it."""
+    """Suggest the text without the final punctuation."""
     text = failure.source.rstrip().rstrip("$").rstrip()
     kept = text.rstrip(".,: ")
     if text[-1:] not in {".", ",", ":"} or not kept or failure.span[0] < len(kept):

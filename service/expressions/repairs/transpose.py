@@ -2,16 +2,16 @@
 
 import re
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 
-# What is left out behind a number may be its unit, as the minutes of an angle.
+# A mark after a number may be its unit, such as minutes of an angle, so it must not be removed.
 _NUMBER = re.compile(r"(?<![\w.])[0-9.]+\s*$")
 _RAISED_T = re.compile(r"\^\s*\{?\s*(?:\\top|T)\s*\}?|\.'")
 
 
-@answers("transpose", "name", "command", "character")
+@for_causes("transpose", "name", "command", "character")
 def repair(failure: Failure) -> Repair:
-    """Say that a value has neither, and offer the text without, unless that joins digits."""
+    """Refuse the mark; suggest the text without it, unless this would join digits."""
     span = failure.span
     if failure.cause != "transpose":
         match = _RAISED_T.search(failure.source)
@@ -20,7 +20,7 @@ def repair(failure: Failure) -> Repair:
         span = match.span()
     mark = quoted(failure.source[slice(*span)].strip())
     message = f"A single value has no transpose and no derivative here. Leave out {mark}."
-    before, behind = failure.source[: span[0]], failure.source[span[1] :]
-    if _NUMBER.search(before) or (before[-1:].isdigit() and behind[:1].isdigit()):
+    before, after = failure.source[: span[0]], failure.source[span[1] :]
+    if _NUMBER.search(before) or (before[-1:].isdigit() and after[:1].isdigit()):
         return error(failure, "transpose", message, None, span)
-    return error(failure, "transpose", message, (before + behind).strip() or None, span)
+    return error(failure, "transpose", message, (before + after).strip() or None, span)

@@ -1,4 +1,4 @@
-"""90 deg deg, deg(90°)."""
+"""A value with two units: 90 deg deg, deg(90°)."""
 
 from service.expressions.repairs.failure import refusal
 

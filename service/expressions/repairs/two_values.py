@@ -1,11 +1,11 @@
-"""Two values in place of one: 2 3, q1, q2, a second line."""
+"""Two values instead of one: ``2 3``, ``q1, q2``, or a second line."""
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 
 
-@answers("values", "grammar")
+@for_causes("values", "grammar")
 def repair(failure: Failure) -> Repair:
-    """Ask for one value, or for an operator between them."""
+    """Ask for one value, or for an operator between the values."""
     start, end = failure.span
     if failure.terminal(1) and failure.terminal() != "COMMA":
         start = failure.place(1)[0]

@@ -3,14 +3,14 @@
 from service.expressions.errors import Span
 from service.expressions.parsing.lexing.brackets import PARTNERS
 from service.expressions.parsing.lexing.tokens import END, OPERAND_ENDS
-from service.expressions.repairs.failure import Failure, Repair, answers, error, position, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, position, quoted
 
 _BEFORE_BRACKET = OPERAND_ENDS | {"LEFT"}
 
 
-@answers("unclosed", "grammar")
+@for_causes("unclosed", "grammar")
 def repair(failure: Failure) -> Repair:
-    """Close the open brackets at the end of the text, or leave out the one that closes nothing."""
+    """Suggest closing all brackets at the end of the text, or removing a superfluous one."""
     if failure.cause == "unclosed":
         return _error(failure, failure.span, f"{failure.source}}}")
     if failure.terminal(1) and failure.terminal(1) not in _BEFORE_BRACKET:

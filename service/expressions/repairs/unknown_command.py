@@ -1,12 +1,12 @@
-"""LaTeX commands that are not read, or that lack their argument."""
+"""LaTeX commands that are unknown or lack their argument."""
 
 from service.expressions.characters.latex_commands import known_prefix
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 
 
-@answers("command", "argument")
+@for_causes("command", "argument")
 def repair(failure: Failure) -> Repair:
-    r"""Name the command; offer \cos q for \cosq."""
+    r"""Name the command; suggest \cos q for \cosq."""
     name = failure.details["name"]
     if failure.cause == "argument":
         example = r"\frac{a}{b}" if "frac" in name else rf"{name.strip()}{{a}}"

@@ -1,8 +1,15 @@
-"""Functions that no answer needs, and other names of known ones: log, sinh, max, cosine."""
+"""Functions that no answer needs (log, sinh, max), and other names of known ones (cosine)."""
 
 import re
 
-from service.expressions.repairs.failure import Failure, Repair, absent, answers, error, quoted
+from service.expressions.repairs.failure import (
+    Failure,
+    Repair,
+    error,
+    for_causes,
+    quoted,
+    undeclared,
+)
 from service.expressions.vocabulary.functions import ARITY, REFUSED
 
 _RENAMED = {
@@ -13,13 +20,13 @@ _RENAMED = {
     "tangens": "tan", "tangente": "tan", "tang": "tan", "ArcCosine": "acos", "ArcSine": "asin",
     "c": "cos", "s": "sin", "t": "tan", "C": "cos", "S": "sin",
 }  # fmt: skip
-# The places of MATLAB's arrays, and SymPy's numbers: c(1, 2) is no cosine, S(1) is 1.
+# Numbers in brackets: MATLAB's c(1, 2) is an element of an array, and SymPy's S(1) is a number.
 _OF_NUMBERS = re.compile(r"\(\s*[0-9]+(?:\s*[,;]\s*[0-9]+)*\s*\)")
 
 
-@answers("name")
+@for_causes("name")
 def repair(failure: Failure) -> Repair:
-    """Say which functions there are; offer the known name for another one of the same function."""
+    """List the functions that can be used; for another name of one, suggest its known name."""
     name = failure.details["run"].replace("_", "")
     if name in REFUSED:
         written = quoted(failure.written)
@@ -29,7 +36,7 @@ def repair(failure: Failure) -> Repair:
     if len(run) == 1 and _OF_NUMBERS.match(failure.source, failure.span[1]):
         if not failure.vocabulary.joints:
             return None
-        message = f"{absent(failure)} Write the shorthand without brackets, as in c12."
+        message = f"{undeclared(failure)} Write the shorthand without brackets, as in c12."
         return error(failure, "unknown_function", message)
     renamed = _RENAMED.get(run)
     if renamed is None or not failure.details["called"]:

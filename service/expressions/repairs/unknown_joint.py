@@ -1,4 +1,4 @@
-"""The variable of a joint that does not exist: q7 on six joints, theta12, theta3 if 3 slides."""
+"""A variable that no joint has: q7 with six joints, theta12, theta3 if joint 3 slides."""
 
 import re
 
@@ -6,7 +6,7 @@ from service.expressions.characters import greek
 from service.expressions.errors import Span
 from service.expressions.parsing.lexing.words import split
 from service.expressions.printing.symbol_names import symbol_latex
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 from service.expressions.vocabulary.symbols import Vocabulary, normal_form
 
 _JOINT = re.compile(rf"(?P<stem>[A-Za-z{greek.CLASS}]+?)(?P<index>[0-9]+)(?P<rest>.*)")
@@ -14,9 +14,9 @@ _STEMS = frozenset({"q", "theta", "θ", "th"})
 _AS_TYPED = re.compile(r"[^0-9₀-₉]*(?:[0-9]+|[₀-₉]+)(?:\s*\})?")
 
 
-@answers("name")
+@for_causes("name")
 def repair(failure: Failure) -> Repair:
-    """Say which joints there are; offer the sum of angles for theta12."""
+    """List the robot's joints; suggest the sum of angles for theta12."""
     vocabulary = failure.vocabulary
     match = _JOINT.fullmatch(normal_form(failure.details["run"]))
     if match is None or match["stem"] not in _STEMS or not vocabulary.joints:
@@ -24,7 +24,7 @@ def repair(failure: Failure) -> Repair:
     if match["rest"] and split(match["rest"], vocabulary) is None:
         return None
     if match["rest"] and int(match["index"][:4]) in vocabulary.turning:
-        # This joint is there; something else is wrong with the run: theta1_theta2.
+        # The joint exists; the run has another error: theta1_theta2.
         return None
     index, span = match["index"], _place(failure, bool(match["rest"]))
     written = failure.source[slice(*span)]
@@ -43,16 +43,16 @@ def repair(failure: Failure) -> Repair:
 
 
 def _place(failure: Failure, goes_on: bool) -> Span:
-    r"""The place of the name alone, for in \theta_{12}\cos the run is longer."""
+    r"""Return the place of the name only; in \theta_{12}\cos the run is longer."""
     start, end = failure.span
     found = _AS_TYPED.match(failure.source, start, end) if goes_on else None
     return (start, found.end()) if found else (start, end)
 
 
 def _total(index: str, vocabulary: Vocabulary, *, latex: bool) -> str | None:
-    """The sum of the angles that an index names, or None where it names no sum.
+    """Return the sum of the angles of the joints in ``index``, or None if it is not such a sum.
 
-    A joint that slides has no angle to add.
+    Joints that slide are left out, because they have no angle.
     """
     digits = [int(digit) for digit in index]
     if not 1 < len(digits) < 7 or len(set(digits)) < len(digits):

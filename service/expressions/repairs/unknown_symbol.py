@@ -5,23 +5,23 @@ from typing import Final
 
 from service.expressions.characters import greek
 from service.expressions.parsing.lexing.words import Piece, split
-from service.expressions.repairs.failure import Failure, Repair, absent, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, undeclared
 from service.expressions.repairs.nearest_name import nearest
 from service.expressions.vocabulary.symbols import Kind, Symbol, Vocabulary, normal_form
 
 _INDEXED = re.compile(r"([^0-9]+)[0-9]+")
 _STEM = re.compile(r"[^0-9_]+")
-# The letters of textbooks for lengths.
+# The letters that textbooks use for lengths.
 _OF_LENGTHS: Final = frozenset("abdhlrLADHR")
 _OF_JOINTS: Final = frozenset({"q", "theta", "θ"})
 _LISTED: Final = 8
 
 
-@answers("name")
+@for_causes("name")
 def repair(failure: Failure) -> Repair:
-    """Offer the nearest declared name, or list those that may be meant."""
+    """Suggest the most similar declared name, or list the names that may be meant."""
     run, vocabulary = failure.details["run"], failure.vocabulary
-    message = absent(failure)
+    message = undeclared(failure)
     if (product := _product(run, vocabulary)) is not None:
         message += f" For a product, write {product}."
         return error(failure, "unknown_symbol", message)
@@ -33,7 +33,7 @@ def repair(failure: Failure) -> Repair:
 
 
 def _product(run: str, vocabulary: Vocabulary) -> str | None:
-    """The product that a run would be without its underscores: a*b for a_b."""
+    """Return the product that a run would be without its underscores (a*b for a_b), or None."""
     plain = run.replace("_", "")
     pieces = split(plain, vocabulary) if plain != run else None
     return None if pieces is None else "*".join(_written(piece, plain) for piece in pieces)
@@ -44,7 +44,7 @@ def _written(piece: Piece, run: str) -> str:
 
 
 def _listed(name: str, vocabulary: Vocabulary) -> str:
-    """A sentence on the names with the same letter, or else of the same kind, or else on all."""
+    """Return a sentence that lists the names with the same letter, of the same kind, or all."""
     siblings = _siblings(name, vocabulary)
     has, its = ("There are", "The") if vocabulary.of_books else ("It has", "Its")
     if name in _OF_JOINTS:
@@ -71,7 +71,7 @@ def _siblings(name: str, vocabulary: Vocabulary) -> list[Symbol]:
 
 
 def _kind(name: str) -> Kind | None:
-    """The kind of quantity that a name's letter suggests."""
+    """Return the kind of quantity that a name's letter suggests, or None."""
     match = _STEM.match(name)
     if match is None:
         return None

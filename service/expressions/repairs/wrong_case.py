@@ -1,12 +1,12 @@
-"""A known name with capitals in odd places: cOs for cos, or a name that two symbols share."""
+"""A known name in the wrong letter case: cOs for cos."""
 
-from service.expressions.repairs.failure import Failure, Repair, answers, error, quoted
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 from service.expressions.repairs.nearest_name import other_case
 
 
-@answers("name")
+@for_causes("name")
 def repair(failure: Failure) -> Repair:
-    """Offer the name as it is declared."""
+    """Suggest the name as it is declared."""
     known = other_case(failure.details["run"], failure.vocabulary, failure.details["called"])
     if known is None:
         return None

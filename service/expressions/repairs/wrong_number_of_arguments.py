@@ -1,12 +1,12 @@
-"""atan2 of one value, sin of two, atan(y, x), and cos(0,5) with a decimal comma."""
+"""A wrong number of arguments: atan2 of one value, atan(y, x), or cos(0,5) with a decimal comma."""
 
 from service.expressions.errors import counted
-from service.expressions.repairs.failure import Failure, Repair, answers, error
+from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 
 
-@answers("arguments")
+@for_causes("arguments")
 def repair(failure: Failure) -> Repair:
-    """Count the arguments; offer atan2 for atan(y, x), and a point for a decimal comma."""
+    """Count the arguments; suggest atan2 for atan(y, x), and a point for a decimal comma."""
     name, wanted = failure.details["name"], failure.details["wanted"]
     places = failure.details["places"]
     if len(places) == 2 * wanted and (point := _with_points(failure)) is not None:
@@ -24,7 +24,7 @@ def repair(failure: Failure) -> Repair:
 
 
 def _with_points(failure: Failure) -> str | None:
-    """The source with points for the commas between digits, if all arguments are such."""
+    """Return the source with all argument commas as decimal points, or None if one cannot be."""
     places = failure.details["places"]
     source = failure.source
     for left, right in reversed(list(zip(places[::2], places[1::2], strict=True))):

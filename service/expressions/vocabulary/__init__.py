@@ -1,1 +1,1 @@
-"""The names that may stand in an answer: symbols and functions."""
+"""The names that an answer may use: symbols and functions."""

@@ -10,7 +10,7 @@ ARITY: Final = {
     "sin": 1, "cos": 1, "tan": 1, "asin": 1, "acos": 1, "atan": 1, "atan2": 2, "sqrt": 1, "abs": 1,
     "exp": 1,
 }  # fmt: skip
-# The functions of degrees, as MATLAB has them: cosd(60) is cos(60deg), and acosd gives degrees.
+# MATLAB's functions of degrees: cosd(60) is cos(60deg), and acosd returns degrees.
 OF_DEGREES: Final = {"sind": "sin", "cosd": "cos", "tand": "tan"}
 IN_DEGREES: Final = {"asind": "asin", "acosd": "acos", "atand": "atan", "atan2d": "atan2"}
 SPELLINGS: Final = {
@@ -31,20 +31,20 @@ UNITS: Final[dict[str, Literal["deg", "rad"]]] = {
     "deg": "deg", "degree": "deg", "degrees": "deg", "rad": "rad", "radian": "rad",
     "radians": "rad",
 }  # fmt: skip
-# ``degrees(x)`` and ``radians(x)`` mean opposite things to a reader and to Python, so only these
-# two words may stand before a bracket.
+# For a human reader and in Python, ``degrees(x)`` and ``radians(x)`` have opposite meanings, so
+# only these two words may precede a bracket.
 UNIT_FUNCTIONS: Final = frozenset({"deg", "rad"})
 
 PI: Final = ("pi", "π")
 PI_CAPITALS: Final = ("Pi", "PI")
-# Where functions live in programs: np.cos, math.pi, Math.PI, std::cos.
+# Modules that programs write before a function: np.cos, math.pi, Math.PI, std::cos.
 MODULES: Final = frozenset({
     "np", "numpy", "math", "sp", "sympy", "sym", "jnp", "cmath", "mpmath", "mp", "scipy", "Math",
     "MathF", "std", "numbers", "torch", "tf", "casadi", "ca", "symengine",
 })  # fmt: skip
 
-# Functions that are no nodes of a tree: they are built from others (see ``parsing/built``), with
-# the number of their values; 0 for any number.
+# Functions that are built from other functions (see ``parsing/built``), with their number of
+# arguments; 0 for any number.
 BUILT: Final = {
     "sec": 1, "csc": 1, "cot": 1, "pow": 2, "hypot": 2, "quotient": 2, "sum": 0, "product": 0,
     "value": 1,
@@ -53,7 +53,7 @@ BUILT: Final = {
 CONSTANTS: Final = {
     "M_PI_2": ("pi", 2), "M_PI_4": ("pi", 4), "M_SQRT2": ("sqrt", 2), "M_SQRT1_2": ("1/sqrt", 2),
 }  # fmt: skip
-# Words that are read where they stand alone, and not as a part of a longer run: cosf1 is cos(f1).
+# Words that are read only as a whole run, not as part of a longer one: cosf1 is cos(f1).
 ALONE: Final[dict[str, tuple[PieceKind, str]]] = {
     **{
         spelling: ("function", name)
@@ -74,7 +74,7 @@ ALONE: Final[dict[str, tuple[PieceKind, str]]] = {
     **{name: ("constant", name) for name in CONSTANTS},
     "M_PI": ("pi", "pi"), "kPi": ("pi", "pi"), "Degree": ("unit", "deg"),
 }  # fmt: skip
-# Functions that no answer needs. They are refused by name, and never read as a product.
+# Functions that no answer needs. They are refused by name, so that they are not read as products.
 REFUSED: Final = frozenset({
     "log", "ln", "lg", "log10", "log2", "log1p", "expm1", "Log", "LN", "LOG",
     "sinh", "cosh", "tanh", "coth", "sech", "csch", "Sinh", "Cosh", "Tanh",

@@ -22,9 +22,9 @@ class Symbol:
     """A declared symbol.
 
     ``name`` is its canonical ASCII name ("theta1", "l1"); an angle's values are radians.
-    ``aliases`` are its other names; Greek spellings and subscripts need no alias of their own.
-    ``joint`` is the joint's index where the symbol is a joint variable: an angle turns, a length
-    slides. ``latex`` overrides the LaTeX that the name suggests.
+    ``aliases`` are its other names; Greek spellings and subscripts need no alias. ``joint`` is the
+    joint's index if the symbol is a joint variable: an angle for a revolute joint, a length for a
+    prismatic one. ``latex`` overrides the LaTeX that is derived from the name.
     """
 
     name: str
@@ -35,7 +35,7 @@ class Symbol:
 
 
 def normal_form(name: str) -> str:
-    """``name`` with its subscripts as plain digits: θ_1, θ₁ and θ_{1} -> θ1.
+    """Return ``name`` with subscripts as plain digits: θ_1, θ₁ and θ_{1} -> θ1.
 
     Greek letters stay letters; ``Vocabulary`` knows each name in both spellings.
     """
@@ -45,7 +45,7 @@ def normal_form(name: str) -> str:
 
 
 def joint_variable(index: int, *, sliding: bool = False) -> Symbol:
-    """The variable of joint ``index`` under its usual names: theta1, q1; if sliding, d3, q3."""
+    """Return the variable of joint ``index``: theta1 or q1; if ``sliding``, d3 or q3."""
     if sliding:
         return Symbol(f"d{index}", "length", (f"q{index}",), joint=index)
     return Symbol(f"theta{index}", "angle", (f"q{index}",), joint=index)
@@ -57,12 +57,13 @@ def _shared(symbols: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
 
 
 class Vocabulary:
-    """The declared symbols, looked up by any of their names. Immutable, equal by content.
+    """The declared symbols, by all their names. Immutable, equal by content.
 
-    They are an exercise's, or those ``of_books``: then messages speak of no exercise.
+    They are the symbols of an exercise, or, with ``of_books``, of textbooks; messages then do not
+    mention an exercise.
 
-    Raises ValueError where two symbols have one name, two joint variables have one index, or a name
-    cannot be written in an expression.
+    Raises ValueError if two symbols have the same name, two joint variables have the same index, or
+    a name cannot be written in an expression.
     """
 
     __slots__ = (
@@ -81,8 +82,8 @@ class Vocabulary:
         self.joints: Final = sorted(self.turning | self.sliding)
         self.longest: Final = max(map(len, (*self.by_name, *RESERVED)))
         self._hash: Final = hash((self.symbols, of_books))
-        # One tuple for all equal vocabularies, so that they need not be compared symbol by symbol:
-        # many exercises declare the same symbols, and each word of a text is remembered by them.
+        # Equal vocabularies share one tuple, so that comparing them is fast: many exercises declare
+        # the same symbols, and the vocabulary is a cache key for each word of a text.
         self._shared: Final = _shared(self.symbols)
 
     def _declare(self, symbol: Symbol) -> None:

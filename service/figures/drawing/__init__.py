@@ -1,1 +1,1 @@
-"""The parts of a drawing and their places."""
+"""Draw the parts of a figure, and place its labels."""

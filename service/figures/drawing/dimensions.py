@@ -1,4 +1,4 @@
-"""Dimension lines: how long a piece of the mechanism is, told beside it by name."""
+"""Dimension lines: the name of a length, on a line next to the piece that is so long."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from service.figures.drawing.placing import Rectangle, TakenRoom
 from service.figures.drawing.solids import Camera, points_text, polyline
 from service.kinematics.transforms import Numbers
 
-# As shares of the mechanism's extent, how far from a piece its dimension line may lie.
+# The possible distances of a dimension line from its piece, as shares of the mechanism's extent.
 _DISTANCES = (0.12, 0.16, 0.21, 0.27, 0.34, 0.42)
 _HEAD = 7.0
 # Shorter lines have their arrowheads outside.
@@ -20,7 +20,7 @@ _PLAIN_ANGLE = 0.5
 
 
 class Drawing(NamedTuple):
-    """The SVG of a dimension: what the mechanism may hide, and what stands above it."""
+    """The SVG of a dimension: the part drawn below the mechanism, and the part above it."""
 
     below: list[str]
     above: list[str]
@@ -28,21 +28,21 @@ class Drawing(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """A dimension line beside a piece: in the picture, its ends and those of the piece."""
+    """A dimension line in the picture: its ends, the ends of the measured piece, and a penalty."""
 
     ends: Numbers
     measured: Numbers
-    badness: float
+    penalty: float
 
 
 def dimension(
     camera: Camera, ends: Numbers, label: Label, extent: float, sides: Numbers, room: TakenRoom
 ) -> Drawing:
-    """The dimension of a piece with the ends ``(2, 3)``; its room is taken.
+    """Draw the dimension of a piece with the ends ``(2, 3)``, and mark its room as taken.
 
-    ``sides`` ``(n, 3)`` are directions that the line may lie aside in.
+    ``sides`` ``(n, 3)`` are the directions in which the line may be moved away from the piece.
     """
-    line = min(_lines(camera, ends, extent, sides, room), key=lambda each: each.badness)
+    line = min(_lines(camera, ends, extent, sides, room), key=lambda each: each.penalty)
     room.take_line(line.ends, 2.0, 1.0)
     for measured, end in zip(line.measured, line.ends, strict=True):
         room.take_line(np.array([measured, end]), 1.0, 0.4)
@@ -66,19 +66,19 @@ def _lines(
         for rank, distance in enumerate(_DISTANCES):
             moved = measured + distance * extent * offset
             points = np.linspace(moved[0], moved[1], 15)
-            badness = room.crowd(points, 11.0) + 0.6 * rank
+            penalty = room.crowding(points, 11.0) + 0.6 * rank
             for start, end in zip(measured, moved, strict=True):
-                # Near the piece itself the lines that measure it start out hidden.
-                badness += 0.3 * room.crowd(np.linspace(start, end, 12)[8:], 4.0)
-            badness += 4.0 * max(0.0, _PLAIN_ANGLE - angle) + 1.5 * max(0.0, 0.7 - shown)
-            # Of two sides that are as good, the one away from the middle, where the arm is.
+                # Near the piece, the witness lines are hidden, so check only their outer part.
+                penalty += 0.3 * room.crowding(np.linspace(start, end, 12)[8:], 4.0)
+            penalty += 4.0 * max(0.0, _PLAIN_ANGLE - angle) + 1.5 * max(0.0, 0.7 - shown)
+            # Of two equal sides, prefer the one farther from the middle, where the arm is.
             middle = moved.mean(axis=0)
-            badness -= 0.0005 * float(np.linalg.norm(middle))
-            yield _Line(moved, measured, badness)
+            penalty -= 0.0005 * float(np.linalg.norm(middle))
+            yield _Line(moved, measured, penalty)
 
 
 def _beside(line: _Line, label: Label) -> Iterator[Numbers]:
-    """Places for the label beside the line, the farther side first."""
+    """Yield places for the label next to the line, first on the side away from the piece."""
     flat = line.ends[1] - line.ends[0]
     flat = flat / max(float(np.linalg.norm(flat)), 1e-9)
     aside = np.array([-flat[1], flat[0]])
@@ -94,7 +94,7 @@ def _beside(line: _Line, label: Label) -> Iterator[Numbers]:
 
 
 def _witness(measured: Numbers, end: Numbers) -> str:
-    """The line from the piece to a little beyond its dimension line."""
+    """Return the SVG of the line from the piece to slightly beyond its dimension line."""
     step = end - measured
     size = max(float(np.linalg.norm(step)), 1e-9)
     return polyline(np.array([measured + 5 * step / size, end + 4 * step / size]), "witness")
@@ -116,7 +116,7 @@ def _drawn(line: _Line) -> Iterator[str]:
 
 
 def arrowhead(tip: Numbers, direction: Numbers, kind: str, size: float = _HEAD) -> str:
-    """An arrowhead whose tip points along a unit vector of the picture."""
+    """Return the SVG of an arrowhead that points along the unit vector ``direction``."""
     aside = np.array([-direction[1], direction[0]])
     back = tip - size * direction
     points = np.array([tip, back + 0.36 * size * aside, back - 0.36 * size * aside])

@@ -1,4 +1,4 @@
-"""The frames of a table in a figure: x red, y green, z blue, with their names. For tutors."""
+"""Draw the frames of a table with the names of their axes: x red, y green, z blue. For tutors."""
 
 from collections.abc import Sequence
 
@@ -17,9 +17,9 @@ _HEAD = 8.0
 def frame_axes(
     camera: Camera, frames: Matrices, labels: Sequence[str], length: float, room: TakenRoom
 ) -> list[str]:
-    """The SVG of the axes of frames ``(frames, 4, 4)``, as long as ``length``; their room is taken.
+    """Return the SVG of the axes of frames ``(frames, 4, 4)``, and mark their room as taken.
 
-    Axes that coincide are drawn once, with all their names.
+    Each axis is as long as ``length``. Coincident axes are drawn once, with all their names.
     """
     origins = np.repeat(frames[:, :3, 3], 3, axis=0)
     steps = length * np.swapaxes(frames[:, :3, :3], 1, 2).reshape(-1, 3)
@@ -51,7 +51,7 @@ def frame_axes(
 
 
 def _beyond(tip: Numbers, ahead: Numbers, label: Label) -> Numbers:
-    """The point at which a label stands right before an arrow that points ``ahead``."""
+    """Return the place for a label right in front of an arrow's tip."""
     room = Rectangle.of(label, 0.0, 0.0)
     near = abs(ahead[0]) * room.half_width + abs(ahead[1]) * room.half_height + 0.7 * _HEAD
     return np.asarray(tip + near * ahead)

@@ -1,4 +1,4 @@
-"""A mechanism in a figure: ground, links, joints and gripper, in the order that hides them."""
+"""Draw a mechanism: ground, links, joints and gripper, from the farthest to the nearest."""
 
 from typing import Final
 
@@ -7,11 +7,11 @@ import numpy as np
 from service.figures.drawing.sheet import Sheet
 from service.figures.drawing.solids import (
     Solid,
+    back_to_front,
     box,
     cylinder,
     gripper,
     ground,
-    in_order,
     polyline,
     rod,
 )
@@ -32,7 +32,7 @@ _AXIS_BEYOND: Final = 0.11
 def mechanism_solids(
     sheet: Sheet, shown: Configuration, mechanism: MovableMechanism, name: str
 ) -> list[str]:
-    """The SVG of the whole mechanism; its room on the sheet is taken."""
+    """Return the SVG of the whole mechanism, and mark its room on the sheet as taken."""
     size = sheet.size
     solids = [
         joint_solid(sheet, centre, axis, f"{name}-{i + 1}", slides=joint.prismatic)
@@ -49,11 +49,11 @@ def mechanism_solids(
     grip = gripper(sheet.camera, shown.tool, shown.tool_direction, reach, width)
     sheet.take(sheet.camera.seen(grip.spine), grip.radius)
     floor = ground_solid(sheet, shown.base, shown.base_normal)
-    return [floor.svg, *(solid.svg for solid in in_order(sheet.camera, [*solids, grip]))]
+    return [floor.svg, *(solid.svg for solid in back_to_front(sheet.camera, [*solids, grip]))]
 
 
 def joint_solid(sheet: Sheet, centre: Numbers, axis: Numbers, fill: str, *, slides: bool) -> Solid:
-    """A joint on its axis, which is drawn below it."""
+    """Return the solid of a joint, and draw its axis below it."""
     camera, size = sheet.camera, sheet.size
     half, radius = JOINT_LENGTH / 2 * size, JOINT_RADIUS * size
     ends = centre + np.array([[-1.0], [1.0]]) * (half + _AXIS_BEYOND * size / 2) * axis
@@ -67,13 +67,13 @@ def joint_solid(sheet: Sheet, centre: Numbers, axis: Numbers, fill: str, *, slid
 
 
 def link_solid(sheet: Sheet, line: Numbers, drawn: Numbers) -> Solid:
-    """A link along the corners ``drawn``, which takes the room of ``line``."""
+    """Return the solid of a link along the corners ``drawn``, and mark the room of ``line``."""
     sheet.take(sheet.camera.seen(line), _ROD * sheet.unit / 2)
     return rod(sheet.camera, drawn, _ROD * sheet.unit)
 
 
 def ground_solid(sheet: Sheet, base: Numbers, normal: Numbers) -> Solid:
-    """The ground that a robot stands on."""
+    """Return the solid of the ground under a robot, and mark its room as taken."""
     camera = sheet.camera
     floor = ground(camera, base, normal, 0.13 * sheet.size)
     width = floor.radius * camera.seen(camera.rotation[0]) / camera.scale
@@ -84,7 +84,7 @@ def ground_solid(sheet: Sheet, base: Numbers, normal: Numbers) -> Solid:
 
 
 def _shortened(corners: Numbers, by: float) -> Numbers:
-    """The line without its last stretch, as long as ``by``."""
+    """Return the line without its end, shortened by the length ``by``."""
     line = corners
     while len(line) > 1:
         last = line[-1] - line[-2]
@@ -98,7 +98,7 @@ def _shortened(corners: Numbers, by: float) -> Numbers:
 def _clear_of_joints(
     line: Numbers, link: int, shown: Configuration, mechanism: MovableMechanism
 ) -> Numbers:
-    """The line of a link from the surface of the joint before it to that of the one behind it."""
+    """Return the line of a link between the surfaces of the joints at its two ends."""
     first, last = line[0], line[-1]
     if link > 0:
         first = _surface(line[0], line[1], shown, link - 1, mechanism)
@@ -110,7 +110,7 @@ def _clear_of_joints(
 def _surface(
     start: Numbers, towards: Numbers, shown: Configuration, joint: int, mechanism: MovableMechanism
 ) -> Numbers:
-    """Where a line from the middle of a joint leaves it; a little inside."""
+    """Return the point, slightly inside the joint, where a line from its middle leaves it."""
     step = towards - start
     length = float(np.linalg.norm(step))
     direction = step / length

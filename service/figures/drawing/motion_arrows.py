@@ -1,4 +1,4 @@
-"""Arrows that say how a joint moves: around its axis, or along it."""
+"""Arrows that show how a joint moves: around its axis, or along it."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,18 +15,18 @@ _HEAD = 8.0
 
 @dataclass(frozen=True, slots=True)
 class MotionArrow:
-    """An arrow in the picture, ``(points, 2)``; with ``both`` it has a head at either end."""
+    """An arrow in the picture, ``(points, 2)``; with ``both``, it has a head at each end."""
 
     line: Numbers
     both: bool
 
     @property
     def middle(self) -> Numbers:
-        """The point that its name belongs to."""
+        """The middle point, near which the name of the variable is placed."""
         return np.asarray(self.line[len(self.line) // 2])
 
     def svg(self) -> Iterator[str]:
-        """The line and its heads."""
+        """Yield the SVG of the line and of its heads."""
         line = self.line
         yield polyline(line, "motion-halo")
         yield polyline(line, "motion")
@@ -41,7 +41,7 @@ def turning_arrow(
     camera: Camera, centre: Numbers, axis: Numbers, offset: float, radius: float,
     room: TakenRoom, *, both: bool,
 ) -> MotionArrow:  # fmt: skip
-    """An arc around the axis, on the viewer's side, at the freer end of the joint."""
+    """Return an arc around the axis, on the viewer's side, at the less crowded end of the joint."""
     front = perpendicular(axis, camera.towards)
     aside = np.cross(axis, front)
     angles = np.radians(np.linspace(-95, 70, 24))
@@ -49,7 +49,7 @@ def turning_arrow(
     lines = [
         camera.seen(centre + end * offset * axis + arc) for end in _nearer_end_first(camera, axis)
     ]
-    best = min(lines, key=lambda line: room.crowd(line, 5.0))
+    best = min(lines, key=lambda line: room.crowding(line, 5.0))
     return MotionArrow(best, both)
 
 
@@ -61,9 +61,9 @@ def sliding_arrow(
     camera: Camera, centre: Numbers, axis: Numbers, half: float, offset: float,
     room: TakenRoom, *, both: bool,
 ) -> MotionArrow:  # fmt: skip
-    """A straight arrow beside the joint, on its freer side in the picture.
+    """Return a straight arrow next to the joint, on its less crowded side in the picture.
 
-    Where it would cross an axis, a part or a name there, it stands farther along or away.
+    If the arrow would cross an axis, a part or a name there, it is moved along or away.
     """
     aside = np.cross(perpendicular(axis, camera.towards), axis)
     steps = np.linspace(-half, half, 9)[:, None] * axis
@@ -73,13 +73,13 @@ def sliding_arrow(
         return [camera.seen(middle + side * offset * aside + steps) for side in (reach, -reach)]
 
     def crossings(line: Numbers) -> int:
-        # With its heads the arrow is longer.
+        # The heads make the arrow longer.
         return room.crossings(1.3 * line - 0.3 * line.mean(axis=0))
 
-    best = min(beside(1, 0), key=lambda line: room.crowd(line, 7.0))
+    best = min(beside(1, 0), key=lambda line: room.crowding(line, 7.0))
     for reach in (1, 1.6, 2.2):
         if crossings(best):
             others = [line for along in (0, 1, -1) for line in beside(reach, along)]
-            freest = sorted(others, key=lambda line: room.crowd(line, 7.0))
+            freest = sorted(others, key=lambda line: room.crowding(line, 7.0))
             best = min([best, *freest], key=crossings)
     return MotionArrow(best, both)

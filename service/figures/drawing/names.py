@@ -1,4 +1,4 @@
-"""Names of symbols as labels: θ with index 1 for theta1, and how much room they take."""
+"""Labels for names of symbols: θ with index 1 for theta1, and the room that a label needs."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -8,12 +8,12 @@ from xml.sax.saxutils import escape
 from service.expressions.characters.greek import LETTERS
 from service.expressions.printing.symbol_names import stem_and_index
 
-# The size of letters in pixels, and that of an index beside them.
+# The font size in pixels; the size of an index as a share of it, and how much it is lowered.
 SIZE: Final = 17.0
 _INDEX: Final = 0.72
 _DROP: Final = 0.24
 
-# Widths of italic letters of book types, as shares of their size; of all others the widest one's.
+# Widths of italic letters in serif fonts, as shares of the font size; other characters are widest.
 _WIDTHS: Final = {
     **dict.fromkeys("ijlt1,. ", 0.34),
     **dict.fromkeys("acdeghknopqrsuvxyzbfθφψαβγδω023456789", 0.56),
@@ -24,7 +24,7 @@ _WIDEST: Final = 0.86
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """A text of stems with their indices and signs between: ``(("θ", "1"), ("+", ""))``."""
+    """A text of pairs (stem, index); a sign has no index: ``(("θ", "1"), ("+", ""))``."""
 
     runs: tuple[tuple[str, str], ...]
 
@@ -35,11 +35,11 @@ class Label:
 
     @property
     def width(self) -> float:
-        """An estimate of its width, in pixels; rather too wide than too narrow."""
+        """An estimate of the label's width in pixels, rather too large than too small."""
         return SIZE * sum(_width(stem) + _INDEX * _width(index) for stem, index in self.runs)
 
     def svg(self, x: float, y: float, kind: str) -> str:
-        """The text around the point (x, y), in a class of its kind."""
+        """Return the SVG text centred at the point (x, y), with the class ``kind``."""
         parts, lowered = [], False
         for stem, index in self.runs:
             back = f' dy="{-_DROP * SIZE:.1f}"' if lowered else ""
@@ -55,17 +55,17 @@ class Label:
 
 
 def name_label(name: str) -> Label:
-    """The label of one symbol."""
+    """Return the label of one symbol."""
     return Label((_run(name),))
 
 
 def sum_label(names: Sequence[str]) -> Label:
-    """The label of a sum of symbols."""
+    """Return the label of a sum of symbols."""
     return _joined(map(_run, names), " + ")
 
 
 def list_label(names: Sequence[str]) -> Label:
-    """The label of several names for one thing."""
+    """Return the label of several names for the same thing."""
     return _joined(map(_run, names), ", ")
 
 

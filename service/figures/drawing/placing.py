@@ -1,6 +1,6 @@
-"""TakenRoom in the picture: what is taken, and the best of several places for what is yet to come.
+"""Keep track of the taken room in a picture, and find the best place for each label.
 
-All in pixels, x to the right and y down. The same figure is always placed alike.
+All lengths are in pixels, x to the right and y down. Placing is deterministic.
 """
 
 from collections.abc import Iterable, Iterator
@@ -12,7 +12,7 @@ import numpy as np
 from service.figures.drawing.names import SIZE, Label
 from service.kinematics.transforms import Numbers
 
-# TakenRoom that is kept between two labels.
+# The minimum gap between two labels.
 _APART = 3.0
 # Half the height of a label: letters with their indices.
 HALF_HEIGHT = 0.56 * SIZE
@@ -23,7 +23,7 @@ _AROUND = np.stack([1.25 * np.cos(_TURNS), np.sin(_TURNS)], axis=-1)
 
 @dataclass(frozen=True, slots=True)
 class Rectangle:
-    """The room of a label: its middle, half its width and half its height."""
+    """The room of a label: its centre, half its width and half its height."""
 
     x: float
     y: float
@@ -32,23 +32,23 @@ class Rectangle:
 
     @classmethod
     def of(cls, label: Label, x: float, y: float) -> "Rectangle":
-        """The room of a label around the point (x, y)."""
+        """Return the room of a label centred at the point (x, y)."""
         return cls(x, y, label.width / 2 + 1, HALF_HEIGHT)
 
     def overlaps(self, other: "Rectangle", apart: float = 0.0) -> bool:
-        """Whether two rectangles share room, or are less than ``apart`` from each other."""
+        """True if two rectangles overlap, or if the gap between them is less than ``apart``."""
         across = self.half_width + other.half_width + apart
         upright = self.half_height + other.half_height + apart
         return abs(self.x - other.x) < across and abs(self.y - other.y) < upright
 
     def holds_any(self, points: Numbers) -> bool:
-        """Whether one of the points ``(points, 2)`` is in it."""
+        """True if the rectangle contains one of the points ``(points, 2)``."""
         offset = np.abs(points - (self.x, self.y))
         return bool((offset < (self.half_width, self.half_height)).all(axis=1).any())
 
     @property
     def points(self) -> Numbers:
-        """Points all over it, ``(15, 2)``."""
+        """Points spread over the rectangle, ``(15, 2)``."""
         x = np.linspace(self.x - self.half_width, self.x + self.half_width, 5)
         y = np.linspace(self.y - self.half_height, self.y + self.half_height, 3)
         return np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
@@ -56,9 +56,9 @@ class Rectangle:
 
 @dataclass(slots=True)
 class TakenRoom:
-    """What is taken: strokes with a radius and a weight, and the rectangles of labels.
+    """The taken room: strokes with a radius and a weight, and the rectangles of labels.
 
-    ``hasty`` keeps labels off each other only: keeping them off strokes, too, is most of the work.
+    With ``hasty``, labels avoid only each other. Avoiding strokes, too, would be most of the work.
     """
 
     hasty: bool = False
@@ -69,7 +69,7 @@ class TakenRoom:
     labels: list[Rectangle] = field(default_factory=list)
 
     def take_line(self, points: Numbers, radius: float, weight: float = 1.0) -> None:
-        """Take the room along a line ``(points, 2)``."""
+        """Mark the room along a line ``(points, 2)`` as taken."""
         for start, end in pairwise(points):
             self._starts.append(start)
             self._ends.append(end)
@@ -81,8 +81,8 @@ class TakenRoom:
         """The ends of all strokes."""
         return [np.array([start, end]) for start, end in zip(self._starts, self._ends, strict=True)]
 
-    def crowd(self, points: Numbers, clearance: float) -> float:
-        """How much of what is taken the points ``(points, 2)`` come nearer than ``clearance``."""
+    def crowding(self, points: Numbers, clearance: float) -> float:
+        """Return how crowded the points ``(points, 2)`` are: 0 if no stroke is in ``clearance``."""
         if not self._starts:
             return 0.0
         starts, ends = np.array(self._starts), np.array(self._ends)
@@ -95,20 +95,21 @@ class TakenRoom:
         return float((lacking * np.array(self._weights)).max(axis=1).sum())
 
     def crossings(self, line: Numbers) -> int:
-        """How many labels and strokes of full weight a straight line ``(points, 2)`` crosses."""
+        """Count the labels and the strokes of full weight that a line ``(points, 2)`` crosses."""
         written = sum(label.holds_any(line) for label in self.labels)
         if not self._starts:
             return written
         starts, ends, first, last = np.array(self._starts), np.array(self._ends), line[0], line[-1]
-        # Two pieces cross where each has its ends on either side of the other.
+        # Two segments cross if each has its ends on both sides of the other.
         parted = _turn(first, last, starts) * _turn(first, last, ends) < 0
         parting = _turn(starts, ends, first) * _turn(starts, ends, last) < 0
         return written + int((parted & parting & (np.array(self._weights) >= 1)).sum())
 
     def place(self, label: Label, wanted: Iterable[Numbers]) -> Rectangle:
-        """The best free place for a label, and take it; the first of ``wanted`` points is best.
+        """Return the best free place for a label, and mark it as taken.
 
-        No place overlaps another label: where all wanted ones do, the label goes farther away.
+        Earlier points in ``wanted`` are better. The place never overlaps another label: if all
+        wanted places do, the label is placed farther away.
         """
         best: tuple[float, Rectangle] | None = None
         size = Rectangle.of(label, 0.0, 0.0)
@@ -118,27 +119,27 @@ class TakenRoom:
             place = replace(size, x=float(point[0]), y=float(point[1]))
             if any(place.overlaps(other, _APART) for other in self.labels):
                 continue
-            badness = 0.08 * rank + (0.0 if self.hasty else self.crowd(place.points, 5.0))
-            if best is None or badness < best[0]:
-                best = (badness, place)
+            penalty = 0.08 * rank + (0.0 if self.hasty else self.crowding(place.points, 5.0))
+            if best is None or penalty < best[0]:
+                best = (penalty, place)
         assert best is not None
         self.labels.append(best[1])
         return best[1]
 
 
 def _turn(start: Numbers, end: Numbers, point: Numbers) -> Numbers:
-    """Positive on one side of the line from ``start`` to ``end``, negative on the other."""
+    """Return numbers that are positive for points left of the line, and negative right of it."""
     (x, y), (u, v) = (end - start).T, (point - start).T
     return np.asarray(x * v - y * u)
 
 
 def around(point: Numbers, near: float) -> list[Numbers]:
-    """Points around a point, the nearest first."""
+    """Return points around a point, the nearest first."""
     return [*np.concatenate([point + near * growth * _AROUND for growth in (1.0, 1.3, 1.7, 2.2)])]
 
 
 def _farther(wanted: list[Numbers]) -> Iterator[Numbers]:
-    """The wanted points, and then points ever farther from the first."""
+    """Yield the wanted points, then points at growing distances from the first one."""
     yield from wanted
     for i in range(2, 60):
         yield from around(wanted[0], 12.0 * i)[:12]

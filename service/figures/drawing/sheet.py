@@ -1,4 +1,4 @@
-"""The sheet that a figure is drawn on: layers, the room that is taken, and the SVG of it all."""
+"""The sheet that a figure is drawn on: its layers, the taken room, and the SVG."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -13,14 +13,14 @@ from service.figures.drawing.style import Theme, style_sheet
 from service.figures.geometry.view import View
 from service.kinematics.transforms import Numbers
 
-# The room of the mechanism itself, in pixels; lengths and names stand around it.
+# The room for the mechanism in pixels. Lengths and names are drawn around it.
 _WIDTH, _HEIGHT, _LARGEST = 460.0, 430.0, 540.0
 _MARGIN = 14.0
 
 
 @dataclass(frozen=True, slots=True)
 class Caption:
-    """Words for whoever does not see a figure. ``name`` is part of ids inside the SVG."""
+    """A text alternative of a figure. ``name`` is part of ids inside the SVG."""
 
     name: str
     title: str
@@ -29,7 +29,7 @@ class Caption:
 
 @dataclass(slots=True)
 class Sheet:
-    """A figure being drawn: what stands on it in layers, and the room that is left."""
+    """A figure while it is drawn: the SVG of its layers, and the taken room."""
 
     camera: Camera
     size: float
@@ -40,16 +40,16 @@ class Sheet:
 
     @property
     def unit(self) -> float:
-        """The size of the mechanism's parts in pixels."""
+        """The size of the mechanism's parts, in pixels."""
         return self.size * self.camera.scale
 
     def take(self, points: Numbers, radius: float, weight: float = 1.0) -> None:
-        """Note that a line of the picture is drawn here."""
+        """Mark the room along a line as taken; the sheet will contain it."""
         self.room.take_line(points, radius, weight)
         self.points += [points - radius, points + radius]
 
     def svg(self, solids: Sequence[str], caption: Caption, theme: Theme) -> str:
-        """The whole figure, as large as what stands on it; ``solids`` are between the layers."""
+        """Return the whole figure, as large as its content; ``solids`` are the middle layer."""
         labels = self.room.labels
         corners = [np.array([[r.x - r.half_width, r.y - r.half_height]]) for r in labels]
         corners += [np.array([[r.x + r.half_width, r.y + r.half_height]]) for r in labels]
@@ -73,7 +73,7 @@ height="{numbers(height)}"/>
 
 
 def camera_for(points: Numbers, view: View) -> Camera:
-    """The camera that has all points ``(points, 3)`` in the room for them."""
+    """Return the camera whose scale fits all points ``(points, 3)`` into the mechanism's room."""
     width, height = np.ptp(Camera.of(view, 1.0).seen(points), axis=0)
     longest = float(np.linalg.norm(np.ptp(points, axis=0)))
     scale = min(_WIDTH / max(width, 1e-9), _HEIGHT / max(height, 1e-9), _LARGEST / longest)

@@ -1,4 +1,4 @@
-"""What a mechanism is made of, as outlines in the picture: cylinders, boxes, rods, a gripper."""
+"""Draw the parts of a mechanism as outlines: cylinders, boxes, rods, a gripper, the ground."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,29 +21,29 @@ class Camera:
 
     @classmethod
     def of(cls, view: View, scale: float) -> "Camera":
-        """The camera of a view, ``scale`` pixels to the unit of length."""
+        """Return the camera of a view, with ``scale`` pixels per unit of length."""
         return cls(view.rotation, scale)
 
     @property
     def towards(self) -> Numbers:
-        """The direction ``(3,)`` to the viewer."""
+        """The direction ``(3,)`` towards the viewer."""
         return np.asarray(self.rotation[2])
 
     def seen(self, points: Numbers) -> Numbers:
-        """Points ``(..., 3)`` in the picture, ``(..., 2)``."""
+        """Project points ``(..., 3)`` to the picture, ``(..., 2)``."""
         flat = (points @ self.rotation.T)[..., :2]
         return np.asarray(flat * [self.scale, -self.scale])
 
     def nearness(self, points: Numbers) -> Numbers:
-        """How far points ``(..., 3)`` are towards the viewer, in pixels."""
+        """Return how near points ``(..., 3)`` are to the viewer, in pixels."""
         return np.asarray(points @ self.rotation[2] * self.scale)
 
 
 @dataclass(frozen=True, slots=True)
 class Solid:
-    """Something drawn: its SVG, and where it is, so that what is nearer is drawn later.
+    """The SVG of a part and its place, by which nearer parts are drawn later.
 
-    It is around the points ``spine`` ``(points, 3)``, within ``radius`` pixels.
+    The part is within ``radius`` pixels of the points ``spine`` ``(points, 3)``.
     """
 
     svg: str
@@ -52,28 +52,28 @@ class Solid:
 
 
 def numbers(*values: float) -> str:
-    """Coordinates as SVG has them."""
+    """Return coordinates in the notation of SVG."""
     return " ".join(f"{value + 0.0:.2f}".rstrip("0").rstrip(".") for value in values)
 
 
 def points_text(points: Numbers) -> str:
-    """Points ``(points, 2)`` as SVG has them."""
+    """Return points ``(points, 2)`` in the notation of SVG."""
     return " ".join(f"{numbers(x)},{numbers(y)}" for x, y in points.tolist())
 
 
 def polygon(points: Numbers, kind: str) -> str:
-    """A closed outline."""
+    """Return the SVG of a closed outline."""
     return f'<polygon class="{kind}" points="{points_text(points)}"/>'
 
 
 def polyline(points: Numbers, kind: str, width: float | None = None) -> str:
-    """An open line; its width in pixels, where its class has none."""
+    """Return the SVG of an open line. ``width`` is in pixels; None if the style sheet sets it."""
     stroke = "" if width is None else f' stroke-width="{numbers(width)}"'
     return f'<polyline class="{kind}" points="{points_text(points)}"{stroke}/>'
 
 
 def perpendicular(direction: Numbers, wanted: Numbers) -> Numbers:
-    """The unit vector at right angles to ``direction`` that is nearest to ``wanted``."""
+    """Return the unit vector perpendicular to ``direction`` that is nearest to ``wanted``."""
     across = wanted - direction * (direction @ wanted)
     size = np.linalg.norm(across)
     if size > 1e-6:
@@ -84,7 +84,7 @@ def perpendicular(direction: Numbers, wanted: Numbers) -> Numbers:
 def cylinder(
     camera: Camera, centre: Numbers, axis: Numbers, half: float, radius: float, fill: str
 ) -> Solid:
-    """A turning joint: a cylinder about its axis, filled by the gradient ``fill``."""
+    """Return a revolute joint: a cylinder about its axis. ``fill`` is the id of its gradient."""
     spine = np.linspace(centre - half * axis, centre + half * axis, 9)
     near = axis if axis @ camera.towards >= 0 else -axis
     tilt = float(near @ camera.towards)
@@ -113,7 +113,7 @@ def cylinder(
 
 
 def box(camera: Camera, centre: Numbers, axis: Numbers, half: float, width: float) -> Solid:
-    """A sliding joint: a box along its axis, ``width`` from its middle to each side."""
+    """Return a prismatic joint: a box along its axis. ``half`` and ``width`` are half its sizes."""
     one = perpendicular(axis, np.array([0.0, 0.0, 1.0]))
     edges = [axis * half, one * width, np.cross(axis, one) * width]
     faces = []
@@ -134,14 +134,14 @@ def box(camera: Camera, centre: Numbers, axis: Numbers, half: float, width: floa
 
 
 def rod(camera: Camera, corners: Numbers, width: float) -> Solid:
-    """A link: a rod along its corners ``(points, 3)``; ``width`` in pixels."""
+    """Return a link: a rod along its corners ``(points, 3)``; ``width`` is in pixels."""
     flat = camera.seen(corners)
     svg = polyline(flat, "rim", width + 2.6) + polyline(flat, "rod", width)
     return Solid(svg, along(corners), width / 2)
 
 
 def along(corners: Numbers, pieces: int = 8) -> Numbers:
-    """Points along each piece of a line ``(points, 3)``, its corners among them."""
+    """Return points along each piece of a line ``(points, 3)``, including its corners."""
     found = [np.linspace(a, b, pieces, endpoint=False) for a, b in pairwise(corners)]
     return np.concatenate([*found, corners[-1:]])
 
@@ -149,9 +149,9 @@ def along(corners: Numbers, pieces: int = 8) -> Numbers:
 def gripper(
     camera: Camera, tool: Numbers, direction: Numbers, length: float, width: float
 ) -> Solid:
-    """A gripper of two fingers whose tips reach the tool's point, opened across the picture.
+    """Return a gripper whose two fingertips are at the tool point, opened across the picture.
 
-    ``width`` is that of its fingers, in pixels.
+    ``width`` is the width of its fingers in pixels.
     """
     aside = np.cross(direction, camera.towards)
     size = float(np.linalg.norm(aside))
@@ -178,7 +178,7 @@ def gripper(
 
 
 def ground(camera: Camera, base: Numbers, normal: Numbers, half: float) -> Solid:
-    """A piece of ground, hatched below its near edge."""
+    """Return a piece of ground, hatched below its near edge."""
     right = np.cross(camera.towards, normal)
     size = float(np.linalg.norm(right))
     right = perpendicular(normal, camera.rotation[0]) if size < 1e-6 else -right / size
@@ -201,8 +201,8 @@ def ground(camera: Camera, base: Numbers, normal: Numbers, half: float) -> Solid
     return Solid(svg, base[None], half * camera.scale)
 
 
-def in_order(camera: Camera, solids: Sequence[Solid]) -> list[Solid]:
-    """The solids from the farthest to the nearest: where two overlap, the nearer comes later."""
+def back_to_front(camera: Camera, solids: Sequence[Solid]) -> list[Solid]:
+    """Sort solids for drawing: of two that overlap in the picture, the nearer one comes later."""
     behind: dict[int, set[int]] = {i: set() for i in range(len(solids))}
     shapes = [_Shape.of(camera, solid) for solid in solids]
     for i, one in enumerate(shapes):
@@ -215,7 +215,7 @@ def in_order(camera: Camera, solids: Sequence[Solid]) -> list[Solid]:
     middle = [float(shape.nearness.mean()) for shape in shapes]
     left, found = set(behind), list[int]()
     while left:
-        # Where solids hide each other in a circle, the farthest comes first.
+        # If solids hide each other in a cycle, the farthest comes first.
         free = [i for i in left if not behind[i] & left] or sorted(left)
         following = min(free, key=lambda i: (middle[i], i))
         found.append(following)
@@ -225,7 +225,7 @@ def in_order(camera: Camera, solids: Sequence[Solid]) -> list[Solid]:
 
 @dataclass(frozen=True, slots=True)
 class _Shape:
-    """A solid in the picture: its spine ``(points, 2)``, its corners, and how near it is."""
+    """A projected solid: its spine ``(points, 2)``, its bounding box, and its nearness."""
 
     spine: Numbers
     left: float
@@ -244,9 +244,9 @@ class _Shape:
         return cls(spine, left, top, right, bottom, nearness, solid.radius)
 
     def nearer_than(self, other: "_Shape") -> float:
-        """By how much it is nearer where they overlap in the picture; 0 where they do not."""
+        """Return by how much ``self`` is nearer where both overlap in the picture, else 0."""
         reach = self.radius + other.radius
-        # Most solids are far from each other.
+        # A fast path: most solids are far from each other.
         across = max(self.left - other.right, other.left - self.right)
         if max(across, self.top - other.bottom, other.top - self.bottom) > reach:
             return 0.0

@@ -1,4 +1,4 @@
-"""The colours of figures, light and dark, as style sheets inside the SVG."""
+"""The light and dark colours of figures, as style sheets inside the SVG."""
 
 from collections.abc import Mapping
 from enum import StrEnum
@@ -6,7 +6,7 @@ from typing import Final
 
 
 class Theme(StrEnum):
-    """Whether a figure is light or dark, or as the reader's system asks; printed it is light."""
+    """The colours of a figure: light, dark, or those of the reader's system. Printed: light."""
 
     AUTO = "auto"
     LIGHT = "light"
@@ -47,7 +47,7 @@ polyline{fill:none}
 
 
 def style_sheet(theme: Theme) -> str:
-    """The style sheet of a figure."""
+    """Return the style sheet of a figure."""
     if theme is Theme.DARK:
         return _SHAPES + _colours(_DARK) + _only("print", _LIGHT)
     if theme is Theme.LIGHT:
@@ -61,7 +61,7 @@ def _only(medium: str, palette: Mapping[str, str]) -> str:
 
 
 def _colours(of: Mapping[str, str]) -> str:
-    """The rules that colour everything; written out, for not every program knows variables."""
+    """Return the rules for all colours, without CSS variables, which some programs ignore."""
     ink, soft, paper = of["ink"], of["soft"], of["paper"]
     rules = {
         ".paper": f"fill:{paper}",

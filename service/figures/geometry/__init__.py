@@ -1,1 +1,1 @@
-"""The geometry of a figure: the chain, its mechanism and the view."""
+"""The geometry of a figure: the path of the chain, its mechanism and the view."""

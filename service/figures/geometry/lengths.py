@@ -1,4 +1,4 @@
-"""The names of the lengths in a figure: which symbols each piece of the path is as long as."""
+"""The named lengths in a figure: pieces of the path that are as long as a sum of symbols."""
 
 from dataclasses import dataclass
 
@@ -15,9 +15,9 @@ _EXACT = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class NamedLength:
-    """A piece of the path from one corner to another, as long as the sum of these symbols.
+    """A piece of the path whose length is the sum of the symbols ``names``.
 
-    The corners are numbers of ``ChainPath``.
+    ``start`` and ``end`` are indices of corners of ``ChainPath``.
     """
 
     start: int
@@ -26,9 +26,9 @@ class NamedLength:
 
 
 def named_lengths(reference: Reference, variables: tuple[Variable, ...]) -> list[NamedLength]:
-    """The pieces that are as long as one symbol, or as several together; none by a number.
+    """Return the pieces whose length is a symbol or a sum of symbols, without numbers.
 
-    Every symbol of an exercise is known to whoever is asked, so no name tells too much.
+    Students know all symbols of an exercise, so the names reveal nothing.
     """
     turning = {joint.variable for joint in reference.joints if not joint.prismatic}
     values = {
@@ -37,7 +37,7 @@ def named_lengths(reference: Reference, variables: tuple[Variable, ...]) -> list
     }
     path = path_of(reference, values, TRIALS)
     lengths = [variable for variable in variables if variable.kind == "length"]
-    # A sum begins with what is constant: l4 + q4.
+    # A sum begins with the constant symbols: l4 + q4.
     names = [each.name for each in sorted(lengths, key=lambda each: each.joint or 0)]
     terms = np.array([*(values[name] for name in names), np.ones(TRIALS)]).T
     found = []
@@ -50,7 +50,7 @@ def named_lengths(reference: Reference, variables: tuple[Variable, ...]) -> list
 
 
 def _sum_of(step: Numbers, terms: Numbers) -> Numbers | None:
-    """Which of the terms add up to the length of a piece ``(samples, 3)``; None for any other."""
+    """Return which terms (as 0 or 1) add up to the length of a piece ``(samples, 3)``, or None."""
     length = np.linalg.norm(step, axis=1)
     solved = np.linalg.lstsq(terms, length, rcond=None)[0]
     share = np.asarray(np.round(solved), dtype=np.float64)

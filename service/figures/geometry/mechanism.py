@@ -1,8 +1,8 @@
-"""The mechanism as a picture shows it: joints on their axes, links between, base and tool.
+"""The mechanism that a picture shows: joints on their axes, links between them, base and tool.
 
-It is built from the axes and the path between them, once for some lengths, and then moves with the
-joints. A joint may sit anywhere on its axis: it is moved along the path to where it does not hide
-its neighbours. No frame of a table is in it.
+It is built from the joint axes and the path between them, once for given lengths, and then moves
+with the joints. A joint may be drawn anywhere on its axis, so it is moved along the path until it
+does not hide its neighbours. The mechanism does not depend on the frames of a table.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -19,11 +19,11 @@ from service.figures.geometry.path import ChainPath, axis_directions, motions, p
 from service.kinematics.screws import moved
 from service.kinematics.transforms import Matrices, Numbers, inverse
 
-# The sizes of what is drawn, as shares of the size of the mechanism's parts.
+# The sizes of drawn parts, as shares of ``MovableMechanism.size``.
 JOINT_LENGTH, JOINT_RADIUS = 0.15, 0.046
 GRIPPER_LENGTH = 0.09
 _CLEARANCE = 0.035
-# That size as a share of the path's extent: the largest at which the joints have room.
+# Candidates for that size, as shares of the path's extent. The largest that has room is used.
 _SIZES = (1.2, 1.1, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5)
 _SAME = 1e-7
 _NOTHING = 1e-5
@@ -33,9 +33,9 @@ _NOTHING = 1e-5
 class Configuration:
     """The mechanism at some joint values; points ``(3,)`` and unit vectors in the base frame.
 
-    ``links`` has one more than there are joints: link i leads from joint i to the next, link 0
-    from the base, the last one to the tool; each is ``(corners, 3)``. A sliding joint may bring two
-    corners together.
+    There is one more link than joints: link 0 leads from the base to the first joint, link i from
+    joint i to the next, the last one to the tool. Each link is ``(corners, 3)``. Two corners may
+    coincide at some value of a prismatic joint.
     """
 
     centres: Numbers
@@ -49,11 +49,11 @@ class Configuration:
 
 @dataclass(frozen=True, slots=True)
 class MovableMechanism:
-    """The mechanism with all joint variables 0, ready to be moved.
+    """The mechanism with all joint variables 0, which can be moved.
 
-    ``corners`` holds for each body, the base first, its points ``(corners, 3)``; ``centres`` the
-    middle of each joint as the body before it carries it. ``extent`` is the size of the whole,
-    ``size`` that of its parts.
+    ``corners`` has the points ``(corners, 3)`` of each body, the base first. ``centres`` has the
+    middle of each joint, which the body before it carries. ``extent`` is the size of the whole,
+    ``size`` the size of its parts.
     """
 
     reference: Reference
@@ -71,9 +71,9 @@ class MovableMechanism:
         return self.reference.joints
 
     def at(self, amounts: Numbers) -> list[Configuration]:
-        """The mechanism at values of the joint variables, ``(configurations, joints)``."""
+        """Return the mechanism at values of the joint variables, ``(configurations, joints)``."""
         count = len(amounts)
-        values = one_by_one(self.lengths, count) | {
+        values = as_samples(self.lengths, count) | {
             joint.variable: amounts[:, i] for i, joint in enumerate(self.joints)
         }
         bodies = motions(self.reference, values, count)
@@ -100,36 +100,36 @@ class MovableMechanism:
 
 
 def _links(carried: Sequence[Numbers], centres: Numbers) -> Iterator[Numbers]:
-    """The lines of the links: the points that each body carries, between the joints' middles."""
+    """Yield the line of each link: the points of its body, between the middles of its joints."""
     starts, ends = [carried[0][:0], *centres[:, None]], [*centres[:, None], carried[-1][:0]]
     for start, points, end in zip(starts, carried, ends, strict=True):
         yield np.concatenate([start, points, end])
 
 
-def one_by_one(numbers: Mapping[str, float], count: int) -> dict[str, Numbers]:
-    """Each number ``count`` times, as formulas want them."""
+def as_samples(numbers: Mapping[str, float], count: int) -> dict[str, Numbers]:
+    """Return each number as an array of length ``count``, for evaluating formulas."""
     return {name: np.full(count, number) for name, number in numbers.items()}
 
 
 def distinct(points: Numbers) -> Numbers:
-    """The points ``(points, 3)`` of a line without those that repeat the one before."""
+    """Return the points ``(points, 3)`` of a line without consecutive duplicates."""
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     return np.asarray(points[np.concatenate([[True], steps > _SAME])])
 
 
 def _moved(body: Matrices, points: Numbers) -> Numbers:
-    """Points ``(points, 3)`` that a body ``(..., 4, 4)`` carries: ``(..., points, 3)``."""
+    """Move points ``(points, 3)`` with a body's pose ``(..., 4, 4)``: ``(..., points, 3)``."""
     turned = points @ np.swapaxes(body[..., :3, :3], -1, -2)
     return np.asarray(turned + body[..., None, :3, 3])
 
 
 def mechanism_of(reference: Reference, numbers: Mapping[str, float]) -> MovableMechanism:
-    """The mechanism with these numbers for all symbols; the joint variables are those to draw."""
-    values: SymbolValues = one_by_one(numbers, 1)
+    """Return the mechanism for these numbers of all symbols; joints are placed for this pose."""
+    values: SymbolValues = as_samples(numbers, 1)
     path = path_of(reference, values, 1)
     bodies = motions(reference, values, 1)[:, 0]
     screws = moved(bodies[:-1], reference.screws(values, 1)[:, 0])
-    track = _roomiest(path, screws, reference.joints)
+    track = _largest_track(path, screws, reference.joints)
     at = track.placed()
     marks = [-np.inf, *at, np.inf]
     corners = tuple(
@@ -150,18 +150,18 @@ def mechanism_of(reference: Reference, numbers: Mapping[str, float]) -> MovableM
     )
 
 
-def _roomiest(path: ChainPath, screws: Numbers, joints: Sequence[Joint]) -> "_Track":
-    """The track with the largest parts that have room on it."""
+def _largest_track(path: ChainPath, screws: Numbers, joints: Sequence[Joint]) -> "_Track":
+    """Return the track with the largest size of parts for which there is enough room."""
     tracks = [_Track.of(path, screws, joints, share) for share in _SIZES]
     return next((track for track in tracks if track.has_room), tracks[-1])
 
 
 @dataclass(frozen=True, slots=True)
 class _Track:
-    """The path with a foot below it, and where on it each joint may sit.
+    """The path, extended to the ground, and the stretch of it on which each joint may be drawn.
 
-    ``reached`` is the length of the path up to each corner; ``first`` and ``last`` are the ends of
-    the stretch of each joint, ``own`` the ends of the piece along its axis.
+    ``reached`` is the length of the path up to each corner. ``first`` and ``last`` are the ends of
+    each joint's stretch, ``own`` the ends of the piece along its axis, as such lengths.
     """
 
     corners: Numbers
@@ -180,7 +180,7 @@ class _Track:
     ) -> "_Track":
         corners = path.corners[:, 0]
         extent = float(np.linalg.norm(np.ptp(corners, axis=0)))
-        # A robot without lengths has joints all the same.
+        # A robot without lengths must be drawn, too.
         extent = extent if extent > _NOTHING else 1.0
         size = share * extent
         directions = axis_directions(screws)
@@ -200,7 +200,7 @@ class _Track:
         stretches = []
         for i, (point, direction) in enumerate(lines):
             on_line = np.linalg.norm(np.cross(corners - point, direction), axis=1) < _SAME * extent
-            # Beyond its neighbours' pieces the line is this joint's by chance only.
+            # Beyond its neighbours' pieces, a piece is on this joint's axis only by chance.
             low = pieces[i - 1] if i else 0
             high = pieces[i + 1] + 1 if i + 1 < len(pieces) else len(corners) - 1
             first = last = pieces[i]
@@ -224,18 +224,18 @@ class _Track:
         )
 
     def point(self, s: float) -> Numbers:
-        """The point ``(3,)`` of the path after the length ``s``."""
+        """Return the point ``(3,)`` of the path at the length ``s``."""
         return np.array([np.interp(s, self.reached, column) for column in self.corners.T])
 
     def corners_between(self, first: float, last: float) -> Numbers:
-        """The corners strictly between two lengths."""
+        """Return the corners strictly between two lengths."""
         inside = (self.reached > first + _SAME) & (self.reached < last - _SAME) & self.bent
         inside[-1] = last == np.inf
         return self.corners[inside]
 
     @property
     def bent(self) -> NDArray[np.bool_]:
-        """At which corners the path begins, bends or ends; at one of several in the same place."""
+        """True for corners where the path begins or bends; for coincident corners, once."""
         kept = np.flatnonzero(np.concatenate([[True], np.diff(self.reached) > _SAME]))
         steps = np.diff(self.corners[kept], axis=0)
         steps /= np.linalg.norm(steps, axis=1, keepdims=True)
@@ -247,16 +247,16 @@ class _Track:
 
     @property
     def arrival(self) -> Numbers:
-        """The direction ``(3,)`` in which the path arrives at its end."""
+        """The direction ``(3,)`` of the path at its end."""
         line = distinct(self.corners)
         step = line[-1] - line[-2] if len(line) > 1 else self.base_normal
         return np.asarray(step / np.linalg.norm(step))
 
     @property
     def _across(self) -> NDArray[np.bool_]:
-        """Which joints a link reaches at right angles, where their own piece begins.
+        """True for joints that a link reaches from the side, where their own piece begins.
 
-        Not where the joint before has no other place than that.
+        False if the joint before can only be at the same place.
         """
         only = np.where(np.ptp([self.first, self.last], axis=0) > _SAME, -np.inf, self.last)
         before = np.concatenate([[-np.inf], only[:-1]])
@@ -264,27 +264,27 @@ class _Track:
 
     @property
     def _halves(self) -> tuple[Numbers, Numbers]:
-        """How far each joint reaches along the path, before and behind its middle."""
+        """The length of each joint along the path, before and after its middle."""
         extended = self.last - self.first > _SAME
         length, side = JOINT_LENGTH / 2 * self.size, 1.3 * JOINT_RADIUS * self.size
-        behind = np.where(extended, length, side)
-        return np.where(self._across, side, behind), behind
+        after = np.where(extended, length, side)
+        return np.where(self._across, side, after), after
 
     @property
     def _apart(self) -> Numbers:
-        """How far the middles of neighbours should be from each other."""
-        before, behind = self._halves
-        return np.asarray(behind[:-1] + before[1:] + _CLEARANCE * self.size)
+        """The minimum distance between the middles of neighbouring joints along the path."""
+        before, after = self._halves
+        return np.asarray(after[:-1] + before[1:] + _CLEARANCE * self.size)
 
     @property
     def has_room(self) -> bool:
-        """Whether the joints and the gripper have their places without touching each other."""
+        """True if the joints and the gripper can be placed without touching each other."""
         at = np.array(self.placed())
         to_tool = self.reached[-1] - at[-1] - self._halves[1][-1] - GRIPPER_LENGTH * self.size
         return bool((np.diff(at) > self._apart - _SAME).all() and to_tool > -_SAME)
 
     def placed(self) -> list[float]:
-        """The place of each joint: where it begins to lead, clear of its neighbours."""
+        """Return the place of each joint on the path, near its preferred one, clear of others."""
         apart = self._apart
         low, high = self.first.copy(), self.last.copy()
         low[0] = max(low[0], min(JOINT_LENGTH / 2 * self.size, high[0]))
@@ -301,10 +301,11 @@ class _Track:
         return at
 
     def _wanted(self, lowest: float) -> Iterator[float]:
-        """The place that each joint would have by itself.
+        """Yield the preferred place of each joint, regardless of its neighbours.
 
-        A turntable stands on the ground. A sliding joint lies where its displacement begins, a
-        turning one there, too, if a link arrives across, or in the middle of its own piece.
+        A first revolute joint is on the ground. A prismatic joint is where its displacement begins.
+        A revolute joint is where its own piece begins if a link arrives from the side, else in the
+        middle of its piece.
         """
         for i, (start, end) in enumerate(self.own):
             if i == 0 and not self.slides[0]:
@@ -316,10 +317,10 @@ class _Track:
 def _foot(
     corners: Numbers, piece: int, line: tuple[Numbers, Numbers], size: float
 ) -> tuple[Numbers, Numbers]:
-    """The point on the ground, and the normal of the ground.
+    """Return the point on the ground, and the normal of the ground.
 
-    Where the first joint has no room on its axis between the origin and the first link, the ground
-    lies below the origin, and below all that hangs down.
+    If the first joint has no room on its axis between the origin and the first link, the ground is
+    below the origin, and below all parts that hang down.
     """
     up = np.array([0.0, 0.0, 1.0])
     origin = corners[0]

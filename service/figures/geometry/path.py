@@ -1,8 +1,8 @@
-"""The chain as a path: from the base frame to the tool, straight piece by straight piece.
+"""The chain as a path of straight pieces from the base frame to the tool.
 
-A piece leads along the axis of a joint, or from one axis to the next. A table gives both: Z_i lies
-along an axis, X_i leads across (``kinematics.chain``). Where a robot has screw axes only, the path
-takes the common normals.
+A piece is along the axis of a joint, or across from one axis to the next. A table gives both kinds:
+Z_i is along an axis, X_i is across (``kinematics.chain``). For a robot with screw axes, the path
+follows the common normals between the axes.
 """
 
 from collections.abc import Sequence
@@ -18,15 +18,15 @@ from service.kinematics.dh import Convention
 from service.kinematics.screws import exponential, moved
 from service.kinematics.transforms import Matrices, Numbers
 
-# Two directions are parallel whose cross product is shorter.
+# Two directions are parallel if their cross product is shorter.
 PARALLEL = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
 class ChainPath:
-    """The corners ``(k + 1, samples, 3)`` of the path, and where its ``k`` pieces lead.
+    """The corners ``(k + 1, samples, 3)`` of a path with ``k`` pieces.
 
-    ``joints`` holds for each piece the place of the joint along whose axis it leads, None for a
+    ``joints`` has, for each piece, the position of the joint whose axis it is along, or None for a
     piece across.
     """
 
@@ -35,9 +35,9 @@ class ChainPath:
 
 
 def motions(reference: Reference, values: SymbolValues, samples: int) -> Matrices:
-    """How far each body is from its place at home: ``(joints + 1, samples, 4, 4)``.
+    """Return each body's motion from its home position, ``(joints + 1, samples, 4, 4)``.
 
-    Body 0 is the base; body i is what joint i carries: e^{[S_1]q_1} … e^{[S_i]q_i}.
+    Body 0 is the base; joint i moves body i by e^{[S_1]q_1} … e^{[S_i]q_i}.
     """
     screws = reference.screws(values, samples)
     moved_by = [np.broadcast_to(np.eye(4), (samples, 4, 4))]
@@ -48,26 +48,26 @@ def motions(reference: Reference, values: SymbolValues, samples: int) -> Matrice
 
 
 def axis_directions(screws: Numbers) -> Numbers:
-    """The directions ``(..., 3)`` of screw axes ``(..., 6)`` that turn, or slide."""
+    """Return the directions ``(..., 3)`` of the screw axes ``(..., 6)`` of joints."""
     omega = screws[..., :3]
     turns = np.linalg.norm(omega, axis=-1, keepdims=True) > PARALLEL
     return np.where(turns, omega, screws[..., 3:])
 
 
 def path_of(reference: Reference, values: SymbolValues, samples: int) -> ChainPath:
-    """The path of a robot at the given values of its symbols, joint variables among them."""
+    """Return the path of a robot at values of all its symbols and joint variables."""
     if isinstance(reference, Robot):
         return table_path(reference.tables[reference.convention], values, samples)
     return _screw_path(reference, values, samples)
 
 
 def table_path(table: ReferenceTable, values: SymbolValues, samples: int) -> ChainPath:
-    """The path of a table; a fixed row leads across only."""
+    """Return the path of a table. All pieces of a fixed row count as across."""
     return path_of_rows(table.values(values, samples), table.convention, len(table.joints))
 
 
 def path_of_rows(rows: Numbers, convention: Convention, joints: int) -> ChainPath:
-    """The path of a table in numbers, ``(rows, 4, samples)``."""
+    """Return the path of a table in numbers, ``(rows, 4, samples)``."""
     reached = frames(rows, convention)
     corners, along = [reached[0, :, :3, 3]], list[int | None]()
     for i, row in enumerate(rows):
@@ -83,7 +83,7 @@ def path_of_rows(rows: Numbers, convention: Convention, joints: int) -> ChainPat
 
 
 def _screw_path(robot: ScrewRobot, values: SymbolValues, samples: int) -> ChainPath:
-    """The path along the axes and their common normals, one sample after the other."""
+    """Return the path along the axes and their common normals."""
     bodies = motions(robot, values, samples)
     screws = moved(bodies[:-1], robot.screws(values, samples))
     tool = robot.frame("tool", values, samples)[:, :3, 3]
@@ -94,9 +94,9 @@ def _screw_path(robot: ScrewRobot, values: SymbolValues, samples: int) -> ChainP
 
 
 def _corners(screws: Numbers, slides: Sequence[bool], tool: Numbers) -> Numbers:
-    """The corners: across to each axis and along it, and across to the tool.
+    """Return the corners of the path: across to each axis, along it, and at last to the tool.
 
-    A sliding axis may lie anywhere: it goes through the point that the path has reached.
+    The axis of a prismatic joint has no fixed place, so it goes through the point reached so far.
     """
     directions = axis_directions(screws)
     points = np.cross(screws[:, :3], screws[:, 3:])
@@ -118,7 +118,7 @@ def _corners(screws: Numbers, slides: Sequence[bool], tool: Numbers) -> Numbers:
 
 
 def _nearest(point: Numbers, direction: Numbers, other: Numbers, its_direction: Numbers) -> Numbers:
-    """The point of a line that is nearest to another line; where all are, its own point."""
+    """Return the point of a line nearest to another line; ``point`` if they are parallel."""
     normal = np.cross(direction, its_direction)
     if np.linalg.norm(normal) < PARALLEL:
         return point

@@ -1,19 +1,19 @@
-"""Numbers to draw with, for symbols that have none."""
+"""Numbers for symbols, with which a figure is drawn."""
 
 from collections.abc import Iterable
 
 from service.catalogue import Variable
 
-# Where in its range the displacement of a sliding joint lies: short of the middle, so that there is
-# room to slide to either side.
+# The displacement of a prismatic joint as a share of its range: less than half, so that there is
+# room to slide both ways.
 _EXTENDED = 0.4
 
 
 def drawing_numbers(variables: Iterable[Variable]) -> dict[str, float]:
-    """A number for every symbol: the home configuration, with the sliding joints drawn out.
+    """Return a number for every symbol: the home configuration with extended prismatic joints.
 
-    A link parameter gets the middle of its range, a joint angle 0. A sliding joint is not at 0,
-    where nothing would be seen of it.
+    A link parameter gets the middle of its range, a joint angle 0. A prismatic joint at 0 would be
+    invisible.
     """
     return {variable.name: _number(variable) for variable in variables}
 

@@ -1,4 +1,4 @@
-"""The direction that a figure is seen from: parallel projection, z0 upwards in the picture."""
+"""The direction from which a figure is seen, in parallel projection with z0 upwards."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,14 +16,14 @@ _SAME = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """Where the viewer is, as seen from the base: degrees about z0 from x0, and above x0-y0."""
+    """The direction to the viewer: degrees about z0 from x0, and degrees above the x0-y0 plane."""
 
     azimuth: float
     elevation: float
 
     @property
     def rotation(self) -> Numbers:
-        """The rows ``(3, 3)``: to the right, upwards, towards the viewer."""
+        """The rotation ``(3, 3)``; its rows are the directions right, up and to the viewer."""
         a, e = np.radians([self.azimuth, self.elevation])
         right = [-np.sin(a), np.cos(a), 0.0]
         towards = [np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)]
@@ -31,10 +31,10 @@ class View:
 
 
 def best_view(shown: Configuration, extent: float) -> View:
-    """The view in which the mechanism is plainest; of equals the first.
+    """Return the view in which the mechanism is clearest (the first one of equals).
 
-    No joint axis is end-on, no link is much foreshortened, different directions look different,
-    what is apart looks apart, and the arm is read from left to right.
+    In a clear view, no joint axis points at the viewer, no link is much foreshortened, different
+    directions look different, distinct points are apart, and the arm extends to the right.
     """
     views = [View(azimuth, elevation) for elevation in _ELEVATIONS for azimuth in _AZIMUTHS]
     rotations = np.array([view.rotation for view in views])
@@ -57,18 +57,18 @@ def best_view(shown: Configuration, extent: float) -> View:
     gaps = np.linalg.norm(np.diff(_flat(points, rotations)[:, [i, j]], axis=1)[:, 0], axis=-1)
     apart = np.maximum(np.linalg.norm(points[i] - points[j], axis=-1), 0.1 * extent)
     rightwards = _flat((shown.tool - shown.base)[None], rotations)[:, 0, 0]
-    plainness = (
+    clarity = (
         2.0 * np.minimum(sizes.min(axis=1), 0.75)
         + 1.2 * angles.min(axis=1, initial=0.55)
         + 1.2 * (gaps / apart).min(axis=1, initial=0.5)
         + 0.5 * np.minimum(gaps / extent, 0.3).mean(axis=1)
         + 0.4 * np.clip(3 * rightwards / extent, -1.0, 1.0)
     )
-    return views[int(plainness.argmax())]
+    return views[int(clarity.argmax())]
 
 
 def _flat(points: Numbers, rotations: Numbers) -> Numbers:
-    """Points ``(points, 3)`` as each view shows them, ``(views, points, 2)``."""
+    """Project points ``(points, 3)`` in each view, ``(views, points, 2)``."""
     return np.asarray((points @ np.swapaxes(rotations, 1, 2))[..., :2])
 
 
@@ -77,7 +77,7 @@ def _parallel(directions: Numbers, direction: Numbers) -> NDArray[np.bool_]:
 
 
 def _different(rows: Numbers, alike: Callable[[Numbers, Numbers], NDArray[np.bool_]]) -> Numbers:
-    """The rows without those that are like one before."""
+    """Return the rows without those that are like an earlier row."""
     kept = rows[:1]
     for row in rows[1:]:
         if not alike(kept, row).any():

@@ -1,1 +1,1 @@
-"""A student's table as frames and formulas."""
+"""Compute the frames and the formulas of a student's table."""

@@ -1,8 +1,8 @@
-"""The pose that a table reaches, multiplied out as text: sums of products of sines and cosines.
+"""The pose of a table, multiplied out as text: sums of products of sines and cosines.
 
-The chain is X_0 Z_1 X_1 Z_2 …. Turns about one axis, or about parallel ones, add up before a sine
-is taken of them, so that an arm with parallel axes gives the formulas of a textbook. Each entry is
-a sum of terms, and their number is bounded: nothing is searched or simplified afterwards.
+The chain is X_0 Z_1 X_1 Z_2 …. Angles about the same axis, or about parallel axes, are added before
+their sine is taken, so an arm with parallel axes has the formulas of a textbook. Each entry is a
+sum of terms. Their number is bounded, and they are not simplified afterwards.
 """
 
 import re
@@ -15,23 +15,23 @@ import numpy as np
 from service.expressions import Expression, evaluate_all
 from service.kinematics.chain import Row
 
-# Of all entries together. A wrist with an arm of two links has about a hundred.
+# The maximum for all entries together. An arm of two links with a wrist has about a hundred.
 _MOST_TERMS: Final = 160
 _SAME: Final = 1e-9
 _LARGEST_FACTOR: Final = 9
 _QUARTER: Final = np.pi / 2
 
-# The coefficient of each product of factors; the factors are texts, in order.
+# A sum: for each product, a tuple of factors as texts, its coefficient.
 Terms = dict[tuple[str, ...], int]
 
 
 class LongPoseError(ValueError):
-    """The pose has more terms than anybody would read."""
+    """The pose has too many terms to be useful."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Angle:
-    """A sum of angles, each a text with its factor, and quarter turns."""
+    """A sum of angles and quarter turns. Each part is a text and its factor."""
 
     parts: tuple[tuple[str, int], ...] = ()
     quarters: int = 0
@@ -47,7 +47,7 @@ class _Angle:
         return _Angle(tuple((text, -factor) for text, factor in self.parts), -self.quarters)
 
     def cosine_and_sine(self) -> tuple[Terms, Terms]:
-        """Those of the whole angle: a quarter turn makes a sine of a cosine."""
+        """Return the cosine and the sine of the angle; each quarter turn swaps them."""
         cosine, sine = _number(1), _number(0)
         if self.parts:
             sign = 1 if self.parts[0][1] > 0 else -1
@@ -59,7 +59,7 @@ class _Angle:
 
 
 def _sum_text(parts: Sequence[tuple[str, int]]) -> str:
-    """A sum as text; the first factor is positive."""
+    """Return a sum as text, without a leading +."""
     ordered = [
         f"{'-' if factor < 0 else '+'}{'' if abs(factor) == 1 else f'{abs(factor)}*'}{text}"
         for text, factor in parts
@@ -68,9 +68,9 @@ def _sum_text(parts: Sequence[tuple[str, int]]) -> str:
 
 
 def _angle(cell: Expression) -> _Angle:
-    """The angle in a cell; what is no sum of symbols and quarter turns stays one text."""
+    """Return the angle in a cell as a sum of symbols and quarter turns; else as one text."""
     names = sorted(cell.symbols)
-    # At 0, at 1 for each symbol alone, and where it would be seen that it is no sum.
+    # Evaluate with all symbols 0, with each symbol 1, and at a point that shows if it is not a sum.
     points = np.vstack([np.zeros(len(names)), np.eye(len(names)), 0.37 + np.arange(len(names))])
     [found] = evaluate_all([cell], dict(zip(names, points.T, strict=True)), {})
     values = np.broadcast_to(np.asarray(found, dtype=np.float64), len(points))
@@ -87,7 +87,7 @@ def _angle(cell: Expression) -> _Angle:
 
 
 def _length(cell: Expression) -> Terms:
-    """The length in a cell as one factor."""
+    """Return the length in a cell as one factor."""
     text = cell.text()
     if text == "0":
         return {}
@@ -127,7 +127,7 @@ def _plus(one: Terms, other: Terms) -> Terms:
 
 
 class _Pose:
-    """The rotation's columns and the position so far, and a turn about z that is still to come."""
+    """The rotation's columns and the position so far, and a pending turn about z."""
 
     def __init__(self) -> None:
         self.columns = [[_number(int(i == j)) for i in range(3)] for j in range(3)]
@@ -142,7 +142,7 @@ class _Pose:
             ]
 
     def about(self, angle: _Angle, first: int, second: int) -> None:
-        """Turn two columns towards each other."""
+        """Turn the columns ``first`` and ``second`` by ``angle``."""
         cosine, sine = angle.cosine_and_sine()
         pairs = list(zip(self.columns[first], self.columns[second], strict=True))
         self.columns[first] = [_plus(_product(u, cosine), _product(v, sine)) for u, v in pairs]
@@ -157,7 +157,7 @@ class _Pose:
         self.turn = _Angle()
 
     def x_axis(self) -> list[Terms]:
-        """The direction of x after the turn that is still to come."""
+        """Return the direction of x after the pending turn."""
         cosine, sine = self.turn.cosine_and_sine()
         return [
             _plus(_product(u, cosine), _product(v, sine))
@@ -169,15 +169,15 @@ class _Pose:
             self.turn_now()
             self.about(angle, 1, 2)
         elif angle.quarters % 4:
-            # A half turn about x: what turns about z afterwards turns the other way round.
+            # A half turn about x reverses y, z and all later turns about z.
             self.columns[1:] = [[_times(terms, -1) for terms in each] for each in self.columns[1:]]
             self.turn = self.turn.reversed()
 
 
 def pose_texts(modified: Iterable[Row[Expression]]) -> list[list[str]]:
-    """The entries ``(4, 4)`` of the product of a modified table's rows, as texts to be read.
+    """Return the entries ``(4, 4)`` of the product of a modified table's rows, as texts.
 
-    Raises LongPoseError.
+    Raises LongPoseError if there are too many terms.
     """
     pose = _Pose()
     for a, alpha, d, theta in modified:
@@ -196,6 +196,6 @@ def pose_texts(modified: Iterable[Row[Expression]]) -> list[list[str]]:
 
 
 def _text(terms: Terms) -> str:
-    """A sum of products as text."""
+    """Return a sum of products as text."""
     ordered = [("*".join(product) or "1", count) for product, count in terms.items()]
     return _sum_text(ordered) or "0"

@@ -1,4 +1,4 @@
-"""The symbols and joints that a table to be drawn may speak of: an exercise's, or a book's."""
+"""The symbols and joints that a drawn table may use: those of an exercise, or of textbooks."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -10,13 +10,13 @@ from service.catalogue.compile import DEFAULT_RANGES
 from service.expressions import Kind, Symbol, Vocabulary, joint_variable
 from service.figures.geometry.symbol_numbers import drawing_numbers
 
-# The rows of a free table: ten joints and a fixed row or two.
+# The rows of a free table: ten joints and up to two fixed rows.
 _ROWS: Final = range(1, 13)
 
 
 @dataclass(frozen=True, slots=True)
 class DrawingScope:
-    """What a table may be written in, and the numbers to draw it with."""
+    """The joints and symbols that a table may use, and the numbers to draw it with."""
 
     joints: tuple[Joint, ...]
     variables: tuple[Variable, ...]
@@ -24,21 +24,21 @@ class DrawingScope:
 
     @classmethod
     def of(cls, exercise: Exercise) -> "DrawingScope":
-        """The scope of an exercise."""
+        """Return the scope of an exercise."""
         return cls(exercise.joints, exercise.variables, exercise.vocabulary)
 
     def numbers(self, given: Mapping[str, float]) -> dict[str, float]:
-        """A number for each symbol: the one given, or one that is good to draw with."""
+        """Return a number for each symbol: the given one, or a default for drawing."""
         numbers = drawing_numbers(self.variables)
         return numbers | {name: given[name] for name in numbers.keys() & given.keys()}
 
 
 @lru_cache(maxsize=256)
 def free_scope(structure: str) -> DrawingScope:
-    """The letters of a robotics book for a robot with these joints, such as "RRP".
+    """Return the textbook symbols for a robot with the joints ``structure``, such as "RRP".
 
-    Joint i turns by theta_i (or q_i), or slides by d_i (or q_i). All else that a table may hold,
-    a1, alpha1, d1, theta1 and l1 to those of row 12, is a length or an angle.
+    The variable of joint i is theta_i (or q_i) if it is revolute, and d_i (or q_i) if it is
+    prismatic. All other symbols a1, alpha1, d1, theta1, l1 up to index 12 are lengths or angles.
     """
     joints = tuple(
         Joint(i, f"d{i}" if letter == "P" else f"theta{i}", prismatic=letter == "P")

@@ -1,4 +1,4 @@
-"""A table as formulas: its cells, its equivalent in the other convention, and its pose."""
+"""The formulas of a table: its cells, its equivalent in the other convention, and its pose."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ _ZERO_TEXT = "0"
 
 @dataclass(frozen=True, slots=True)
 class RowInFormulas:
-    """A row of a table; its label is its number, "b" before the first axis or "e" for the tool."""
+    """A row of a table. Its label is its number, "b" for the base or "e" for the tool."""
 
     label: str
     cells: tuple[Expression, ...]
@@ -25,11 +25,11 @@ class RowInFormulas:
 
 @dataclass(frozen=True, slots=True)
 class TableFormulas:
-    """What a table says as formulas.
+    """The formulas of a table.
 
-    ``cells`` has None for one that is not read, or too long to be printed. Without such a cell
-    there are the rows that say the same in the other convention, and the entries ``(4, 4)`` of the
-    pose of the last frame in the base frame, unless they would be too long to be of use.
+    A cell that is unreadable or too long to print is None in ``cells``; then the rest is empty.
+    ``converted`` is an equivalent table in the other convention. ``pose`` has the entries
+    ``(4, 4)`` of the pose of the last frame in the base frame; it is empty if it is too long.
     """
 
     cells: tuple[tuple[Expression | None, ...], ...]
@@ -40,7 +40,7 @@ class TableFormulas:
 def table_formulas(
     written: StudentTable, convention: Convention, scope: DrawingScope, budget: WorkBudget
 ) -> TableFormulas:
-    """The formulas of a table, as many as the budget lets be printed."""
+    """Return the formulas of a table, as far as the budget allows."""
     cells = tuple(
         tuple(cell if cell and _may_print(cell, budget) else None for cell in row.expressions)
         for row in written.rows
@@ -51,7 +51,7 @@ def table_formulas(
     zero = read(_ZERO_TEXT, scope.vocabulary)
     return TableFormulas(
         cells,
-        # Its cells are those of the table.
+        # Its cells are copies of the table's, so printing them costs nothing extra.
         _converted(rows, convention, zero),
         _pose(rows, convention, zero, scope, budget),
     )
@@ -64,12 +64,12 @@ def _may_print(formula: Expression, budget: WorkBudget) -> bool:
 def _converted(
     rows: Sequence[Row[Expression]], convention: Convention, zero: Expression
 ) -> tuple[RowInFormulas, ...]:
-    """The rows in the other convention; a fixed row more where a and α have no other place."""
+    """Return the rows in the other convention, with an extra fixed row if a and α need one."""
     count = len(rows)
     if convention is Convention.STANDARD:
         found = modified_rows(rows, zero)
         labels = [*map(str, range(1, count + 1)), "e"]
-        # The last row is the tool's; without a tool it says nothing.
+        # The last row is for the tool. Leave it out if it is empty.
         kept = found if _has_x(found[-1]) else found[:-1]
     else:
         found = standard_rows(rows, zero)
@@ -95,7 +95,7 @@ def _pose(
     modified = rows if convention is Convention.MODIFIED else modified_rows(rows, zero)
     try:
         texts = pose_texts(modified)
-        # Whatever is longer is read no further than that.
+        # Stop if reading the texts would exceed the budget.
         if not budget.charge_reading(sum(reading_cost(each) for row in texts for each in row)):
             return ()
         pose = tuple(tuple(read(each, scope.vocabulary) for each in row) for row in texts)

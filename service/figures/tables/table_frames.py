@@ -1,4 +1,4 @@
-"""The frames of a table as somebody has written it, right or wrong, at given joint values."""
+"""The frames of a student's table, right or wrong, at given joint values."""
 
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
@@ -20,15 +20,15 @@ from service.kinematics.dh import Convention
 from service.kinematics.jacobian import coincident, rank, space_jacobian
 from service.kinematics.transforms import Matrices, Numbers
 
-# Postures that stand for a generic one.
+# The number of random configurations that represent a generic one.
 _GENERIC = 4
-# Beyond so many metres or radians there is nothing to draw.
+# Larger numbers (metres or radians) are not drawn.
 LARGEST = 1e6
 
 
 @dataclass(frozen=True, slots=True)
 class CellWithoutNumber:
-    """A cell without a number: its place by the labels of a report, and why."""
+    """A cell without a number: its row and column as labelled in reports, and the reason."""
 
     row: str
     column: str
@@ -37,7 +37,7 @@ class CellWithoutNumber:
 
 @dataclass(frozen=True, slots=True)
 class FreedomLoss:
-    """Joints that do no more together than fewer would, by their indices, and how they lie."""
+    """Redundant joints, by their indices, and a message that says why they are redundant."""
 
     joints: tuple[int, ...]
     message: str
@@ -47,10 +47,10 @@ class FreedomLoss:
 class TableFrames:
     """The frames of a table ``(configurations, frames, 4, 4)``, the base frame first.
 
-    They end before the first row with a cell that has no number: ``unread`` says which.
-    ``row_joints`` has for each row before that the joint whose variable stands in it. Only a
-    complete table has ``freedoms``, how many degrees of freedom its joints have. ``symbols`` are
-    those that stand in it.
+    The frames end before the first row that has a cell without a number; ``unread`` lists these
+    cells. ``row_joints`` has the joint of each row up to there, by the variable in the row.
+    ``symbols`` are the symbols in the table. ``freedoms`` is the number of degrees of freedom of a
+    complete table, else None.
     """
 
     frames: Matrices
@@ -65,11 +65,11 @@ class TableFrames:
 def table_to_draw(
     answer: object, scope: DrawingScope, budget: WorkBudget, angle_unit: AngleUnit = "radians"
 ) -> StudentTable:
-    """A table as it would be handed in; its cells are read as grading reads them.
+    """Read a table as grading does.
 
-    Raises UnreadableAnswerError where there are no rows.
+    Raises UnreadableAnswerError if the answer has no rows.
     """
-    # Nobody asks for its numbers at these samples.
+    # The values at these samples are not used.
     samples = Samples({variable.name: np.full(SAMPLES, 0.5) for variable in scope.variables})
     return read_table(answer, Reader(scope.vocabulary, samples, angle_unit, "m", budget))
 
@@ -81,9 +81,9 @@ def table_frames(
     numbers: Mapping[str, float],
     amounts: Numbers,
 ) -> TableFrames:
-    """The frames of a table at values of the joint variables, ``(configurations, joints)``.
+    """Return the frames of a table at values of the joint variables, ``(configurations, joints)``.
 
-    ``numbers`` are those of all symbols.
+    ``numbers`` has a number for every symbol.
     """
     count = len(amounts)
     values = {name: np.full(count + _GENERIC, number) for name, number in numbers.items()}
@@ -113,12 +113,12 @@ def _symbols(row: StudentRow) -> Set[str]:
 
 
 def _joint(symbols: Set[str], scope: DrawingScope) -> Joint | None:
-    """The first joint whose variable is among the symbols of a row."""
+    """Return the first joint whose variable is among the symbols of a row, or None."""
     return next((joint for joint in scope.joints if joint.variable in symbols), None)
 
 
 def _numbers(written: StudentTable, values: Mapping[str, Numbers], count: int) -> Table:
-    """The table in numbers, ``(rows, 4, values)``; NaN in a cell that has none."""
+    """Return the table in numbers, ``(rows, 4, values)``; NaN in a cell without a number."""
     known = values.keys()
     cells: list[Expression | None] = [
         each if each is not None and each.symbols <= known else None
@@ -156,7 +156,7 @@ _NO_NUMBER = reading_error(
 def _freedoms(
     table: Table, convention: Convention, scope: DrawingScope, used: Set[str]
 ) -> tuple[int, tuple[FreedomLoss, ...]]:
-    """How many degrees of freedom the joints have at a generic configuration, and the lost ones."""
+    """Return the degrees of freedom at a generic configuration, and the redundant joints."""
     moving = [i for i, joint in enumerate(scope.joints) if joint.variable in used]
     still = tuple(joint for joint in scope.joints if joint.variable not in used)
     lost = [

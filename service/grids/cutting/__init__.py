@@ -1,1 +1,1 @@
-"""Cutting a text into cells without losing the place of a character."""
+"""Cut a text into cells. Every character keeps its place in the pasted text."""

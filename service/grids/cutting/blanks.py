@@ -1,7 +1,7 @@
-"""Elements between blanks, by MATLAB's rule for square brackets.
+"""Split a row into elements at blanks, by MATLAB's rule for square brackets.
 
-A blank separates two operands. A sign with a blank before it and none behind it begins a new
-element: ``[c1 -s1]`` has two, ``[c1 - s1]`` and ``[c1 -  s1]`` one.
+A blank separates two operands. A sign with a blank before it but not after it begins a new
+element: ``[c1 -s1]`` has two elements, ``[c1 - s1]`` and ``[c1 -  s1]`` have one.
 """
 
 import re
@@ -17,24 +17,24 @@ from service.grids.cutting.source_text import SourceText
 _SIGNS: Final = "+-−–"
 _BINARY: Final = "*/^×·⋅∙∗•÷="
 _UNIT: Final = re.compile(r"(?:deg|degrees?|rad|radians?)(?![A-Za-z0-9])|[°º˚]", re.IGNORECASE)
-# A function's name alone is no element, so the blank behind it separates nothing.
+# A function's name alone is not an element, so the blank after it separates nothing.
 _FUNCTION: Final = re.compile(rf"(?<![A-Za-z])(?:{'|'.join(SPELLINGS)})(?:(?:\^|\*\*)\d+)?$")
-# The longest end of an element that a rule needs to see.
+# The number of characters at the end of an element that decide whether it continues.
 _END: Final = 16
-# No row may have more; the rest of a longer row is left in one piece.
+# The rest of a longer row stays in one piece.
 _MAX_ELEMENTS: Final = 2 * GRID_LIMITS.columns
 
 
 @dataclass(frozen=True, slots=True)
 class BlankSeparated:
-    """The elements of one row; ``signs`` are the signs that began one, having no blank behind."""
+    """The elements of one row. ``signs`` are the signs that began an element (no blank follows)."""
 
     elements: tuple[SourceText, ...]
     signs: tuple[SourceText, ...]
 
 
 def split_blanks(row: SourceText) -> BlankSeparated:
-    """The elements of a row, by MATLAB's rule for blanks; brackets stay in one piece."""
+    """Split a row into elements by MATLAB's rule for blanks; brackets stay in one piece."""
     words = _words(row.text)
     elements: list[SourceText] = []
     signs: list[SourceText] = []
@@ -54,9 +54,9 @@ def split_blanks(row: SourceText) -> BlankSeparated:
 
 
 def continues(left: str, right: str) -> bool:
-    """Whether ``right``, behind a blank, belongs to the same element as ``left``."""
+    """True if ``right``, which follows ``left`` after a blank, belongs to the same element."""
     if left[-1] == "*" and left[-2:-1].strip(" \t\r\n.*"):
-        # d3* 0 is a marked joint variable and a zero, not a product.
+        # ``d3* 0`` is a joint variable marked by a star, and a zero; it is not a product.
         return False
     if left[-1] in _SIGNS or left[-1] in _BINARY:
         return True
@@ -68,6 +68,6 @@ def continues(left: str, right: str) -> bool:
 
 
 def _words(text: str) -> list[tuple[int, int]]:
-    """The [start, end) of each word between blanks; blanks in brackets separate nothing."""
+    """The [start, end) of each word. Blanks in brackets do not separate words."""
     blanks = [i for i in outside(text, pairs(text)) if text[i].isspace()]
     return [(a + 1, b) for a, b in pairwise([-1, *blanks, len(text)]) if a + 1 < b]

@@ -1,4 +1,4 @@
-"""The protocol of all formats: a text in, a grid or one GridError out."""
+"""The protocol of all formats: parse a text into a Grid or raise one GridError."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -12,12 +12,12 @@ Rows = Sequence[Sequence[GridCell]]
 
 
 class GridError(TextError):
-    """A text that is no table or matrix, or more than one. ``span`` is in the text as pasted."""
+    """The text is not exactly one table or matrix. ``span`` is a place in the pasted text."""
 
 
 @dataclass(frozen=True, slots=True)
 class Grid:
-    """Rows of cells, not always equally long; ``format`` names the format of the text."""
+    """Rows of cells, which may differ in length. ``format`` is the name of the text's format."""
 
     format: str
     rows: tuple[tuple[GridCell, ...], ...]
@@ -25,7 +25,7 @@ class Grid:
 
     @property
     def size(self) -> str:
-        """The size in words: ``4 × 4``, or ``3 × 2 to 4`` where the rows differ."""
+        """The size as text: ``4 × 4``, or ``3 × 2 to 4`` if the rows differ in length."""
         shortest, longest = min(map(len, self.rows)), max(map(len, self.rows))
         columns = str(longest) if shortest == longest else f"{shortest} to {longest}"
         return f"{len(self.rows)} × {columns}"
@@ -35,8 +35,8 @@ class Grid:
 class GridFormat:
     """One way to write a grid.
 
-    ``matches`` tells whether a text seems to be in this format, and raises nothing; ``parse`` reads
-    it and may raise GridError. Both take time linear in the text.
+    ``matches`` returns True if a text seems to be in this format; it never raises. ``parse`` reads
+    the text and may raise GridError. Both take linear time.
     """
 
     matches: Callable[[str], bool]
@@ -44,21 +44,21 @@ class GridFormat:
 
 
 def too_many_matrices(whole: Span) -> GridError:
-    """The error for more matrices than an arm has links."""
+    """Return the error for a text with more matrices than an arm may have links."""
     message = f"A pasted text has at most {GRID_LIMITS.rows} matrices; yours has more."
     return GridError("too_many_matrices", message, whole)
 
 
 def too_many_rows(found: str, whole: Span) -> GridError:
-    """The error for a table with ``found`` rows, "14 in all" or "more"."""
+    """Return the error for a table with too many rows; ``found`` is "14 in all" or "more"."""
     most = f"A table has at most {GRID_LIMITS.rows - 1} rows below a header"
     return GridError("too_many_rows", f"{most}; yours has {found}.", whole)
 
 
 def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid:
-    """A grid of tidied cells, without empty rows and empty outer columns.
+    """Return the grid of tidied cells, without empty rows and empty outer columns.
 
-    Raises GridError where nothing is left, or more than the limits allow.
+    Raises GridError if all cells are empty or the grid exceeds ``GRID_LIMITS``.
     """
     tidied = [[tidy(cell) for cell in row] for row in rows]
     filled = [row for row in tidied if any(cell.text for cell in row)]
@@ -75,7 +75,7 @@ def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid
 
 
 def tidy(cell: GridCell) -> GridCell:
-    """The cell without blanks around it and without marks that only style it: $…$, `…`."""
+    """Return the cell without outer blanks and without marks that only style it: $…$, `…`."""
     cell = cell.strip()
     for mark in ("`", "**"):
         if len(cell.text) > 2 * len(mark) and cell.text.startswith(mark):
@@ -83,7 +83,7 @@ def tidy(cell: GridCell) -> GridCell:
             if cell.text.endswith(mark) and mark not in inner.text:
                 cell = inner.strip()
     if "$" in cell.text and cell.text.count("$") % 2 == 0 and "\\$" not in cell.text:
-        # A blank in its place keeps $a$$b$ from becoming one name.
+        # Replace each $ by a blank, so that $a$$b$ does not become one name.
         cell = SourceText(cell.text.replace("$", " "), cell.starts, cell.ends, cell.at).strip()
     if cell.text.startswith("\\(") and cell.text.endswith("\\)"):
         cell = cell.cut(2, len(cell.text) - 2).strip()
@@ -91,7 +91,7 @@ def tidy(cell: GridCell) -> GridCell:
 
 
 def _without_empty_columns(rows: list[list[GridCell]]) -> list[list[GridCell]]:
-    """The rows without cells at the right, and a column at the left, that are empty throughout."""
+    """Return the rows without empty columns at the right, and at the left of a rectangle."""
     while all(row and not row[-1].text for row in rows if len(row) == max(map(len, rows))):
         widest = max(map(len, rows))
         rows = [row[:-1] if len(row) == widest else row for row in rows]

@@ -1,16 +1,16 @@
-"""Bounds on the cost of one pasted text, checked before the work that they bound."""
+"""Bounds on the cost of one pasted text. Each is checked before the work that it limits."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
 class GridLimits:
-    """Bounds on one pasted text. ``rows`` are twelve and a header.
+    """Bounds on one pasted text. ``rows`` is twelve rows and a header.
 
-    ``separators`` counts commas, bars, tabs, line ends and the like wherever they stand: a
-    spreadsheet's empty cells are pasted along with the others.
+    ``separators`` bounds the number of commas, bars, tabs, line ends and the like in the text,
+    including those between empty cells of a spreadsheet.
 
-    The reader of expressions bounds the length of a cell, for a long cell costs only itself.
+    The length of a cell is bounded by the reader of expressions.
     """
 
     characters: int = 26 * 1024

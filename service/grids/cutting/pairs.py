@@ -1,4 +1,4 @@
-"""Pairs of brackets and quotes, inside which no separator splits a cell."""
+"""Find pairs of brackets and quotes. A separator inside a pair does not split a cell."""
 
 import re
 from collections.abc import Iterator
@@ -19,9 +19,9 @@ _BRACKET_OR_QUOTE: Final = re.compile(r"""[][(){}'"]""")
 
 
 def pairs(text: str) -> dict[int, int]:
-    """The place behind each bracket's partner on the same line: start -> end, exclusive.
+    """Map each opening bracket's place to the place after its partner on the same line.
 
-    A bracket without partner is left to the reader of expressions.
+    Brackets without a partner are left out; the reader of expressions reports them.
     """
     found: dict[int, int] = {}
     stack: list[int] = []
@@ -38,9 +38,9 @@ def pairs(text: str) -> dict[int, int]:
 
 
 def strict_pairs(source: SourceText) -> dict[int, int]:
-    """The place behind each bracket and quoted string of program text: start -> end, exclusive.
+    """Map the start of each bracket pair or quoted string in program text to its exclusive end.
 
-    Raises GridError for a bracket without its partner and a string that does not end.
+    Raises GridError for a bracket without a partner and for a string that does not end.
     """
     text = source.text
     found: dict[int, int] = {}
@@ -49,7 +49,7 @@ def strict_pairs(source: SourceText) -> dict[int, int]:
     while sign := _BRACKET_OR_QUOTE.search(text, at):
         i, letter = sign.start(), sign[0]
         at = i + 1
-        # Behind an operand ' is a transpose and no string.
+        # After an operand, ' is a transpose and does not begin a string.
         if letter in _STRINGS and (i == 0 or text[i - 1].isspace() or text[i - 1] in "[({,;:="):
             string = _STRINGS[letter].match(text, i)
             if string is None:
@@ -83,7 +83,7 @@ def _unbalanced(source: SourceText, at: int, stack: list[int]) -> GridError:
 
 
 def outside(text: str, ends: dict[int, int]) -> Iterator[int]:
-    """The places of the characters outside all pairs; ``ends`` gives the place behind each."""
+    """Yield the places of characters outside all pairs; ``ends`` maps start to exclusive end."""
     i = 0
     while i < len(text):
         if i in ends:
@@ -94,9 +94,9 @@ def outside(text: str, ends: dict[int, int]) -> Iterator[int]:
 
 
 def split(source: SourceText, separators: str) -> list[SourceText]:
-    """The pieces between ``separators`` that stand in no brackets and no quotes.
+    """Split at each of the characters ``separators`` outside brackets and quotes.
 
-    Raises GridError as ``strict_pairs`` does.
+    Raises GridError for the errors of ``strict_pairs``.
     """
     text, ends = source.text, strict_pairs(source)
     places, at = [], 0

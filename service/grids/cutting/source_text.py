@@ -1,4 +1,4 @@
-"""A piece of text, and the place of each of its characters in the text as typed."""
+"""A piece of text that knows the place of each of its characters in the text as typed."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -13,7 +13,7 @@ _LINE_END: Final = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
 
 @dataclass(frozen=True, slots=True)
 class SourceText:
-    """``text``, and for each of its characters the [start, end) in the text as typed.
+    """A piece of text, with the [start, end) of each character in the text as typed.
 
     ``at`` is the place of the piece if it is empty.
     """
@@ -25,11 +25,11 @@ class SourceText:
 
     @staticmethod
     def of(source: str) -> "SourceText":
-        """The whole text as typed."""
+        """Return the whole ``source`` as a piece."""
         return SourceText(source, range(len(source)), range(1, len(source) + 1))
 
     def cut(self, start: int, end: int) -> "SourceText":
-        """The characters [start, end)."""
+        """Return the characters [start, end) as a piece."""
         if start == 0 and end == len(self.text):
             return self
         return SourceText(
@@ -37,7 +37,7 @@ class SourceText:
         )
 
     def span(self, start: int = 0, end: int | None = None) -> Span:
-        """The place in the text as typed of the characters [start, end)."""
+        """Return the place of the characters [start, end) in the text as typed."""
         length = len(self.text)
         start = min(max(start, 0), length)
         stop = start if end is None else min(max(end, start), length)
@@ -50,20 +50,20 @@ class SourceText:
 
     @property
     def whole(self) -> Span:
-        """The place in the text as typed of the whole piece."""
+        """The place of the whole piece in the text as typed."""
         return self.span(0, len(self.text))
 
     def strip(self, letters: str | None = None) -> "SourceText":
-        """The piece without blanks (or ``letters``) at either end."""
+        """Return the piece without blanks (or ``letters``) at either end."""
         left = len(self.text) - len(self.text.lstrip(letters))
         return self.cut(left, max(left, len(self.text.rstrip(letters))))
 
     def lines(self) -> list["SourceText"]:
-        """The lines without their ends."""
+        """Return the lines without their line ends."""
         return self.split(_LINE_END)
 
     def split(self, separator: re.Pattern[str]) -> list["SourceText"]:
-        """The pieces before, between and behind all matches of ``separator``."""
+        """Return the pieces before, between and after all matches of ``separator``."""
         pieces, start = [], 0
         for match in separator.finditer(self.text):
             pieces.append(self.cut(start, match.start()))
@@ -71,13 +71,13 @@ class SourceText:
         return [*pieces, self.cut(start, len(self.text))]
 
     def spelled(self, text: str) -> "SourceText":
-        """``text`` in place of the whole piece."""
+        """Return a piece that reads ``text``; each character has the place of the whole piece."""
         start, end = self.whole
         return SourceText(text, (start,) * len(text), (end,) * len(text), start)
 
 
 def joined(pieces: Iterable[SourceText], at: int) -> SourceText:
-    """The pieces one after the other; ``at`` is the place of the result if it is empty."""
+    """Return the pieces joined into one; ``at`` is the place of the result if it is empty."""
     kept = [piece for piece in pieces if piece.text]
     if len(kept) == 1:
         return kept[0]

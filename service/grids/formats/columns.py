@@ -1,4 +1,4 @@
-"""Columns between blanks, where each line has the same number of values."""
+"""Columns between blanks; each line has the same number of values."""
 
 import itertools
 import re
@@ -45,7 +45,7 @@ def _is_rule(line: str) -> bool:
 
 
 def _at_gaps(line: SourceText) -> list[SourceText]:
-    """The pieces between two or more blanks; none where one of them is half a value."""
+    """Split a line at two or more blanks. Return no pieces if a split falls inside a value."""
     pieces = line.split(_GAP)
     halves = any(continues(left.text, right.text) for left, right in itertools.pairwise(pieces))
     return [] if halves else pieces

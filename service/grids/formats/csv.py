@@ -1,4 +1,4 @@
-"""Cells between commas. The comma of atan2(y, x), in brackets, separates nothing."""
+"""Cells between commas. A comma in brackets, as in atan2(y, x), separates nothing."""
 
 from typing import Final
 

@@ -1,4 +1,4 @@
-"""Lines, separators and quoted cells of CSV, TSV and semicolon files."""
+"""Split CSV, TSV and semicolon files into lines and cells, which may be quoted."""
 
 import re
 
@@ -10,10 +10,10 @@ _LINE_ENDS = "\r\n\x85\u2028\u2029"
 
 
 def split_cells(source: SourceText, separator: str, *, brackets: bool) -> list[list[SourceText]]:
-    """The cells of each line. With ``brackets`` a separator inside brackets separates nothing.
+    """Return the cells of each line. With ``brackets``, a separator in brackets separates nothing.
 
     A cell that begins with " ends with the next single ", as in spreadsheets. Raises GridError
-    where that is missing, or the cell goes on behind it.
+    if this quotation mark is missing or more text follows it in the cell.
     """
     text = source.text
     ends = pairs(text) if brackets else {}
@@ -35,9 +35,9 @@ def split_cells(source: SourceText, separator: str, *, brackets: bool) -> list[l
 def _cell(
     source: SourceText, start: int, stops: str, ends: dict[int, int], plain: re.Pattern[str]
 ) -> tuple[SourceText, int]:
-    """The cell that begins at ``start``, and the place of the separator or line end behind it.
+    """Return the cell at ``start``, and the place of the separator or line end after it.
 
-    ``plain`` are the letters that neither stop a cell nor open a pair.
+    ``plain`` matches characters that neither end a cell nor open a pair.
     """
     text = source.text
     i = start
@@ -51,7 +51,7 @@ def _cell(
 
 
 def _end(plain: re.Pattern[str], text: str, start: int) -> int:
-    """Where the plain letters from here on end."""
+    """Return the place after the plain characters that begin at ``start``."""
     found = plain.match(text, start)
     return found.end() if found else start
 

@@ -1,7 +1,7 @@
 """HTML: the source of a table on a web page.
 
-The scan is written by hand and not by html.parser, for each character's place in the pasted text
-is needed, and linear time for any text.
+The scanner is our own because html.parser does not give each character's place in the pasted text,
+nor linear time for every text.
 """
 
 import re
@@ -31,7 +31,7 @@ _DEGREE_SIGNS: Final = frozenset({"o", "O", "0", "°", "º", "∘", "˚"})
 
 @dataclass
 class _Table:
-    """The part of the table that was read so far."""
+    """The state of the scan: the rows read so far and the open cell."""
 
     rows: list[list[SourceText]] = field(default_factory=list)
     pieces: list[SourceText] = field(default_factory=list)
@@ -52,7 +52,7 @@ def _parse(source: SourceText) -> Grid:
     i = 0
     while i < len(text):
         if text[i] == "<" and (tag := _NAME.match(text, i)):
-            end = _behind_tag(source, i)
+            end = _after_tag(source, i)
             i = _tag(source, table, tag, end)
         elif text.startswith("<!", i):
             close = text.find("-->" if text.startswith("<!--", i) else ">", i)
@@ -63,8 +63,8 @@ def _parse(source: SourceText) -> Grid:
     return grid("HTML", table.rows, source.whole)
 
 
-def _behind_tag(source: SourceText, start: int) -> int:
-    """The place behind a tag's >; one in a quoted attribute does not count."""
+def _after_tag(source: SourceText, start: int) -> int:
+    """Return the place after the tag's >. A > in a quoted attribute does not count."""
     text = source.text
     i = start
     while i < len(text):
@@ -80,12 +80,12 @@ def _behind_tag(source: SourceText, start: int) -> int:
 
 
 def _tag(source: SourceText, table: _Table, tag: re.Match[str], end: int) -> int:
-    """Take in one tag; return where to go on."""
+    """Process one tag; return the place where the scan continues."""
     name, start = tag[1].lower(), tag.start()
     closes = source.text[start + 1] == "/"
     place = source.span(start, end)
     if name in _SKIPPED and not closes:
-        return _behind_element(source, name, end)
+        return _after_element(source, name, end)
     if name == "table":
         _table_tag(table, place, closes=closes)
     if name in _LAYOUT:
@@ -107,7 +107,7 @@ def _tag(source: SourceText, table: _Table, tag: re.Match[str], end: int) -> int
     return end
 
 
-def _behind_element(source: SourceText, name: str, start: int) -> int:
+def _after_element(source: SourceText, name: str, start: int) -> int:
     close = re.compile(rf"</{name}\s{{0,8}}>", re.IGNORECASE).search(source.text, start)
     return close.end() if close else len(source.text)
 
@@ -159,7 +159,7 @@ def _raise_or_lower(source: SourceText, table: _Table, name: str, start: int, en
 
 
 def _text(source: SourceText, table: _Table, start: int) -> int:
-    """Take in text up to the next tag or entity, or one entity; return where to go on."""
+    """Process one entity, or text up to the next tag or entity; return where the scan continues."""
     text = source.text
     if entity := _ENTITY.match(text, start):
         end = entity.end()

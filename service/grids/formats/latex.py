@@ -1,4 +1,4 @@
-r"""LaTeX: tabular, array, bmatrix and the like, or their rows alone (``a & b \\ c & d``)."""
+r"""LaTeX: tabular, array, bmatrix and similar environments, or only rows (``a & b \\ c & d``)."""
 
 import re
 from typing import Final
@@ -7,7 +7,7 @@ from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
 from service.grids.cutting.source_text import SourceText, joined
 from service.grids.scripts.program_text import text_around
 
-# The number of arguments in braces behind \begin{…}.
+# The number of arguments in braces after \begin{…}.
 ARGUMENTS: Final = {
     "tabular": 1, "longtable": 1, "array": 1, "tabular*": 2, "tabularx": 2,
     "matrix": 0, "bmatrix": 0, "pmatrix": 0, "Bmatrix": 0, "smallmatrix": 0, "bsmallmatrix": 0,
@@ -18,7 +18,7 @@ PLAIN: Final = re.compile(r"\\[pbB]?matrix\s{0,4}(?=\{)")
 BEGIN: Final = re.compile(r"\\(begin|end)[ \t]*\{([A-Za-z]{1,20}\*?)\}")
 _TOKEN: Final = re.compile(r"\\(?:[A-Za-z]+|.)|[{}&]", re.DOTALL)
 _ROW_ENDS: Final = frozenset({"\\\\", "\\tabularnewline", "\\cr"})
-# Only what can be nothing else is an option: a cell may begin with a bracket, as [q_1] + l_1 does.
+# Brackets are an option only if they cannot begin a cell, as in [q_1] + l_1.
 _LENGTH: Final = (
     r"(?:\s{0,8}\[\s*[-+]?[0-9.]{1,8}\s*(?:pt|em|ex|mm|cm|in|\\(?:baselineskip|jot|tabcolsep"
     r"|(?:small|med|big)skipamount|(?:heavy|light|cmid)rulewidth))\s*\])?"
@@ -28,7 +28,7 @@ _TRIM: Final = r"(?:\s{0,8}\([a-z]{0,4}\))?"
 _COLOURS: Final = r"(?:\s{0,8}\[[a-zA-Z]{1,10}\])?"
 _BRACED: Final = r"(?:\s{0,8}\{[^{}]{0,40}\})"
 _GAP: Final = re.compile(rf"\*?{_LENGTH}")
-# Commands that are no part of a cell, and what may stand behind each.
+# Commands that are no part of a cell, and the options that may follow each.
 _OPTIONS: Final = {
     "hline|endhead|endfirsthead|endfoot|endlastfoot|displaystyle": "",
     "toprule|midrule|bottomrule|addlinespace": _LENGTH,
@@ -41,10 +41,10 @@ _OPTIONS: Final = {
 _RULES: Final = re.compile(
     rf"\\(?:{'|'.join(f'(?:{name})(?![A-Za-z]){options}' for name, options in _OPTIONS.items())})"
 )
-# A sign behind a backslash begins no comment.
+# An escaped % does not begin a comment.
 _COMMENT: Final = re.compile(r"\\.|%[^\n]*", re.DOTALL)
 _POSITION: Final = re.compile(r"(?:\s{0,40}\[\s*[lcrtbhpsm!]{0,4}\s*\])?\s{0,40}")
-# Sizes of brackets mean nothing, and are half of what SymPy's LaTeX consists of.
+# Commands for bracket sizes mean nothing; they are half of the LaTeX that SymPy prints.
 _SIZES: Final = re.compile(r"\\(?:left|right|[bB]igg?[lr]?)\s{0,4}(?=[()\[\]])")
 _SPANNING: Final = frozenset({"\\multicolumn", "\\multirow"})
 _WRAPPERS: Final = (
@@ -80,7 +80,7 @@ def _parse(source: SourceText) -> Grid:
 
 
 def without_comments(source: SourceText) -> SourceText:
-    r"""The text without its comments; \% is a sign."""
+    r"""Return the text without its comments; \% does not begin a comment."""
     text = source.text
     pieces: list[SourceText] = []
     start = 0
@@ -92,11 +92,11 @@ def without_comments(source: SourceText) -> SourceText:
 
 
 def _body(source: SourceText) -> SourceText:
-    """The content of the environment; the whole text where only its rows were pasted."""
+    """Return the content of the environment, or the whole text if it is only rows."""
     text = source.text
     marks = [mark for mark in BEGIN.finditer(text) if mark[2] in ARGUMENTS]
     if not marks and (plain := PLAIN.search(text)):
-        end = behind_brace(source, plain.end())
+        end = after_brace(source, plain.end())
         _check_in_front(source.cut(0, plain.start()))
         check_wrapper(source.cut(end, len(text)))
         return source.cut(plain.end() + 1, end - 1)
@@ -118,43 +118,43 @@ def _body(source: SourceText) -> SourceText:
         raise other_end(source, first, last)
     _check_in_front(source.cut(0, first.start()))
     check_wrapper(source.cut(last.end(), len(text)))
-    return source.cut(_behind_arguments(source, first), last.start())
+    return source.cut(_after_arguments(source, first), last.start())
 
 
 def never_begun(source: SourceText, mark: re.Match[str]) -> GridError:
-    """The error for an end of an environment without its beginning."""
+    r"""Return the error for an ``\end{…}`` without its ``\begin{…}``."""
     message = f"This ends a {mark[2]} that has no beginning. Put \\begin{{{mark[2]}}} in front."
     return GridError("unbalanced_environment", message, source.span(*mark.span()))
 
 
 def never_ended(source: SourceText, mark: re.Match[str]) -> GridError:
-    """The error for a beginning of an environment without its end."""
+    r"""Return the error for a ``\begin{…}`` without its ``\end{…}``."""
     message = f"This {mark[2]} is never ended; \\end{{{mark[2]}}} is missing."
     return GridError("unbalanced_environment", message, source.span(*mark.span()))
 
 
 def other_end(source: SourceText, begin: re.Match[str], end: re.Match[str]) -> GridError:
-    """The error for an end that has another name than the beginning."""
+    r"""Return the error for an ``\end{…}`` that names another environment than ``\begin{…}``."""
     message = f"This does not fit \\begin{{{begin[2]}}}."
     return GridError("unbalanced_environment", message, source.span(*end.span()))
 
 
 def _check_in_front(front: SourceText) -> None:
-    """Raise GridError for a factor before the matrix; the left side of an equation is its name."""
-    if behind_wrappers(front.text) == len(front.text):
+    """Raise GridError for a factor before the matrix. The left side of an equation is allowed."""
+    if after_wrappers(front.text) == len(front.text):
         return
     check_wrapper(front.cut(front.text.rfind("=") + 1, len(front.text)))
 
 
 def check_wrapper(around: SourceText) -> None:
-    """Raise GridError where more than layout stands around the matrix."""
-    end = behind_wrappers(around.text)
+    """Raise GridError if ``around``, text next to a matrix, is more than layout."""
+    end = after_wrappers(around.text)
     if end < len(around.text):
         raise text_around(around.cut(end, len(around.text)))
 
 
-def behind_wrappers(text: str) -> int:
-    """The place behind the layout that a text begins with."""
+def after_wrappers(text: str) -> int:
+    """Return the place after the layout commands at the beginning of a text."""
     at = 0
     while at < len(text):
         found = next((match for token in _WRAPPERS if (match := token.match(text, at))), None)
@@ -164,27 +164,27 @@ def behind_wrappers(text: str) -> int:
     return at
 
 
-def _behind_arguments(source: SourceText, begin: re.Match[str]) -> int:
-    """The place behind the arguments of an environment, in front of which a position may stand."""
+def _after_arguments(source: SourceText, begin: re.Match[str]) -> int:
+    """Return the place after an environment's arguments; ``[t]`` and the like may precede each."""
     at = begin.end()
     arguments = ARGUMENTS[begin[2]]
     if not arguments and begin[2].endswith("*"):
-        return _behind_position(source, at)
+        return _after_position(source, at)
     for _ in range(arguments):
-        following = _behind_position(source, at)
+        following = _after_position(source, at)
         if source.text[following : following + 1] != "{":
             break
-        at = behind_brace(source, following)
+        at = after_brace(source, following)
     return at
 
 
-def _behind_position(source: SourceText, at: int) -> int:
+def _after_position(source: SourceText, at: int) -> int:
     position = _POSITION.match(source.text, at)
     return position.end() if position else at
 
 
-def behind_brace(source: SourceText, start: int) -> int:
-    """The place behind the brace that closes the one at ``start``. Raises GridError without it."""
+def after_brace(source: SourceText, start: int) -> int:
+    """Return the place after the brace that closes the one at ``start``, or raise GridError."""
     depth = 0
     for i in range(start, len(source.text)):
         depth += {"{": 1, "}": -1}.get(source.text[i], 0)
@@ -194,7 +194,7 @@ def behind_brace(source: SourceText, start: int) -> int:
 
 
 def _rows(body: SourceText) -> list[list[SourceText]]:
-    r"""The cells between & of the rows between \\; those in braces separate nothing."""
+    r"""Split into rows at \\ and into cells at &. Separators in braces are ignored."""
     text = body.text
     rows: list[list[SourceText]] = [[]]
     pieces: list[SourceText] = []

@@ -1,4 +1,4 @@
-"""Cells between bars: Markdown, with or without its rule, and tables drawn with lines."""
+"""Cells between bars: Markdown, with or without the rule below the header, and drawn tables."""
 
 import re
 from typing import Final
@@ -36,7 +36,7 @@ def _is_rule(line: str) -> bool:
 
 
 def _cells(line: SourceText) -> list[SourceText]:
-    r"""The cells of a line; \| is a bar inside one."""
+    r"""Return the cells of a line; \| is a bar inside a cell."""
     pieces = line.split(_SEPARATOR)
     if len(pieces) > 1 and not pieces[0].text:
         pieces = pieces[1:]

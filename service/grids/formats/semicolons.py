@@ -1,6 +1,6 @@
-"""Cells between semicolons: CSV of a spreadsheet whose decimal sign is the comma.
+"""Cells between semicolons: CSV from a spreadsheet that uses decimal commas.
 
-A decimal comma stays in its cell, for the reader of expressions to name.
+A decimal comma stays in its cell; the reader of expressions reports it.
 """
 
 from typing import Final
@@ -29,7 +29,7 @@ def _parse(source: SourceText) -> Grid:
 
 
 def _holds_several(cell: str) -> bool:
-    """Whether commas or blanks separate values inside the cell."""
+    """True if commas or blanks separate values inside the cell."""
     return any(cell[i] == "," or cell[i].isspace() for i in outside(cell, pairs(cell)))
 
 

@@ -1,4 +1,4 @@
-"""Cells between tabs, as a spreadsheet or a web page puts them on the clipboard."""
+"""Cells between tabs, the clipboard format of spreadsheets and web pages."""
 
 import re
 from typing import Final
@@ -7,7 +7,7 @@ from service.grids.cutting.grid import Grid, GridFormat, grid
 from service.grids.cutting.source_text import SourceText
 from service.grids.formats.delimited import split_cells
 
-# A tab behind a comma or at the beginning of each line is only layout.
+# A tab after a comma, or at the beginning of each line, is only layout.
 _TAB: Final = re.compile(r"[^\s,;][^\S\n\t]*\t")
 
 

@@ -8,8 +8,8 @@ from service.grids.cutting.source_text import SourceText
 from service.grids.matrices import lists, matlab
 from service.grids.scripts.program_text import begins_as_matrix, text_around, unwrap
 
-# No function, or one of MATLAB (or of MATLAB and Python).
-_OF_MATLAB: Final = frozenset({"", "sym", "simplify"})
+# Functions of MATLAB that may enclose a matrix; "" if there is none.
+_MATLAB_FUNCTIONS: Final = frozenset({"", "sym", "simplify"})
 
 
 def _parse(source: SourceText) -> Grid:
@@ -20,7 +20,7 @@ def _parse(source: SourceText) -> Grid:
         lines = lists.lines_of(content)
         if lines is not None:
             rows = lists.rows(lines)
-        elif matrix.maker not in _OF_MATLAB and ";" not in content.text:
+        elif matrix.maker not in _MATLAB_FUNCTIONS and ";" not in content.text:
             rows = lists.flat(content, matrix)
         else:
             rows, notes = matlab.rows(content)

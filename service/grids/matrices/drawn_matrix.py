@@ -1,7 +1,7 @@
 r"""Matrices drawn over several lines: SymPy's and Octave's ⎡…⎤, Maxima's [ … ], MATLAB's / … \.
 
-A row is one line, with an empty line of the drawing below it. Where a cell takes several lines, its
-powers and fractions stand on lines of their own, and the matrix is refused.
+A row is one line, followed by an empty line of the drawing. A matrix whose cells take several lines
+(powers, fractions) is refused.
 """
 
 import re
@@ -11,7 +11,7 @@ from typing import Final
 from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
 from service.grids.cutting.pairs import outside, pairs
 from service.grids.cutting.source_text import SourceText
-from service.grids.scripts.program_text import TAIL, behind_names
+from service.grids.scripts.program_text import TAIL, after_names
 
 _PIECES: Final = frozenset("⎡⎢⎣⎤⎥⎦⎛⎜⎝⎞⎟⎠⎧⎨⎩⎫⎬⎭")
 _LEFT: Final = "⎡⎢⎣⎛⎜⎝[/|\\"
@@ -29,7 +29,7 @@ def _matches(text: str) -> bool:
 
 
 def _parse(source: SourceText) -> Grid:
-    drawing = source.cut(behind_names(source.text), len(source.text)).strip(TAIL)
+    drawing = source.cut(after_names(source.text), len(source.text)).strip(TAIL)
     lines = [line for line in map(SourceText.strip, drawing.lines()) if line.text]
     rows: list[SourceText | None] = []
     for line in lines:
@@ -49,7 +49,7 @@ def _parse(source: SourceText) -> Grid:
 
 
 def _cells(row: SourceText) -> list[SourceText]:
-    """The cells between commas, as MATLAB draws them, or else between two or more blanks."""
+    """Split a row at commas (MATLAB's drawing), or at two or more blanks if it has no comma."""
     commas = [i for i in outside(row.text, pairs(row.text)) if row.text[i] == ","]
     if not commas:
         return row.split(_GAP)

@@ -11,8 +11,8 @@ from service.grids.formats.latex import (
     ARGUMENTS,
     BEGIN,
     PLAIN,
-    behind_brace,
-    behind_wrappers,
+    after_brace,
+    after_wrappers,
     check_wrapper,
     never_begun,
     never_ended,
@@ -22,7 +22,7 @@ from service.grids.formats.latex import (
 from service.grids.scripts.program_text import text_around
 
 _CLOSERS: Final = re.compile(r"(?:[ \t]|\\(?:right|[bB]igg?r?)\s?\\?[\])}.]|[\])}])*")
-# What stands at a matrix and changes it; behind the end of a line ^0 may begin a name.
+# Operators after a matrix that change it. After a line end, ^0 may begin the next name.
 _CHANGES: Final = re.compile(
     r"[\^_'*/+\d-]|\\(?:cdot|times|circ|ast|div)(?![A-Za-z])|\s+(?:[_'*/+-]|\^\{?\\?[^\d{\\])"
 )
@@ -34,40 +34,39 @@ _HEADING: Final = re.compile(
     r"(?:[A-Za-z]{1,14}\s{1,3}){0,3}(?:[A-Za-z_^]{0,4}[\d_^{} ]{1,12}|[A-Z]_?\{?[en]\}?)"
     r"\)?[:.]?(?=[\s$\\]|\Z)"
 )
-# Behind the matrices: T = A_1 A_2, which is left to whoever reads it.
+# A product after the last matrix, ``T = A_1 A_2``, which is ignored.
 _PRODUCTS: Final = re.compile(r"[\s$,.;&\\(){}\[\]A-Za-z0-9_^]*=[\s$,.;&\\(){}\[\]A-Za-z0-9_^=]*")
 _BLANKS: Final = " \t\r\n&,.:"
 
 
 def several(source: SourceText) -> list[tuple[SourceText, SourceText]]:
-    """The matrices of a text, each with the name in front of it, which may be empty.
+    """Return the matrices of a text as pairs (name, matrix); the name may be empty.
 
-    Raises GridError where an environment does not end, and where something stands beside a matrix
-    that may change it.
+    Raises GridError if an environment does not end, or if text next to a matrix may change it.
     """
     source = without_comments(source)
     found: list[tuple[SourceText, SourceText]] = []
-    behind = 0
+    after = 0
     innermost = _innermost(source)
     if len(innermost) > GRID_LIMITS.rows:
         raise too_many_matrices(source.whole)
     for start, end in innermost:
-        front = source.cut(behind, start)
+        front = source.cut(after, start)
         if found:
-            _check_behind(front)
+            _check_after(front)
         found.append((_name(front), source.cut(start, end)))
-        behind = end
+        after = end
     if not found:
         return [(source.cut(0, 0), source)]
-    rest = source.cut(behind, len(source.text))
-    _check_behind(rest)
+    rest = source.cut(after, len(source.text))
+    _check_after(rest)
     if not _PRODUCTS.fullmatch(rest.text):
         check_wrapper(rest)
     return found
 
 
 def _innermost(source: SourceText) -> list[tuple[int, int]]:
-    """The [start, end) of each environment of a matrix that holds no other."""
+    """Return the [start, end) of each matrix environment that contains no other."""
     return sorted([*_environments(source), *_plain(source)])
 
 
@@ -96,12 +95,12 @@ def _plain(source: SourceText) -> Iterator[tuple[int, int]]:
     end = 0
     for mark in PLAIN.finditer(source.text):
         if mark.start() >= end:
-            end = behind_brace(source, mark.end())
+            end = after_brace(source, mark.end())
             yield mark.start(), end
 
 
-def _check_behind(rest: SourceText) -> None:
-    """Raise GridError where ``rest``, behind a matrix, begins with what changes the matrix."""
+def _check_after(rest: SourceText) -> None:
+    """Raise GridError if ``rest``, the text after a matrix, begins with an operator on it."""
     closers = _CLOSERS.match(rest.text)
     at = closers.end() if closers else 0
     if _CHANGES.match(rest.text, at):
@@ -109,13 +108,13 @@ def _check_behind(rest: SourceText) -> None:
 
 
 def _name(front: SourceText) -> SourceText:
-    """The name in front of a matrix: the left side of the last equation, or a heading.
+    """Return the name before a matrix: the left side of the last equation, or a heading.
 
     Raises GridError for a factor, and for a word that may change the matrix.
     """
     right = front.text.rfind("=") + 1
     if not right:
-        rest = front.cut(behind_wrappers(front.text), len(front.text)).strip(_BLANKS)
+        rest = front.cut(after_wrappers(front.text), len(front.text)).strip(_BLANKS)
         heading = _HEADING.match(rest.text)
         end = heading.end() if heading else 0
         check_wrapper(rest.cut(end, len(rest.text)))

@@ -1,4 +1,4 @@
-"""Lists of lists: Python's and NumPy's, SymPy's Matrix([[…]]), NumPy's print, JSON."""
+"""Lists of lists from Python, NumPy (also printed arrays), SymPy's Matrix([[…]]), and JSON."""
 
 import re
 from typing import Final
@@ -11,7 +11,7 @@ from service.grids.cutting.source_text import SourceText, joined
 from service.grids.scripts.program_text import WrittenMatrix
 
 _BETWEEN: Final = " \t\r\n,;"
-# A character in UTF-16, of one or two units, or a sign.
+# A character in UTF-16, of one or two units, or an escaped punctuation mark.
 _ESCAPE: Final = re.compile(
     r"\\(?:(u[dD][89abAB][0-9A-Fa-f]{2}\\u[dD][c-fC-F][0-9A-Fa-f]{2}|u[0-9A-Fa-f]{4})|([\\\"'/]))"
 )
@@ -19,9 +19,9 @@ _COLUMN_MAKERS: Final = frozenset({"Matrix", "ImmutableMatrix", "MutableDenseMat
 
 
 def lines_of(content: SourceText) -> list[SourceText] | None:
-    """The contents of the brackets in ``content``, or None where it is no list of lists.
+    """Return the contents of each bracket in ``content``, or None if it is not a list of lists.
 
-    Raises GridError for unbalanced brackets, and more of them than a grid has rows.
+    Raises GridError for unbalanced brackets, and for more brackets than a grid may have rows.
     """
     ends = strict_pairs(content)
     text = content.text
@@ -45,7 +45,7 @@ def lines_of(content: SourceText) -> list[SourceText] | None:
 
 
 def rows(lines: list[SourceText]) -> list[list[SourceText]]:
-    """The values of each line: between commas, or between blanks where it has no comma.
+    """Split each line into values at commas, or at blanks if it has no comma.
 
     Raises GridError for a list of matrices.
     """
@@ -59,10 +59,10 @@ def rows(lines: list[SourceText]) -> list[list[SourceText]]:
 
 
 def flat(content: SourceText, matrix: WrittenMatrix) -> list[list[SourceText]]:
-    """One list given to a function: cut into rows where a shape is named.
+    """Return the rows of a flat list that a function makes a matrix of.
 
-    SymPy makes a column of a plain list, NumPy a row. Raises GridError where the shape does not
-    fit.
+    Without a shape, SymPy makes a column and NumPy a row. Raises GridError if the number of values
+    does not fit the shape.
     """
     values = _values(content)
     if matrix.shape is None:
@@ -86,10 +86,10 @@ def _values(line: SourceText) -> list[SourceText]:
 
 
 def unquoted(cell: SourceText) -> SourceText:
-    r"""The cell without the quotation marks of a string and the escapes in it.
+    r"""Return the cell without the quotation marks of a string, and with its escapes decoded.
 
-    Only escapes that cannot be the beginning of a LaTeX command are: "\theta" stays \theta, though
-    a program would read a tab in it.
+    An escape that may begin a LaTeX command is not decoded: "\theta" stays \theta, though a program
+    would read a tab in it.
     """
     quote = cell.text[:1]
     if quote not in {"'", '"'} or len(cell.text) < 2 or not cell.text.endswith(quote):
@@ -106,5 +106,5 @@ def unquoted(cell: SourceText) -> SourceText:
 
 
 def _character(units: str) -> str:
-    """The character of an escape; U+FFFD for half a one, which no encoding can write out."""
+    """Return the character of a UTF-16 escape; U+FFFD for half of a surrogate pair."""
     return bytes.fromhex(units.replace("\\", "").replace("u", "")).decode("utf-16-be", "replace")

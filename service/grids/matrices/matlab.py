@@ -1,4 +1,4 @@
-"""Rows of a MATLAB matrix, between semicolons or line ends, and values between commas or blanks."""
+"""Split a MATLAB matrix into rows at semicolons or line ends, and rows at commas or blanks."""
 
 from service.expressions.errors import Note, counted
 from service.grids.cutting.blanks import split_blanks
@@ -8,9 +8,9 @@ from service.grids.cutting.source_text import SourceText
 
 
 def rows(content: SourceText) -> tuple[list[list[SourceText]], tuple[Note, ...]]:
-    """The values of each row, and notes where two readings are possible.
+    """Return the values of each row, and notes if two readings are possible.
 
-    Raises GridError where commas and blanks separate values and both readings make a matrix.
+    Raises GridError if splitting at commas only and splitting at blanks, too, both give a matrix.
     """
     lines = split(content, ";\r\n")
     lines = [line.strip() for line in lines if line.text.strip(" \t,")]

@@ -1,4 +1,4 @@
-"""MATLAB rows without their brackets: each line ends in a semicolon."""
+"""MATLAB rows without brackets: each line ends with a semicolon."""
 
 from typing import Final
 

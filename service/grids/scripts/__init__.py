@@ -1,1 +1,1 @@
-"""Scripts and sessions in MATLAB or Python."""
+"""Read scripts and interpreter sessions in MATLAB or Python."""

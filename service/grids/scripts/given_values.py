@@ -1,7 +1,7 @@
-"""A MATLAB script that gives letters values before it writes out its matrix.
+"""Assignments above the matrix of a MATLAB script, such as ``a1 = 0.4``.
 
-The letters of a matrix stand for the exercise's symbols, and so a number that a script gives one is
-left aside, with a note. Any other value may be needed to read the matrix: it is refused.
+The letters of a matrix are the exercise's symbols, so a number assigned to one is ignored, with a
+note. Any other value may be needed to read the matrix, so the text is refused.
 """
 
 import re
@@ -14,7 +14,7 @@ from service.grids.cutting.grid import GridError
 from service.grids.cutting.source_text import SourceText
 from service.grids.scripts.program_text import begins_as_matrix, without_remarks
 
-# A value other than a matrix or a list: the characters of a calculation, or a call of a function.
+# The value may be a calculation or a call of a function, but not a matrix or a list.
 ASSIGNMENT: Final = re.compile(
     r"[ \t\r]*(?P<line>(?P<name>[A-Za-z]\w{0,60})[ \t]*=(?!=)[ \t]*"
     r"(?P<value>(?=[^\s])(?:[^;,\n\[\](){}=]|\([^()\n]{0,40}\)){1,80}))(?:[;,\n]|\Z)"
@@ -23,16 +23,16 @@ _NUMBER: Final = re.compile(r"[-+]?(?:\d{1,30}\.?\d{0,30}|\.\d{1,30})(?:[eE][-+]
 _HARMLESS: Final = re.compile(
     r"[ \t\r]*(?:(?:syms|clc|clear|close|format|pkg|load)\b[^;\n]*)?(?:[;,\n]|\Z)"
 )
-# A name that is read, and not given a value.
+# A name that is not the left side of an assignment.
 _READ: Final = re.compile(r"[A-Za-z]\w*(?!\w|[ \t]*=(?!=))")
 _SHOWS: Final = re.compile(r"(?:disp|display|pretty)\(\w{1,60}\)\Z")
 _TAIL: Final = " \t\r\n;,"
-_TOLD: Final = 8
+_MOST_NAMES: Final = 8
 
 
 @dataclass(frozen=True, slots=True)
 class GivenValue:
-    """``line`` is the statement that gives the letter ``name`` its ``value``."""
+    """The ``value`` that a script assigns to the letter ``name``; ``line`` is the statement."""
 
     name: str
     value: str
@@ -40,20 +40,20 @@ class GivenValue:
 
     @property
     def is_number(self) -> bool:
-        """Whether the value is a plain number."""
+        """True if the value is a plain number."""
         return _NUMBER.fullmatch(self.value) is not None
 
     @property
     def is_itself(self) -> bool:
-        """Whether the letter is only declared as a symbol: ``q1 = sym('q1')``."""
+        """True if the statement only declares the letter as a symbol: ``q1 = sym('q1')``."""
         return self.value[:3] == "sym" and self.value[5:-2] == self.name
 
 
 def without_given_values(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
-    """The matrix of a script without the statements around it, and a note on their numbers.
+    """Return the matrix of a script without the statements around it, and a note on their numbers.
 
-    Any other text stays as it is. Raises GridError where a letter of the matrix is given a value
-    that is no plain number.
+    Any other text is returned unchanged. Raises GridError if the script assigns a value other than
+    a plain number to a letter of the matrix.
     """
     plain = without_remarks(source)
     shown = _without_display(plain)
@@ -61,13 +61,14 @@ def without_given_values(source: SourceText) -> tuple[SourceText, tuple[Note, ..
     rest = shown.cut(at, len(shown.text))
     if (shown is plain and not given) or not begins_as_matrix(rest.text):
         return source, ()
-    return rest, told_numbers(given, set(_READ.findall(rest.text)))
+    return rest, given_numbers_note(given, set(_READ.findall(rest.text)))
 
 
-def told_numbers(given: Sequence[GivenValue], read: Set[str]) -> tuple[Note, ...]:
-    """The note on numbers that a script gives its letters, of which ``read`` stand in the cells.
+def given_numbers_note(given: Sequence[GivenValue], read: Set[str]) -> tuple[Note, ...]:
+    """Return the note on numbers that a script assigns to letters.
 
-    Raises GridError where one of these is given a value that is no plain number.
+    Raises GridError if a letter in ``read``, those in the cells, has a value other than a plain
+    number.
     """
     for each in given:
         if each.name in read and not each.is_number:
@@ -80,8 +81,8 @@ def told_numbers(given: Sequence[GivenValue], read: Set[str]) -> tuple[Note, ...
     numbers = [each for each in given if each.is_number]
     if not numbers:
         return ()
-    names = ", ".join(dict.fromkeys(each.name for each in numbers[:_TOLD]))
-    more = ", …" if len(numbers) > _TOLD else ""
+    names = ", ".join(dict.fromkeys(each.name for each in numbers[:_MOST_NAMES]))
+    more = ", …" if len(numbers) > _MOST_NAMES else ""
     message = (
         f"The script gives numbers to {names}{more}; they were not used. The letters were read as "
         "the exercise's symbols."
@@ -91,7 +92,7 @@ def told_numbers(given: Sequence[GivenValue], read: Set[str]) -> tuple[Note, ...
 
 
 def _given_values(source: SourceText) -> tuple[list[GivenValue], int]:
-    """The values that the statements at the top give, and the place behind these statements."""
+    """Return the values assigned by the statements at the top, and the place after these."""
     found: list[GivenValue] = []
     text, at = source.text, 0
     while at < len(text):
@@ -109,7 +110,7 @@ def _given_values(source: SourceText) -> tuple[list[GivenValue], int]:
 
 
 def _without_display(source: SourceText) -> SourceText:
-    """The text without the statement at its end that only shows the matrix: ``disp(DH)``."""
+    """Return the text without a last statement that only shows the matrix: ``disp(DH)``."""
     stripped = source.strip(_TAIL)
     shown = _SHOWS.search(stripped.text, max(0, len(stripped.text) - 72))
     return stripped.cut(0, shown.start()) if shown else source

@@ -1,7 +1,8 @@
-"""A DH table as a dictionary in Python: of its columns, or of its parameters by their indices.
+"""Read a DH table that is written as a dictionary in Python.
 
-``{'a': [a1, a2], 'alpha': […], 'd': […], 'theta': […]}``, also in ``pd.DataFrame(…)``; and what is
-put in for the symbols of SymPy, ``{alpha0: 0, a0: 0, d1: 0.75, alpha1: -pi/2, …}``.
+The dictionary holds columns, ``{'a': [a1, a2], 'alpha': […], 'd': […], 'theta': […]}``, also in
+``pd.DataFrame(…)``, or single parameters, as for SymPy's ``subs``:
+``{alpha0: 0, a0: 0, d1: 0.75, alpha1: -pi/2, …}``.
 """
 
 import re
@@ -17,7 +18,7 @@ from service.grids.cutting.source_text import SourceText
 from service.grids.matrices.lists import unquoted
 from service.grids.scripts.program_text import MAKERS
 from service.grids.scripts.robot_table import RobotTable
-from service.grids.scripts.script import arguments, called, shown, statements, unread_script
+from service.grids.scripts.script import arguments, excerpt, split_call, statements, unread_script
 
 _DICTIONARY: Final = re.compile(
     r"\{\s{0,40}(?:'[^'\n]{1,40}'|\"[^\"\n]{1,40}\"|[A-Za-z]\w{0,20})\s?:"
@@ -39,15 +40,15 @@ class _Item:
 
 
 def describes_columns(text: str) -> bool:
-    """Whether a text seems to hold a dictionary."""
+    """True if a text seems to contain a dictionary."""
     # LaTeX has braces and colons, too.
     return ":" in text and "\\" not in text and _DICTIONARY.search(text) is not None
 
 
 def read_columns(source: SourceText) -> RobotTable | None:
-    """The table in a dictionary; None where the text holds none of a table.
+    """Return the table in the first dictionary that holds one, or None.
 
-    Raises GridError where the text cannot be read.
+    Raises GridError if the text cannot be read.
     """
     for statement in statements(source):
         found = _items(statement)
@@ -63,10 +64,10 @@ def read_columns(source: SourceText) -> RobotTable | None:
 
 
 def _items(statement: SourceText) -> list[_Item]:
-    """The keys and values of a statement that is a dictionary, perhaps with a name."""
+    """Return the items of a statement that is a dictionary, or assigns one to a name."""
     name = _NAME.match(statement.text)
     value = statement.cut(name.end() if name else 0, len(statement.text)).strip()
-    call = called(value)
+    call = split_call(value)
     if call and call[0] == _FRAME:
         value = (arguments(call[1]) or [call[1]])[0]
     if not value.text.startswith("{") or strict_pairs(value)[0] != len(value.text):
@@ -76,14 +77,14 @@ def _items(statement: SourceText) -> list[_Item]:
         key, colon, _ = piece.text.partition(":")
         if not colon:
             return []
-        behind = piece.cut(len(key) + 1, len(piece.text)).strip()
-        items.append(_Item(unquoted(piece.cut(0, len(key)).strip()), behind))
+        after_colon = piece.cut(len(key) + 1, len(piece.text)).strip()
+        items.append(_Item(unquoted(piece.cut(0, len(key)).strip()), after_colon))
     return items
 
 
 def _list(value: SourceText) -> list[SourceText] | None:
-    """The values in a list, which a function may make an array of."""
-    call = called(value)
+    """Return the values in a list such as ``[1, 2]`` or ``np.array([1, 2])``, or None."""
+    call = split_call(value)
     if call and call[0] in MAKERS:
         value = call[1].strip()
     if value.text[:1] not in {"[", "("} or strict_pairs(value)[0] != len(value.text):
@@ -98,7 +99,7 @@ def _by_column(
     for item, column in zip(items, columns, strict=True):
         if len(column) != len(longest):
             raise unread_script(
-                f"The column {shown(item.key)} has {counted(len(column))}, another has "
+                f"The column {excerpt(item.key)} has {counted(len(column))}, another has "
                 f"{len(longest)}. Write one for each joint.",
                 item.value,
             )
@@ -109,9 +110,9 @@ def _by_column(
 def _by_index(
     items: list[_Item], keys: list[tuple[str, int]], source: SourceText
 ) -> RobotTable | None:
-    """The rows of parameters with indices; a joint variable that is left out stands for itself.
+    """Return the table of parameters with indices, or None if they are not a whole table.
 
-    None where they are no whole table.
+    A missing d or θ is the joint variable ``d1``, ``q1`` and so on.
     """
     cells = dict(zip(keys, (item.value for item in items), strict=True))
     numbers = {index for column, index in keys if column in ("d", "theta")}

@@ -1,4 +1,4 @@
-"""Program text around a matrix: comments, line continuation, prompts, an assignment, a call."""
+"""Remove the program text around a matrix: comments, line continuations, assignments, calls."""
 
 import re
 from dataclasses import dataclass
@@ -9,13 +9,13 @@ from service.grids.cutting.limits import GRID_LIMITS
 from service.grids.cutting.pairs import BRACKET, CLOSES, split, strict_pairs
 from service.grids.cutting.source_text import SourceText, joined
 
-# Functions that make a matrix of their argument and change nothing in it.
+# Functions that make a matrix of their argument without changing its values.
 MAKERS: Final = frozenset(
     {"array", "asarray", "mat", "matrix", "Matrix", "ImmutableMatrix", "MutableDenseMatrix"}
     | {"ImmutableDenseMatrix", "Array", "list", "tuple", "sym", "simplify", "trigsimp", "expand"}
     | {"trigreduce", "ratsimp"}
 )
-# Imports, and symbols that are declared.
+# Imports, and declarations of symbols.
 _STATEMENT: Final = (
     r"[ \t]*(?:(?:import|from|syms|clc|clear|close|format|pkg|load|with)\b.*"
     r"|[\w, \t]{1,80}=[ \t]*(?:\w{1,20}\.)?(?:symbols|Symbol|var|sym)\([^()\[\]{}]{0,200}\)[ \t;]*)"
@@ -28,34 +28,34 @@ _NAMES: Final = re.compile(
     r"(?::=?|=)(?!=)\s*){0,4}"
     r"(?:\(sym \d+ ?[x×] ?\d+ matrix\)\s*)?"
 )
-# A name on a line of its own, above what it names: MATLAB's ans =.
+# A name on a line of its own above its value: MATLAB's ``ans =``.
 _TITLE: Final = re.compile(
     r"\s*(?:[^\W\d][\w{}^]{0,20}(?:\([\w,: ]{0,40}\))?[ \t]*:?=[ \t]*\r?\n\s*){1,3}"
 )
 _CALL: Final = re.compile(
     r"\s*([A-Za-z_][\w.]{0,60})[ \t]*\(\s*(?=[\[({\d]|[A-Za-z_][\w.]{0,60}\()"
 )
-# Of the Robotics Toolbox for MATLAB, and of that for Python.
-_OF_ROBOTS: Final = frozenset(
+# Classes of the Robotics Toolboxes for MATLAB and for Python.
+_ROBOT_CLASSES: Final = frozenset(
     {"Link", "Revolute", "Prismatic", "RevoluteDH", "PrismaticDH", "RevoluteMDH", "PrismaticMDH"}
     | {"SerialLink", "DHRobot"}
 )
 _MOST_FORMS: Final = 3
 _NESTED: Final = re.compile(r"[({]\s*[\[({]|\[|\{\s*['\"]")
 _KEYWORD: Final = re.compile(r"\s*(?:dtype|order|copy|ndmin|storage|shape|datatype)\s*=")
-# Behind % stands a comment, or the name of a constant in Maxima.
+# A comment after % or #. In Maxima, % begins the name of a constant.
 _REMARK: Final = re.compile(
     r"\.\.\.[^\n]*(?:\n|$)|%(?!(?:pi|theta|alpha)(?![A-Za-z]))[^\n]*|#[^\n]*"
 )
 _COMMENTS: Final = {"(*": "*)", "/*": "*/"}
 _REMARK_SIGNS: Final = ("...", "%", "#", *_COMMENTS)
-# What begins a remark or a string, and what ends a string.
+# A character that begins a remark, or begins or ends a string.
 _SIGN: Final = re.compile(r"""['"\\\n%#]|\.\.\.|[(/]\*""")
-# Mathematica: functions that change nothing in a matrix, in front of it or behind.
+# Mathematica's functions that leave a matrix equal, written before it or after it.
 _FORM: Final = re.compile(
     r"(?:MatrixForm|TraditionalForm|InputForm|Simplify|FullSimplify|TrigReduce|Expand)\["
 )
-_BEHIND: Final = re.compile(
+_FORM_AFTER: Final = re.compile(
     r"//\s{0,3}(?:MatrixForm|TraditionalForm|InputForm|Simplify|FullSimplify|TrigReduce|Expand)\Z"
 )
 TAIL: Final = " \t\r\n;,.$"
@@ -65,9 +65,9 @@ TAIL: Final = " \t\r\n;,.$"
 class WrittenMatrix:
     """A matrix in program text.
 
-    ``groups`` are the contents of the outermost brackets: one in most texts, several where each
-    row has brackets. ``maker`` is the name of the function that takes them, ``shape`` the rows and
-    columns that it is given.
+    ``groups`` are the contents of the outermost brackets: usually one, or one for each row.
+    ``maker`` is the name of the function around them, and ``shape`` its arguments for the numbers
+    of rows and columns.
     """
 
     groups: tuple[SourceText, ...]
@@ -76,21 +76,21 @@ class WrittenMatrix:
 
 
 def begins_as_matrix(text: str) -> bool:
-    """Whether the text begins with a matrix in brackets, after harmless lines and a name."""
+    """True if a matrix in brackets begins the text, possibly after imports and a name."""
     plain = without_remarks(SourceText.of(text)).text
     return _head(plain) is not None
 
 
 def without_title(source: SourceText) -> SourceText:
-    """The text without a name on a line of its own at the top, as MATLAB prints it."""
+    """Return the text without a first line that is only a name, such as MATLAB's ``ans =``."""
     title = _TITLE.match(source.text)
     return source.cut(title.end(), len(source.text)) if title else source
 
 
 def unwrap(source: SourceText, calls: int = 3) -> WrittenMatrix:
-    """The brackets' contents, at most ``calls`` calls deep.
+    """Return the matrix in a text, in at most ``calls`` nested calls.
 
-    Raises GridError where the brackets are unbalanced, or are not all of the text.
+    Raises GridError if brackets are unbalanced, or if there is other text beside the matrix.
     """
     source = without_remarks(source)
     head = _head(source.text)
@@ -105,12 +105,12 @@ def unwrap(source: SourceText, calls: int = 3) -> WrittenMatrix:
 
 
 def _without_forms(source: SourceText) -> SourceText:
-    """The matrix without the functions of Mathematica that only change its form."""
+    """Return the matrix without Mathematica's functions that only change its form."""
     for _ in range(_MOST_FORMS):
-        behind = _BEHIND.search(source.text, len(source.text) - 24)
-        if behind is None:
+        form = _FORM_AFTER.search(source.text, len(source.text) - 24)
+        if form is None:
             break
-        source = source.cut(0, behind.start()).strip(TAIL)
+        source = source.cut(0, form.start()).strip(TAIL)
     for _ in range(_MOST_FORMS):
         form = _FORM.match(source.text)
         if form is None or strict_pairs(source)[form.end() - 1] != len(source.text):
@@ -120,7 +120,7 @@ def _without_forms(source: SourceText) -> SourceText:
 
 
 def without_remarks(source: SourceText) -> SourceText:
-    """The text without comments and line continuations, except those in strings."""
+    """Return the text without comments and line continuations; strings stay as they are."""
     text = source.text
     if not any(map(text.__contains__, _REMARK_SIGNS)):
         return source
@@ -148,9 +148,9 @@ def without_remarks(source: SourceText) -> SourceText:
 
 
 def _remark_end(text: str, start: int, last: int) -> int:
-    """The place behind the remark that begins at ``start``, 0 where none does.
+    """Return the place after the remark that begins at ``start``, or 0 if none begins there.
 
-    Behind ``last`` no comment in brackets ends.
+    ``last`` is the last place at which a block comment ends.
     """
     closer = _COMMENTS.get(text[start : start + 2]) if start < last else None
     end = text.find(closer, start + 2) if closer else -1
@@ -161,8 +161,8 @@ def _remark_end(text: str, start: int, last: int) -> int:
 
 
 def _head(text: str) -> tuple[int, re.Match[str] | None] | None:
-    """The place where a matrix begins, with its first bracket or with the call that makes it."""
-    at = behind_names(text)
+    """Return the place where a matrix begins and the call around it, if any; None without one."""
+    at = after_names(text)
     at += len(text[at:]) - len(text[at:].lstrip())
     if form := _FORM.match(text, at):
         return (at, None) if _NESTED.match(text, form.end()) else None
@@ -172,19 +172,19 @@ def _head(text: str) -> tuple[int, re.Match[str] | None] | None:
             return call.start(1), call
     if _NESTED.match(text, at) is None:
         return None
-    # Round brackets begin many an expression; they are a list only if they hold all there is.
+    # Round brackets also begin expressions; they are a list only if they enclose the whole text.
     if text[at] == "(" and not _ends_the_text(text, at):
         return None
     return at, None
 
 
 def without_harmless_lines(source: SourceText) -> SourceText:
-    """The text without the lines that make no matrix, such as imports."""
+    """Return the text without imports and declarations."""
     return joined(source.split(_HARMLESS_LINE), source.whole[0])
 
 
-def behind_names(text: str) -> int:
-    """The place behind harmless lines and the left side of an equation, where a matrix begins."""
+def after_names(text: str) -> int:
+    """Return the place after imports, declarations and the left side of an equation."""
     at = 0
     while at < len(text) and (line := _HARMLESS.match(text, at)):
         at = line.end()
@@ -203,7 +203,7 @@ def _ends_the_text(text: str, start: int) -> bool:
 
 
 def _groups(source: SourceText) -> list[SourceText]:
-    """The contents of brackets in a row. Raises GridError for anything else."""
+    """Return the contents of consecutive brackets. Raises GridError for any other text."""
     ends = strict_pairs(source)
     groups: list[SourceText] = []
     i = 0
@@ -224,7 +224,7 @@ def _unwrap_call(source: SourceText, call: re.Match[str], calls: int) -> Written
     name, inside = call[1].rpartition(".")[2], call.end() - call.start(1)
     if name not in MAKERS or not calls:
         message = f"`{call[1]}(…)` of a matrix is not worked out here. Paste the result."
-        if name in _OF_ROBOTS:
+        if name in _ROBOT_CLASSES:
             message = (
                 f"`{call[1]}(…)` describes a robot and is no matrix. Paste the matrix, worked out."
             )
@@ -251,7 +251,7 @@ def _is_small(text: str) -> bool:
 
 
 def text_around(piece: SourceText) -> GridError:
-    """The error for text around the matrix that may change its meaning."""
+    """Return the error for text next to a matrix that may change its meaning."""
     piece = piece.strip()
     first = piece.text.split("\n", 1)[0][:30]
     shown = "".join(filter(str.isprintable, first)).strip()

@@ -1,7 +1,8 @@
-"""One link of the robotics toolboxes -> the four parameters of its row.
+"""One link of a robotics toolbox -> the four parameters of its row.
 
-``Link``, ``Revolute``, ``Prismatic`` of the Robotics Toolbox for MATLAB, ``DHLink``, ``RevoluteDH``
-and their kin of that for Python, and the vectors that both of MATLAB's toolboxes take.
+The links are ``Link``, ``Revolute`` and ``Prismatic`` (Robotics Toolbox for MATLAB), ``DHLink``,
+``RevoluteDH`` and similar classes (Robotics Toolbox for Python), and vectors (both of MATLAB's
+toolboxes).
 """
 
 import re
@@ -14,13 +15,13 @@ from service.expressions.errors import counted
 from service.grids.cutting.grid import GridError
 from service.grids.cutting.source_text import SourceText
 from service.grids.matrices.lists import unquoted
-from service.grids.scripts.script import arguments, called, shown, unread_script
+from service.grids.scripts.script import arguments, excerpt, split_call, unread_script
 
 PARAMETERS: Final = ("a", "alpha", "d", "theta")
 
 
 class JointType(StrEnum):
-    """The motion of a link's joint; a fixed one has none."""
+    """The motion of a link's joint; a fixed joint does not move."""
 
     REVOLUTE = "revolute"
     PRISMATIC = "prismatic"
@@ -29,9 +30,9 @@ class JointType(StrEnum):
 
 @dataclass(slots=True)
 class RobotLink:
-    """A link as the script writes it: ``cells`` are those of a, α, d and θ that it names.
+    """A link as the script writes it. ``cells`` are the parameters that it gives, by their names.
 
-    Where the type of the ``joint`` is not known, its variable is written in a cell.
+    If ``joint`` is None, one of the cells contains the joint variable.
     """
 
     source: SourceText
@@ -41,8 +42,8 @@ class RobotLink:
     flip: bool = False
 
 
-# The class, the motion of its joint, whether its convention is the modified one, and the order of
-# its arguments in Python; () where they have names.
+# The joint type of each class, True if its convention is the modified one, and the order of its
+# arguments in Python; () if the arguments have names.
 _OF_REVOLUTE: Final = ("d", "a", "alpha", "offset", "qlim", "flip")
 _OF_PRISMATIC: Final = ("theta", "a", "alpha", "offset", "qlim", "flip")
 _CLASSES: Final[Mapping[str, tuple[JointType | None, bool, tuple[str, ...]]]] = {
@@ -59,41 +60,41 @@ _CLASSES: Final[Mapping[str, tuple[JointType | None, bool, tuple[str, ...]]]] = 
     "PrismaticMDH": (JointType.PRISMATIC, True, _OF_PRISMATIC),
 }  # fmt: skip
 LINK_CLASSES: Final = frozenset(_CLASSES)
-# The vector that Link takes, and that of setFixedTransform.
+# The values in the vector of Link, and in the vector of setFixedTransform.
 _OF_VECTOR: Final = ("theta", "d", "a", "alpha", "sigma", "offset")
 _OF_TRANSFORM: Final = ("a", "alpha", "d", "theta")
 _WORDS: Final = frozenset({"revolute", "prismatic", "standard", "modified", "sym"})
 _KNOWN: Final = frozenset({*PARAMETERS, "offset", "sigma", "mdh", "flip"})
-# Limits, masses, friction, names: nothing of them is in a table.
-_ASIDE: Final = frozenset(
+# Limits, masses, friction and names are not in a DH table.
+_IGNORED: Final = frozenset(
     {"qlim", "I", "r", "m", "G", "B", "Jm", "Tc", "name", "mesh", "symbolic", "parent"}
 )
 _KEYWORD: Final = re.compile(r"([A-Za-z_]\w{0,20})\s*=(?!=)\s*")
 _ZERO: Final = re.compile(r"[-+]?0{1,20}(?:\.0{0,20})?")
 _TRUE: Final = frozenset({"1", "True", "true"})
 _FALSE: Final = frozenset({"0", "False", "false"})
-# A name; those of π and of functions of numbers alone are none of a variable.
+# A name. The names of constants and of functions of numbers are not joint variables.
 _NAME: Final = re.compile(r"[^\W\d]\w*")
 _CONSTANTS: Final = frozenset(
     {"pi", "Pi", "PI", "np", "numpy", "math", "sp", "sympy", "deg", "rad", "deg2rad", "radians"}
     | {"sym", "Rational", "sqrt", "S", "e", "E", "π"}
 )
-# d holds a joint variable only where it has the name of one.
+# In d, only a name such as q1 is a joint variable.
 _JOINT_LENGTH: Final = re.compile(r"(?<!\w)q_?\d")
 _SHOWN: Final = {"d": "d", "theta": "θ"}
 _ALONE: Final = re.compile(r"[^\W\d][\w.]*(?:[({\[]\d{1,2}[)}\]])?")
 
-# The values of a row in brackets, or of one that was given a name; None for any other text.
+# Returns the values of a row in brackets or of a named row; None for any other text.
 Vector = Callable[[SourceText], Sequence[SourceText] | None]
 
 
 def read_link(source: SourceText, vector: Vector) -> RobotLink | None:
-    """The link that a call makes; None for any other text.
+    """Return the link that a call makes; None for any other text.
 
-    ``vector`` gives the values of a row in brackets, or of one that was given a name. Raises
-    GridError for a link whose row is not certain.
+    ``vector`` returns the values of a row in brackets or of a named row. Raises GridError if the
+    row of the link is not certain.
     """
-    call = called(source)
+    call = split_call(source)
     if call is None or call[0] not in _CLASSES:
         return None
     name, inside = call
@@ -103,7 +104,7 @@ def read_link(source: SourceText, vector: Vector) -> RobotLink | None:
 
 
 def vector_link(values: Sequence[SourceText], source: SourceText, *, modified: bool) -> RobotLink:
-    """The link of the values [θ d a α], behind which σ and an offset may stand.
+    """Return the link of the values [θ d a α], [θ d a α σ] or [θ d a α σ offset].
 
     Raises GridError for fewer or more values.
     """
@@ -122,9 +123,9 @@ def _link(
 
 @dataclass(slots=True)
 class _Given:
-    """The arguments of a link by their names, and words that stand alone.
+    """The arguments of a link by their names, and words without a value, such as 'modified'.
 
-    ``in_python`` tells that their names stand before an equals sign, or that they have none.
+    ``in_python`` is True if arguments are written ``name=value`` or by position.
     """
 
     named: dict[str, SourceText] = field(default_factory=dict)
@@ -145,14 +146,14 @@ class _Given:
     def of_vector(values: Sequence[SourceText], source: SourceText) -> "_Given":
         if not len(PARAMETERS) <= len(values) <= len(_OF_VECTOR):
             raise unread_script(
-                f"`{shown(source)}` has {counted(len(values))}. A link is [theta d a alpha], with "
-                "0 or 1 for the joint type and an offset behind them.",
+                f"`{excerpt(source)}` has {counted(len(values))}. A link is [theta d a alpha], "
+                "with 0 or 1 for the joint type and an offset behind them.",
                 source,
             )
         return _Given(dict(zip(_OF_VECTOR, values, strict=False)), has_vector=True)
 
     def _take(self, pair: Sequence[SourceText], place: Sequence[str]) -> int:
-        """Take one argument, or a name and its value; return how many these are."""
+        """Store one argument, or a name and its value; return the number of items used."""
         first = pair[0]
         if keyword := _KEYWORD.match(first.text):
             self.in_python = True
@@ -172,7 +173,7 @@ class _Given:
         return 2
 
     def _put(self, name: str, value: SourceText, at: SourceText) -> None:
-        if name in _ASIDE:
+        if name in _IGNORED:
             return
         if name not in _KNOWN or name in self.named:
             raise _unknown(at)
@@ -180,14 +181,14 @@ class _Given:
 
 
 def _joint(given: _Given, link: SourceText) -> JointType:
-    """The motion that the arguments of ``Link`` name. Raises GridError where they leave it open."""
+    """Return the joint type in the arguments of ``Link``. Raises GridError if it is unclear."""
     named = given.named
     types = {JointType(word) for word in given.words & {"revolute", "prismatic"}}
     if "sigma" in named:
         types.add(JointType.PRISMATIC if _truth(named, "sigma") else JointType.REVOLUTE)
     by_name = not given.has_vector and not given.in_python
     if not types and by_name:
-        # In MATLAB the one of both that is given is the constant one.
+        # In MATLAB, the one of d and theta that is given is constant; the other is the variable.
         types = {
             joint
             for name, joint in (("d", JointType.REVOLUTE), ("theta", JointType.PRISMATIC))
@@ -195,7 +196,7 @@ def _joint(given: _Given, link: SourceText) -> JointType:
         }
     if len(types) > 1 or (not types and by_name and (named or given.words)):
         raise unread_script(
-            f"`{shown(link)}` leaves open whether the joint is revolute or prismatic. Write "
+            f"`{excerpt(link)}` leaves open whether the joint is revolute or prismatic. Write "
             "`Revolute(…)` or `Prismatic(…)`.",
             link,
         )
@@ -203,7 +204,7 @@ def _joint(given: _Given, link: SourceText) -> JointType:
 
 
 def _truth(named: Mapping[str, SourceText], name: str) -> bool:
-    """Whether an argument is true; one that is not given is false."""
+    """Return the truth value of an argument; False if it is not given."""
     value = named.get(name)
     if value is None or value.text in _FALSE:
         return False
@@ -214,7 +215,7 @@ def _truth(named: Mapping[str, SourceText], name: str) -> bool:
 
 def _unknown(source: SourceText) -> GridError:
     return unread_script(
-        f"`{shown(source)}` is not understood here. Write a, alpha, d, theta and offset of each "
+        f"`{excerpt(source)}` is not understood here. Write a, alpha, d, theta and offset of each "
         "link, each once.",
         source,
     )
@@ -223,14 +224,14 @@ def _unknown(source: SourceText) -> GridError:
 def transform_link(
     values: Sequence[SourceText], joint: JointType | None, source: SourceText, *, modified: bool
 ) -> RobotLink:
-    """The link of ``setFixedTransform(joint, [a alpha d theta], 'dh')``.
+    """Return the link of ``setFixedTransform(joint, [a alpha d theta], 'dh')``.
 
-    Where the type of the joint is not known, its variable must be written. Raises GridError where
-    it is not, and for another number of values.
+    Raises GridError unless there are four values, one of which contains the joint variable if the
+    type of the joint is not known.
     """
     if len(values) != len(_OF_TRANSFORM):
         raise unread_script(
-            f"`{shown(source)}` has {counted(len(values))}. setFixedTransform takes [a alpha d "
+            f"`{excerpt(source)}` has {counted(len(values))}. setFixedTransform takes [a alpha d "
             "theta].",
             source,
         )
@@ -238,7 +239,7 @@ def transform_link(
     is_written = has_variable(cells["theta"].text) or _JOINT_LENGTH.search(cells["d"].text)
     if joint is None and not is_written:
         raise unread_script(
-            f"`{shown(source)}` holds no joint variable. Paste the line with the type of this "
+            f"`{excerpt(source)}` holds no joint variable. Paste the line with the type of this "
             "joint, too: `rigidBodyJoint('jnt1', 'revolute')`.",
             source,
         )
@@ -247,17 +248,17 @@ def transform_link(
 
 @dataclass(frozen=True, slots=True)
 class LinkRow:
-    """The cells a, α, d, θ of a link, and the name of the joint variable that was put in."""
+    """The cells a, α, d, θ of a link, and the name of the joint variable that was added to them."""
 
     cells: tuple[SourceText, ...]
     added: str = ""
 
 
 def row_of(link: RobotLink, number: int) -> LinkRow:
-    """The row of a link whose joint has this number.
+    """Return the row of a link whose joint has this number.
 
-    A variable that the script implies is ``q`` with the number. Raises GridError where the place of
-    the variable holds something that the toolbox ignores.
+    A joint variable that the script only implies is named ``q`` with the number. Raises GridError
+    if the cell of the variable contains a value that the toolbox ignores.
     """
     if not all(cell.text for cell in link.cells.values()):
         raise _unknown(link.source)
@@ -274,14 +275,14 @@ def row_of(link: RobotLink, number: int) -> LinkRow:
 
 
 def _moved(link: RobotLink, variable: SourceText, column: str) -> SourceText:
-    """The joint variable with the link's offset and sign."""
+    """Return the joint variable with the link's offset and sign."""
     offset = link.cells.get("offset")
     if offset is not None and _is_zero(offset):
         offset = None
     changed = offset is not None or link.flip
     if not has_variable(variable.text) or (changed and not _ALONE.fullmatch(variable.text)):
         raise unread_script(
-            f"The toolbox ignores `{shown(variable)}`, for {_SHOWN[column]} is the variable of "
+            f"The toolbox ignores `{excerpt(variable)}`, for {_SHOWN[column]} is the variable of "
             "this joint. Write 0 there, and a constant as offset.",
             variable,
         )
@@ -296,7 +297,7 @@ def _moved(link: RobotLink, variable: SourceText, column: str) -> SourceText:
 
 
 def has_variable(text: str) -> bool:
-    """Whether a letter other than those of constants stands in a value."""
+    """True if a value contains a name other than those of constants."""
     return any(name not in _CONSTANTS for name in _NAME.findall(text))
 
 

@@ -1,8 +1,8 @@
-"""A script for a robotics toolbox -> the DH table of its robot, a row for each link.
+"""A script for a robotics toolbox -> the DH table of its robot, one row for each link.
 
-``SerialLink`` and its links in MATLAB, ``DHRobot`` and its links in Python, and the joints that
-``setFixedTransform`` places. Nothing is run: lines that only show the robot or move it are left
-aside, and where the table is not certain the script is refused.
+It reads ``SerialLink`` and its links in MATLAB, ``DHRobot`` and its links in Python, and joints
+with ``setFixedTransform``. Nothing is run. Lines that only show or move the robot are ignored; a
+script whose table is not certain is refused.
 
 Sources: P. Corke, Robotics Toolbox for MATLAB, ``Link`` and ``SerialLink``; Robotics Toolbox for
 Python, ``DHRobot``; MathWorks, Robotics System Toolbox, ``rigidBodyJoint/setFixedTransform``.
@@ -16,7 +16,7 @@ from service.expressions.errors import Note
 from service.grids.cutting.grid import GridError, grid
 from service.grids.cutting.source_text import SourceText
 from service.grids.matrices.lists import unquoted
-from service.grids.scripts.given_values import GivenValue, told_numbers
+from service.grids.scripts.given_values import GivenValue, given_numbers_note
 from service.grids.scripts.robot_links import (
     LINK_CLASSES,
     JointType,
@@ -25,7 +25,7 @@ from service.grids.scripts.robot_links import (
     transform_link,
 )
 from service.grids.scripts.robot_table import RobotTable
-from service.grids.scripts.script import arguments, called, shown, statements, unread_script
+from service.grids.scripts.script import arguments, excerpt, split_call, statements, unread_script
 from service.grids.scripts.script_names import (
     NUMBERED,
     ScriptNames,
@@ -38,13 +38,13 @@ from service.grids.scripts.script_names import (
 _ROBOTS: Final = frozenset({"SerialLink", "DHRobot"})
 _TRANSFORM: Final = "setFixedTransform"
 _JOINT: Final = "rigidBodyJoint"
-_TELLING: Final = "|".join(sorted({*LINK_CLASSES, *_ROBOTS, _TRANSFORM}, key=len, reverse=True))
-# What makes a text a script for a robot. ``Link (i)`` is a header of many a table.
+_CALLS: Final = "|".join(sorted({*LINK_CLASSES, *_ROBOTS, _TRANSFORM}, key=len, reverse=True))
+# Calls that occur only in a script for a robot. ``Link (i)`` may be the header of a table.
 _SCRIPT: Final = re.compile(
     r"(?<!\w)(?:(?:DHLink|(?:Revolute|Prismatic)M?DH|SerialLink|DHRobot|setFixedTransform)\("
     r"|(?:Link|Revolute|Prismatic)\s?\((?=[\['\")]|\w{1,20}\s?=|\w{1,20}\(|\w{1,20}\s?,\s?['\"]))"
 )
-_WORD: Final = re.compile(rf"(?<!\w)(?:{_TELLING})\s?\(")
+_WORD: Final = re.compile(rf"(?<!\w)(?:{_CALLS})\s?\(")
 _SIGNS_OF_A_SCRIPT: Final = ("Link", "Revolute", "Prismatic", "DHRobot", _TRANSFORM)
 
 _CONTROL: Final = re.compile(
@@ -67,18 +67,18 @@ _CHANGE: Final = re.compile(
 )
 # A link as MATLAB shows it, once it is made.
 _PRINTED: Final = re.compile(r"(?:Revolute|Prismatic)\((?:std|mod)\)")
-_TOLD: Final = 12
+_MOST_NAMES: Final = 12
 
 
 def describes_robot(text: str) -> bool:
-    """Whether a text seems to be a script that makes a robot of its links."""
+    """True if a text seems to be a script that builds a robot from links."""
     return any(map(text.__contains__, _SIGNS_OF_A_SCRIPT)) and _SCRIPT.search(text) is not None
 
 
 def read_script(source: SourceText) -> RobotTable | None:
-    """The table of the robot that a script describes; None where only its comments name a link.
+    """Return the table of the robot that a script describes; None if only comments name a link.
 
-    Raises GridError where it describes more than one, or leaves open what its table is.
+    Raises GridError if the script describes several robots, or if the table is not certain.
     """
     script = _Script()
     found = statements(source)
@@ -103,7 +103,7 @@ def read_script(source: SourceText) -> RobotTable | None:
     notes = [
         _note(links, added),
         *script.names.notes[:1],
-        *told_numbers([each for each in script.given if each.name in read], read),
+        *given_numbers_note([each for each in script.given if each.name in read], read),
     ]
     convention = "modified" if links[0].modified else "standard"
     return RobotTable(grid("script", rows, source.whole, notes), convention)
@@ -112,7 +112,7 @@ def read_script(source: SourceText) -> RobotTable | None:
 def _note(links: list[RobotLink], added: list[str]) -> Note:
     message = "Each link of the script was read as a row."
     if added:
-        names = ", ".join(added[:_TOLD])
+        names = ", ".join(added[:_MOST_NAMES])
         variables = "joint variables" if len(added) > 1 else "joint variable"
         message = f"Each link of the script was read as a row, with the {variables} {names}."
     first, last = links[0].source.whole, links[-1].source.whole
@@ -121,7 +121,7 @@ def _note(links: list[RobotLink], added: list[str]) -> Note:
 
 @dataclass(slots=True)
 class _Script:
-    """What the statements so far have given names to."""
+    """The state after some statements of a script: links, joints, values and the robot."""
 
     names: ScriptNames = field(default_factory=ScriptNames)
     unnamed: list[RobotLink] = field(default_factory=list)
@@ -133,15 +133,15 @@ class _Script:
     last_number: int = 0
 
     def take(self, statement: SourceText) -> None:
-        """Take one statement. Raises GridError where it may change the table."""
+        """Process one statement. Raises GridError if it may change the table in an unknown way."""
         text = statement.text
-        tells = _WORD.search(text) is not None
+        has_call = _WORD.search(text) is not None
         if _CONTROL.match(text):
             self.controlled = True
         if _PRINTED.match(text):
             return
         changes = _CHANGE.match(text)
-        if self.controlled and (tells or changes):
+        if self.controlled and (has_call or changes):
             raise unread_script(
                 "Loops, conditions and functions are not run. Write one `Link(…)` for each link.",
                 statement,
@@ -150,24 +150,24 @@ class _Script:
         if changes:
             self._change(statement, found)
         elif found:
-            self._assign(statement, found, statement.cut(found.end(), len(text)), tells=tells)
-        elif tells:
+            self._assign(statement, found, statement.cut(found.end(), len(text)), has_call=has_call)
+        elif has_call:
             self._call(statement)
 
     def _assign(
-        self, statement: SourceText, found: re.Match[str], value: SourceText, *, tells: bool
+        self, statement: SourceText, found: re.Match[str], value: SourceText, *, has_call: bool
     ) -> None:
         name = found["name"]
-        call = called(value) if "(" in value.text else None
+        call = split_call(value) if "(" in value.text else None
         if call and call[0] == _JOINT:
             self.joints[_squeezed(found[0].rstrip("= \t"))] = _joint_type(call[1])
             return
-        links = self.names.links_of(value) if tells or self.names.links else None
+        links = self.names.links_of(value) if has_call or self.names.links else None
         if links is not None and not found["property"]:
             self.names.name_links(statement, name, _number(found), links)
-        elif tells and not self._makes_robot(value):
+        elif has_call and not self._makes_robot(value):
             raise _unclear(statement)
-        elif tells or found["property"]:
+        elif has_call or found["property"]:
             return
         elif number := _number(found):
             self.names.name_element(name, number, value)
@@ -191,17 +191,17 @@ class _Script:
         link.cells[changed] = statement.cut(found.end(), len(statement.text))
 
     def _call(self, statement: SourceText) -> None:
-        """Take a call whose value has no name."""
+        """Process a call whose value is not assigned to a name."""
         if appended := _APPENDED.match(statement.text):
             links = self.names.links_of(statement.cut(appended.end(), len(statement.text) - 1))
             if links is None or not statement.text.endswith(")"):
                 raise _unclear(statement)
             self.names.name_links(statement, appended["name"], 0, links)
             return
-        call = called(statement)
+        call = split_call(statement)
         if call and call[0] in _SHOWS:
             statement = call[1].strip()
-            call = called(statement)
+            call = split_call(statement)
         if call and call[0] == _TRANSFORM:
             self._place(statement, arguments(call[1]))
             return
@@ -214,8 +214,8 @@ class _Script:
         check_count(self.unnamed, statement)
 
     def _makes_robot(self, source: SourceText) -> bool:
-        """Whether ``source`` makes the robot of links; then they are kept."""
-        call = called(source)
+        """Return True, and store the robot's links, if ``source`` builds the robot."""
+        call = split_call(source)
         if call is None or call[0] not in _ROBOTS:
             return False
         first, *rest = arguments(call[1]) or [call[1]]
@@ -230,8 +230,8 @@ class _Script:
             links = self.names.links_of_matrix(first, modified="modified" in words)
         if links is None:
             raise unread_script(
-                f"The links `{shown(first)}` are not in this text. Paste the lines that make them, "
-                "too.",
+                f"The links `{excerpt(first)}` are not in this text. Paste the lines that make "
+                "them, too.",
                 first,
             )
         if self.robot is not None and list(map(id, self.robot)) != list(map(id, links)):
@@ -240,7 +240,7 @@ class _Script:
         return True
 
     def _place(self, statement: SourceText, given: list[SourceText]) -> None:
-        """Take ``setFixedTransform(jnt1, [a alpha d theta], 'dh')``."""
+        """Process ``setFixedTransform(jnt1, [a alpha d theta], 'dh')``."""
         kind = unquoted(given[2]).text if len(given) == 3 else ""
         values = self.names.vector(given[1]) if kind in {"dh", "mdh"} else None
         if values is None:
@@ -262,7 +262,7 @@ class _Script:
         check_count(self.placed, statement)
 
     def robot_links(self, source: SourceText) -> list[RobotLink]:
-        """The links of the robot in their order. Raises GridError where it is not certain."""
+        """Return the robot's links in order. Raises GridError if the order is not certain."""
         if self.placed:
             if self.robot or self.names.links or self.unnamed:
                 raise too_many_robots(source)
@@ -282,7 +282,7 @@ class _Script:
 
 
 def _number(found: re.Match[str]) -> int | None:
-    """The number of the link in the left side ``L(2) = ``, from 1; 0 for the next one."""
+    """Return the number of the link in ``L(2) = `` (from 1), or 0 for the next number."""
     index = found["index"]
     if index is None:
         return None
@@ -290,7 +290,7 @@ def _number(found: re.Match[str]) -> int | None:
 
 
 def _joint_type(inside: SourceText) -> JointType | None:
-    """The type in ``rigidBodyJoint('jnt1', 'revolute')``; fixed without one."""
+    """Return the type in ``rigidBodyJoint('jnt1', 'revolute')``; fixed if none is given."""
     given = arguments(inside)
     if len(given) < 2:
         return JointType.FIXED
@@ -307,20 +307,20 @@ def _squeezed(name: str) -> str:
 
 
 def _is_declared(name: str, value: str) -> bool:
-    """Whether the value of a letter is the symbol of its name: ``a1 = symbols('a1 a2')``."""
+    """True if the value declares the letter as a symbol: ``a1 = symbols('a1 a2')``."""
     return _DECLARES.match(value) is not None and name in _NAME.findall(value)
 
 
 def _has_frames(source: SourceText) -> GridError:
     return unread_script(
-        f"`{shown(source)}` is no link. Delete it, or paste the DH table with a row for it.",
+        f"`{excerpt(source)}` is no link. Delete it, or paste the DH table with a row for it.",
         source,
     )
 
 
 def _unclear(source: SourceText) -> GridError:
     return unread_script(
-        f"`{shown(source)}` is not understood here. Write each link as `L(1) = Link(…)`, and the "
+        f"`{excerpt(source)}` is not understood here. Write each link as `L(1) = Link(…)`, and the "
         "robot as `SerialLink(L)`.",
         source,
     )

@@ -9,7 +9,7 @@ from service.grids.cutting.grid import Grid
 class RobotTable:
     """The table of a robot, and the convention that the script names: standard or modified.
 
-    With ``has_headers`` the first row says which column is which; else they are a, α, d, θ.
+    With ``has_headers``, the first row contains headers. Otherwise the columns are a, α, d, θ.
     """
 
     grid: Grid

@@ -1,4 +1,4 @@
-"""The statements of a script in MATLAB or Python, without comments and prompts."""
+"""Split a script in MATLAB or Python into statements and calls."""
 
 import re
 from collections.abc import Iterator
@@ -12,16 +12,16 @@ from service.grids.scripts.program_text import without_remarks
 from service.grids.scripts.session import without_prompts
 
 _ENDS: Final = ";,\n\r\x85\u2028\u2029"
-# Lines that begin and end a comment of several lines: MATLAB's %{ and %}, a text of Python.
+# Lines that begin or end a block comment: %{ and %} in MATLAB, triple quotes in Python.
 _BLOCK: Final = re.compile(r"[ \t]*(%\{|%\}|\"\"\"|''')?")
 _CALL: Final = re.compile(r"(?:[A-Za-z_]\w{0,60}\.){0,4}([A-Za-z_]\w{0,60})[ \t]*\(")
 _SHOWN: Final = 40
 
 
 def statements(source: SourceText) -> list[SourceText]:
-    """The statements, in the order in which they stand; brackets may run over several lines.
+    """Return the statements in order, without comments; brackets may span several lines.
 
-    Raises GridError for unbalanced brackets, and more of them than the links of an arm have.
+    Raises GridError for unbalanced brackets, and for more brackets than ``GRID_LIMITS`` allow.
     """
     plain = without_remarks(_without_blocks(without_prompts(source)))
     if sum(map(plain.text.count, CLOSES)) > GRID_LIMITS.separators:
@@ -34,7 +34,7 @@ def statements(source: SourceText) -> list[SourceText]:
 
 
 def _without_blocks(source: SourceText) -> SourceText:
-    """The text without comments of several lines."""
+    """Return the text without block comments."""
     if not any(mark in source.text for mark in ("%{", '"""', "'''")):
         return source
     return joined(_outside_blocks(source), source.at)
@@ -48,19 +48,19 @@ def _outside_blocks(source: SourceText) -> Iterator[SourceText]:
         if closer:
             closer = "" if closer in line.text else closer
         elif found and found != "%}":
-            behind = line.text.partition(found)[2]
+            rest = line.text.partition(found)[2]
             closer = "%}" if found == "%{" else found
-            closer = "" if closer in behind else closer
+            closer = "" if closer in rest else closer
         else:
             yield line
         yield line.cut(0, 0).spelled("\n")
 
 
-def called(source: SourceText) -> tuple[str, SourceText] | None:
-    """The name of a function and the text of its arguments, where the text is one call of it.
+def split_call(source: SourceText) -> tuple[str, SourceText] | None:
+    """Return a function's name and the text of its arguments; None if the text is not one call.
 
-    Names in front of the function's are left out: ``rtb.RevoluteDH(…)``. Raises GridError for
-    unbalanced brackets.
+    Module names before the function's name, as in ``rtb.RevoluteDH(…)``, are left out. Raises
+    GridError for unbalanced brackets.
     """
     call = _CALL.match(source.text)
     if call is None or strict_pairs(source)[call.end() - 1] != len(source.text):
@@ -69,17 +69,17 @@ def called(source: SourceText) -> tuple[str, SourceText] | None:
 
 
 def arguments(inside: SourceText) -> list[SourceText]:
-    """The arguments of a call, or what stands in a list."""
+    """Return the arguments of a call, or the elements of a list."""
     pieces = (piece.strip() for piece in split(inside, ","))
     return [piece for piece in pieces if piece.text]
 
 
 def unread_script(message: str, source: SourceText) -> GridError:
-    """The error for a script whose table is not certain."""
+    """Return the error for a script whose table is not certain."""
     return GridError("unread_script", message, source.whole)
 
 
-def shown(source: SourceText) -> str:
-    """The beginning of a piece of a script, so that it can be quoted in a message."""
+def excerpt(source: SourceText) -> str:
+    """Return the beginning of a piece of a script, as it is quoted in a message."""
     text = " ".join("".join(c if c.isprintable() else " " for c in source.text).split())
     return text if len(text) <= _SHOWN else text[: _SHOWN - 1] + "…"

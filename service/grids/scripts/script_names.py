@@ -1,4 +1,4 @@
-"""The names of a script for a robot: the links and the matrices that they stand for."""
+"""The values of names in a script for a robot: links, matrices and numbers."""
 
 import re
 from collections.abc import Sized
@@ -12,7 +12,7 @@ from service.grids.cutting.pairs import split
 from service.grids.cutting.source_text import SourceText
 from service.grids.matrices import matlab
 from service.grids.scripts.robot_links import RobotLink, read_link, vector_link
-from service.grids.scripts.script import shown, unread_script
+from service.grids.scripts.script import excerpt, unread_script
 
 # A name, one of its elements, or all of them: L, L(2), L{2}, L[1], L(:), DH(2,:).
 NAMED: Final = re.compile(
@@ -21,7 +21,7 @@ NAMED: Final = re.compile(
 )
 NUMBERED: Final = re.compile(r"(.*?)(\d{1,2})[)}\]]?")
 _MOST_ROWS: Final = GRID_LIMITS.rows - 1
-# A link may have a name of its own, and stand in lists.
+# The same link may have a name of its own and be in lists, too.
 _MOST_LINKS: Final = 4 * _MOST_ROWS
 
 Links = dict[int, RobotLink]
@@ -29,7 +29,7 @@ Links = dict[int, RobotLink]
 
 @dataclass(slots=True)
 class ScriptNames:
-    """The links by the names of their lists and their numbers in these, and other values."""
+    """The values of names: links by list name and number, and values that are no links."""
 
     links: dict[str, Links] = field(default_factory=dict)
     notes: list[Note] = field(default_factory=list)
@@ -39,20 +39,20 @@ class ScriptNames:
     _matrices: dict[str, list[list[SourceText]]] = field(default_factory=dict)
 
     def name_value(self, name: str, value: SourceText) -> None:
-        """Keep a value that is no link."""
+        """Store a value that is not a link under its name."""
         self._values[name] = value
         self._matrices.pop(name, None)
 
     def name_element(self, name: str, number: int, value: SourceText) -> None:
-        """Keep a value that an element of a list is given: ``d(2) = 0.4``."""
+        """Store the value of an element of a list: ``d(2) = 0.4``."""
         known = self._elements.setdefault((name, number), value)
         if known is None or known.text != value.text:
             self._elements[name, number] = None
 
     def element(self, cell: SourceText) -> SourceText:
-        """The value of a cell that is an element of a list in the script; any other cell itself.
+        """Return the value of a cell such as ``d(2)`` that the script defines, else the cell.
 
-        Raises GridError where the script gives the element two values.
+        Raises GridError if the script gives the element two values.
         """
         named = NAMED.fullmatch(cell.text)
         if not named or not (named["index"] or "").isdigit() or named["columns"]:
@@ -62,7 +62,7 @@ class ScriptNames:
             value = self._elements[name, number]
             if value is None:
                 raise unread_script(
-                    f"The script gives `{shown(cell)}` two values. Write its value here.", cell
+                    f"The script gives `{excerpt(cell)}` two values. Write its value here.", cell
                 )
             return value
         rows = self._matrix(cell.cut(0, len(name))) if name in self._values else None
@@ -73,12 +73,12 @@ class ScriptNames:
     def name_links(
         self, statement: SourceText, name: str, number: int | None, links: list[RobotLink]
     ) -> None:
-        """Keep links under a name: all of it without a number, the next one with the number 0."""
+        """Store links as the list ``name``, or one link as its element ``number`` (0: the next)."""
         known = self.links.setdefault(name, {})
         first = len(known) + 1 if number == 0 else number or 1
         if known if number is None else first in known or len(links) > 1:
             raise unread_script(
-                f"`{shown(statement)}` gives a link a second value. Keep the one that counts.",
+                f"`{excerpt(statement)}` gives a link a second value. Keep the one that counts.",
                 statement,
             )
         known.update(enumerate(links, first))
@@ -88,7 +88,7 @@ class ScriptNames:
             raise too_many_rows("more", statement.whole)
 
     def links_of(self, source: SourceText) -> list[RobotLink] | None:
-        """The links that an expression stands for; None where it is none of links."""
+        """Return the links that an expression denotes, or None if it denotes no links."""
         link = read_link(source, self.vector)
         if link is not None:
             return [link]
@@ -114,7 +114,7 @@ class ScriptNames:
         return links or None
 
     def vector(self, source: SourceText) -> list[SourceText] | None:
-        """The values of a row in brackets, or of a row of a matrix that was given a name."""
+        """Return the values of a row in brackets or of a row of a named matrix; else None."""
         named = NAMED.fullmatch(source.text)
         if named and named["columns"] and named["index"] != ":":
             rows = self._matrix(source.cut(*named.span("name")))
@@ -124,7 +124,7 @@ class ScriptNames:
         return rows[0] if rows and len(rows) == 1 else None
 
     def _matrix(self, source: SourceText) -> list[list[SourceText]] | None:
-        """The rows of a matrix in brackets, or of one that was given a name."""
+        """Return the rows of a matrix in brackets or of a named matrix; else None."""
         name = source.text
         if name in self._matrices:
             return self._matrices[name]
@@ -139,7 +139,7 @@ class ScriptNames:
         return stripped
 
     def links_of_matrix(self, source: SourceText, *, modified: bool) -> list[RobotLink] | None:
-        """The links of ``SerialLink([theta d a alpha; …])``."""
+        """Return the links of ``SerialLink([theta d a alpha; …])``; None if there is no matrix."""
         rows = self._matrix(source)
         if not rows:
             return None
@@ -148,7 +148,7 @@ class ScriptNames:
 
 
 def by_numbers(named: dict[str, Links], source: SourceText) -> list[RobotLink]:
-    """The links L1, L2, … in the order of their numbers."""
+    """Return the links L1, L2, … in order. Raises GridError if they have other names."""
     found: Links = {}
     stems = set()
     for name, links in named.items():
@@ -164,7 +164,7 @@ def by_numbers(named: dict[str, Links], source: SourceText) -> list[RobotLink]:
 
 
 def in_order(links: Links, source: SourceText) -> list[RobotLink]:
-    """The links by their numbers. Raises GridError where one is missing."""
+    """Return the links in the order of their numbers. Raises GridError if one is missing."""
     for number in range(1, len(links) + 1):
         if number not in links:
             raise unread_script(f"Link {number} is not in this text. Add it.", source)
@@ -172,20 +172,20 @@ def in_order(links: Links, source: SourceText) -> list[RobotLink]:
 
 
 def _line_of(row: list[SourceText]) -> SourceText:
-    """The place of a row of a matrix, as a piece of the text."""
+    """Return a row of a matrix as one piece of the text."""
     text = " ".join(cell.text for cell in row)
     start, end = row[0].whole[0], max(row[0].whole[1], row[-1].whole[1])
     return SourceText(text, (start,) * len(text), (end,) * len(text), start)
 
 
 def check_count(links: Sized, source: SourceText) -> None:
-    """Raise GridError for more links than a table has rows."""
+    """Raise GridError for more links than a table may have rows."""
     if len(links) > _MOST_ROWS:
         raise too_many_rows("more", source.whole)
 
 
 def too_many_robots(source: SourceText) -> GridError:
-    """The error for a script that may describe several robots."""
+    """Return the error for a script that may describe several robots."""
     return unread_script(
         "This may be more than one robot. Paste one, and write its links in one list.", source
     )

@@ -1,7 +1,6 @@
-r"""A session with an interpreter: prompts, and inputs whose outputs stand below them.
+r"""Read an interpreter session: keep the outputs, and the inputs that have no output.
 
-``>> A1`` above ``A1 = …``, ``Out[3]//MatrixForm=``, ``(%o4)``: the outputs are kept, and of the
-inputs those without an output.
+Prompts and output marks are ``>> A1``, ``Out[3]//MatrixForm=``, ``(%o4)`` and the like.
 """
 
 import re
@@ -15,18 +14,18 @@ _MARK: Final = re.compile(
     r"|Out ?\[\d{0,5}\] ?(?://\w{1,20})?[=:]|\(%o\d{1,5}\))[ \t]*",
     re.MULTILINE,
 )
-# Python's prompt before the second line of an input and those that follow.
+# Python's prompt before the second and later lines of an input.
 _CONTINUED: Final = re.compile(r"^[ \t]*\.\.\.(?:[ \t]|$)", re.MULTILINE)
 
 
-# An input that asks for one thing by its name: A1, print(A1), A1 // MatrixForm.
+# An input that shows the value of a name: A1, print(A1), A1 // MatrixForm.
 _ASKED: Final = re.compile(r"\s*(?:\w{1,20}[(\[]\s*)?([A-Za-z_]{1,10}\d{1,4})(?![\w.*@+-])")
 
 
-def printed(source: SourceText, *, named: bool = False) -> SourceText:
-    """What the interpreter printed, and the matrices of inputs that it printed nothing for.
+def session_outputs(source: SourceText, *, named: bool = False) -> SourceText:
+    """Return the outputs of a session, and the matrices in inputs that have no output.
 
-    With ``named``, the name that an input asks for stands as a line above its output.
+    With ``named``, a name that an input shows becomes a line above its output.
     """
     marks = list(_MARK.finditer(source.text))
     if not marks:
@@ -53,7 +52,7 @@ def printed(source: SourceText, *, named: bool = False) -> SourceText:
 
 
 def without_prompts(source: SourceText) -> SourceText:
-    """The inputs and the outputs, without the prompts in front of them."""
+    """Return the inputs and outputs of a session without the prompts."""
     if not _MARK.search(source.text):
         return source
     plain = joined(source.split(_MARK), source.at)
@@ -61,7 +60,7 @@ def without_prompts(source: SourceText) -> SourceText:
 
 
 def _statement_end(text: str) -> int:
-    """The end of the first line, or of the line on which the brackets opened in it are closed."""
+    """Return the end of the first line, or of the line that closes its open brackets."""
     depth = 0
     for i, letter in enumerate(text):
         if letter in CLOSES:

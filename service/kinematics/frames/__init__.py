@@ -1,1 +1,1 @@
-"""Frames of a student's own choice: which tables describe the same robot."""
+"""Find which tables, in frames that the student chooses, describe the same robot."""

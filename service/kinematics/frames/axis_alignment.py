@@ -1,9 +1,9 @@
-"""Where a free base frame has to lie so that the joint axes of one chain lie on those of another.
+"""Find the place of a free base frame that makes the joint axes of two chains coincide.
 
-Each chain is given by its joint axes at the same joint values, ``(joints, L, 4, 4)``: frames whose
-z axis is the joint's. The rotation follows from the directions of the axes, the translation then
-from their positions. Where the axes leave something open (if all are parallel, for example), one of
-the possible transforms is returned.
+Each chain is given by frames whose z axes are its joint axes, ``(joints, L, 4, 4)``, at the same
+joint values. The rotation follows from the directions of the axes, then the translation from their
+positions. If the axes do not determine the transform (all are parallel, for example), one of the
+possible transforms is returned.
 """
 
 import numpy as np
@@ -16,23 +16,23 @@ _EACH, _LAST = slice(None), slice(-1, None)
 
 
 def align_axes(source: Matrices, target: Matrices, sliding: NDArray[np.bool_]) -> Matrices:
-    """The transform ``(L, 4, 4)`` that takes the axes ``source`` as near as can be to ``target``.
+    """Return the transform ``(L, 4, 4)`` that best moves the axes ``source`` to ``target``.
 
-    Both are ``(joints, L, 4, 4)``; of a ``sliding`` axis the direction alone counts.
+    Both are ``(joints, L, 4, 4)``. Only the direction of a ``sliding`` axis matters.
     """
     aligned: Matrices = _aligned(source, target, sliding, _LAST)[0]
     return aligned
 
 
 def align_first_axes(source: Matrices, target: Matrices, sliding: NDArray[np.bool_]) -> Matrices:
-    """``align_axes`` for the first axis, the first two, the first three …: ``(n, L, 4, 4)``."""
+    """Apply ``align_axes`` to the first axis, the first two, and so on: ``(n, L, 4, 4)``."""
     return _aligned(source, target, sliding, _EACH)
 
 
 def _aligned(
     source: Matrices, target: Matrices, sliding: NDArray[np.bool_], numbers: slice
 ) -> Matrices:
-    """``align_axes`` for several of the numbers of first axes, 1 to n: ``(m, L, 4, 4)``."""
+    """Apply ``align_axes`` to the first 1 to n axes, or to a slice of these: ``(m, L, 4, 4)``."""
     known = _known_to_first(len(source))[numbers]
     rotation = _bases(target, sliding, known) @ np.swapaxes(_bases(source, sliding, known), -1, -2)
     transform = identity(rotation.shape[:2])
@@ -42,14 +42,14 @@ def _aligned(
 
 
 def _bases(axes: Matrices, sliding: NDArray[np.bool_], known: NDArray[np.bool_]) -> Matrices:
-    """Right-handed bases ``(m, L, 3, 3)`` that are fixed to the ``known`` axes: z along the first.
+    """Return right-handed bases ``(m, L, 3, 3)`` that are fixed to the ``known`` axes.
 
-    x comes from the first axis that is not parallel to it, or else from the first parallel one that
-    lies elsewhere.
+    z is along the first axis. x points to the direction of the first axis that is not parallel to
+    it, or else to the first parallel axis at another place.
     """
     z = axes[0, :, :3, 2]
     directions = axes[:, :, :3, 2]
-    # Seen from a point of the first axis that turns.
+    # Points are relative to the first revolute axis.
     points = axes[..., :3, 3] - axes[np.argmin(sliding), :, :3, 3]
     points = np.where(sliding[:, None, None], 0.0, points)
     any_x = np.eye(3)[np.argmin(np.abs(z), axis=-1)]
@@ -57,7 +57,7 @@ def _bases(axes: Matrices, sliding: NDArray[np.bool_], known: NDArray[np.bool_])
     across = across - (across * z).sum(axis=-1, keepdims=True) * z
     length = np.sqrt((across * across).sum(axis=-1))
     least = length.min(axis=-1)
-    # Axes that should be parallel are nearly so where numbers were rounded: they come last.
+    # With rounded numbers, parallel axes may be slightly tilted, so nearly parallel ones come last.
     trust = 2 * (least > NOT_PARALLEL_BY_ROUNDING) + 2 * (least > CLEARLY_NOT_PARALLEL)
     trust[-1] = 1
     chosen = np.where(known, trust, -1).argmax(axis=1)
@@ -67,7 +67,7 @@ def _bases(axes: Matrices, sliding: NDArray[np.bool_], known: NDArray[np.bool_])
 
 
 def _known_to_first(joints: int) -> NDArray[np.bool_]:
-    """Which directions, which points, and whether any x, are known of the first m axes."""
+    """For the first m axes: True for known directions and known points, and for an arbitrary x."""
     first = np.tri(joints, dtype=np.bool_)
     return np.concatenate([first, first, np.ones((joints, 1), np.bool_)], axis=1)
 
@@ -79,10 +79,10 @@ def _translations(
     sliding: NDArray[np.bool_],
     numbers: slice,
 ) -> Numbers:
-    """The shifts ``(m, L, 3)`` after which the first turning axes meet, by least squares.
+    """Return the shifts ``(m, L, 3)`` that best move the revolute source axes to the target axes.
 
-    With u along an axis and p from a point of the turned source to one of the target, it minimises
-    Σ |(1 − u uᵀ)(p − shift)|².
+    With u along an axis and p from a point of the rotated source axis to one of the target axis,
+    the shift minimises Σ |(1 − u uᵀ)(p − shift)|².
     """
     u = target[..., :3, 2]
     projection = np.eye(3) - u[..., :, None] * u[..., None, :]

@@ -1,11 +1,11 @@
-"""The freedom that is left of a base frame of the student's choice, from row to row.
+"""Track how much freedom is left of a base frame that the student chooses, from row to row.
 
-Where the base is free, frame 0 may be turned about the axis of joint 1 and slid along it (and moved
-anywhere, if that joint slides). The choice shows only where the chain first leaves that axis. So
-the search takes the freedom along from row to row, and uses it up at the first row that depends on
-it.
+If the base is free, frame 0 may be turned about the axis of joint 1 and moved along it (and moved
+anywhere, if that joint is prismatic). The choice has an effect only where the chain first leaves
+that axis. So the search keeps the freedom from row to row until a row depends on it; this row uses
+it up.
 
-Shapes: N rows that are tried, L samples; rows are ``(N, 4, L)`` in the column order a, α, d, θ.
+Shapes: N candidate rows, L samples; rows are ``(N, 4, L)`` in the column order a, α, d, θ.
 """
 
 from dataclasses import dataclass
@@ -26,10 +26,10 @@ from service.kinematics.transforms import Matrices, Numbers
 
 @dataclass(frozen=True, slots=True)
 class BaseFreedom:
-    """How the student's frame may still be moved, in the reference's frame on the same axis.
+    """The ways to move the student's frame, in the reference frame on the same axis.
 
-    ``turn`` says that it may be turned about z, ``anywhere`` that it may be moved in all
-    directions; ``slide`` ``(L, 3)`` is the one direction that it may be moved along, None for none.
+    With ``turn``, it may be turned about z. With ``anywhere``, it may be moved in all directions;
+    else it may be moved only along ``slide`` ``(L, 3)``, or not at all if ``slide`` is None.
     """
 
     turn: bool = False
@@ -38,16 +38,16 @@ class BaseFreedom:
 
     @classmethod
     def on_first_axis(cls, prismatic: bool, samples: int) -> Self:
-        """The freedom that a free base leaves on the axis of joint 1."""
+        """Return the freedom of a frame on the axis of joint 1 if the base is free."""
         return cls(turn=True, slide=None if prismatic else _along_z(samples), anywhere=prismatic)
 
     @property
     def is_used_up(self) -> bool:
-        """Whether nothing is left of it."""
+        """True if no freedom is left."""
         return not (self.turn or self.anywhere) and self.slide is None
 
     def at_next(self, reference: Matrices, kind: TargetKind, length_scale: float) -> Self:
-        """The freedom left at the next target, where ``reference`` ``(L, 4, 4)`` leads."""
+        """Return the freedom left at the next target, the pose ``reference`` ``(L, 4, 4)``."""
         relation = axis_relations(reference[None], length_scale)[0]
         parallel = relation != AxisRelation.SKEW
         sliding = kind is TargetKind.PRISMATIC
@@ -65,10 +65,11 @@ class BaseFreedom:
     def use_up(
         self, rows: Numbers, rows_beyond: Numbers, written: Numbers
     ) -> list[tuple[Numbers, Numbers]]:
-        """Rows that use the freedom up, each with the distance ``(N, L)`` moved along ``slide``.
+        """Return rows that use up the freedom, each with the distance ``(N, L)`` along ``slide``.
 
-        ``rows_beyond`` is ``rows`` for a frame one unit further along ``slide``: lengths depend on
-        the distance linearly. It is chosen so that one length of the row is the ``written`` one.
+        ``rows_beyond`` is ``rows`` for a frame one unit further along ``slide``; lengths depend
+        linearly on the distance. The distance is chosen so that one length equals the ``written``
+        one.
         """
         unmoved = np.zeros(rows.shape[::2])
         if self.anywhere:
@@ -87,7 +88,7 @@ class BaseFreedom:
         return options or [(rows, unmoved)]
 
     def with_written_angle(self, rows: Numbers, written: Numbers) -> Numbers:
-        """The rows with the θ that was written, where any angle would do."""
+        """Return the rows with the written θ if any angle is possible; else unchanged."""
         if not self.turn:
             return rows
         turned = rows.copy()

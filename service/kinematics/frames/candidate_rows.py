@@ -1,13 +1,13 @@
-"""The DH rows that lead from a frame to the next axis: every one that there is.
+"""Find all DH rows that lead from a frame to the next axis.
 
-A row moves by Rot_z(θ) Trans_z(d) Trans_x(a) Rot_x(α). Seen from the frame where the row starts,
-the next target is a transform. How much of it the row must meet depends on its kind: of a revolute
-axis the line, of a prismatic axis the direction, of the tool the whole frame. Where the geometry
-leaves a value open, the value that was written is as good as the reference's, and both are tried.
+A row moves by Rot_z(θ) Trans_z(d) Trans_x(a) Rot_x(α). The next target is a transform relative to
+the frame before the row. Its kind decides what the row must match: the line of a revolute axis, the
+direction of a prismatic axis, or the whole frame of the tool. If the geometry leaves a value open,
+the written value is as good as the reference's, so both are tried.
 
-Shapes: H hypotheses, K candidates for each, L samples. Targets are ``(H, L, 4, 4)``, rows
-``(..., 4, L)`` in the column order a, α, d, θ, the written row is ``(4, L)`` with NaN where there
-is no usable number; angles in radians.
+Shapes: H hypotheses, K candidates for each, L samples. Targets are ``(H, L, 4, 4)``; rows are
+``(..., 4, L)`` in the column order a, α, d, θ. The written row is ``(4, L)``, with NaN for cells
+without a usable number. Angles are in radians.
 """
 
 from enum import Enum, IntEnum
@@ -26,7 +26,7 @@ _Z_SIGNS = np.array([[1.0], [1.0], [-1.0], [-1.0]])
 
 
 class AxisRelation(IntEnum):
-    """How one axis lies to another."""
+    """The relative position of two axes."""
 
     SKEW = 0
     PARALLEL = 1
@@ -34,7 +34,7 @@ class AxisRelation(IntEnum):
 
 
 class TargetKind(Enum):
-    """What a row leads to, and so how much of the frame there is determined."""
+    """The target of a row, which decides how much of the frame after the row is determined."""
 
     REVOLUTE = "a line that the next z axis lies on"
     PRISMATIC = "a direction of the next z axis"
@@ -46,9 +46,9 @@ class TargetKind(Enum):
 def candidate_rows(
     target: Matrices, written: Numbers, kind: TargetKind, length_scale: float
 ) -> Numbers:
-    """Every row that leads to the target: ``(H, K, 4, L)``.
+    """Return every row that leads to the target: ``(H, K, 4, L)``.
 
-    The z axes of all H targets must have one relation (skew, parallel, coincident) to z here.
+    The z axes of all H targets must have the same AxisRelation to the z axis before the row.
     """
     if kind is TargetKind.TOOL:
         return row(target, Convention.STANDARD)[:, None]
@@ -67,7 +67,7 @@ def candidate_rows(
 
 
 def axis_relations(target: Matrices, length_scale: float) -> NDArray[np.int_]:
-    """The AxisRelation of each target's z axis to the z axis here: ``(H,)``."""
+    """Return the AxisRelation of each target's z axis to the z axis before the row: ``(H,)``."""
     sine = np.hypot(target[..., 0, 2], target[..., 1, 2])
     offset = np.hypot(target[..., 0, 3], target[..., 1, 3])
     parallel = np.all(sine < PARALLEL, axis=-1)
@@ -77,12 +77,12 @@ def axis_relations(target: Matrices, length_scale: float) -> NDArray[np.int_]:
 
 
 def written_or(written: Numbers, other: Numbers) -> Numbers:
-    """The written values, or the others where no usable number was written."""
+    """Return the written values; where they are NaN, the other values."""
     return np.where(np.isnan(written), other, written)
 
 
 def _to_skew(target: Matrices, written: Numbers) -> Numbers:
-    """Axes that are not parallel: x along the common normal, either way, and z either way."""
+    """Return the rows to a skew axis: x is along the common normal, and x and z may be reversed."""
     ux, uy, uz = (target[..., i, 2] for i in range(3))
     px, py, pz = (target[..., i, 3] for i in range(3))
     sine = np.hypot(ux, uy)
@@ -95,7 +95,7 @@ def _to_skew(target: Matrices, written: Numbers) -> Numbers:
 
 
 def _to_parallel(target: Matrices, written: Numbers) -> Numbers:
-    """Parallel axes: x points from one to the other, and d is open."""
+    """Return the rows to a parallel axis: x points from one axis to the other, and d is open."""
     px, py, pz = (target[..., i, 3] for i in range(3))
     theta, a = np.arctan2(py, px), np.hypot(px, py)
     x_sign, z_sign = _signs(target, theta, a, written)
@@ -110,7 +110,7 @@ def _to_parallel(target: Matrices, written: Numbers) -> Numbers:
 
 
 def _to_coincident(target: Matrices, written: Numbers) -> Numbers:
-    """One line: θ and d are open."""
+    """Return the rows to a coincident axis: θ and d are open."""
     pz = target[..., 2, 3]
     x_angle = np.arctan2(target[..., 1, 0], target[..., 0, 0])
     alpha = _parallel_twist(target, _Z_SIGNS)
@@ -133,9 +133,9 @@ _TO_LINE = {
 
 
 def _with_open_lengths(rows: Numbers, written: Numbers) -> Numbers:
-    """A direction that is not parallel to z here: the axis may lie anywhere, so a and d are open.
+    """Return the rows to a direction that is not parallel to z: a and d are open.
 
-    Each by itself is as written or as in ``rows``.
+    Each of a and d is taken as written or from ``rows``, in all combinations.
     """
     options = []
     for columns in ((A, D), (A,), (D,), ()):
@@ -147,7 +147,7 @@ def _with_open_lengths(rows: Numbers, written: Numbers) -> Numbers:
 
 
 def _to_parallel_direction(target: Matrices, written: Numbers, relation: AxisRelation) -> Numbers:
-    """A direction that is parallel to z here: a, d and θ are open."""
+    """Return the rows to a direction that is parallel to z: a, d and θ are open."""
     on_line = _TO_LINE[relation](target, written)
     as_written = np.empty((len(target), 2, 4, target.shape[1]))
     as_written[:] = written_or(written, on_line[:, :1])
@@ -162,12 +162,12 @@ def _to_parallel_direction(target: Matrices, written: Numbers, relation: AxisRel
 def _signs(
     target: Matrices, theta: Numbers, a: Numbers, written: Numbers
 ) -> tuple[Numbers, Numbers]:
-    """The ways that x and z may point: two arrays of signs that broadcast to ``(H, K, L)``.
+    """Return the possible signs of x and z: two arrays that broadcast to ``(H, K, L)``.
 
-    x lies along a normal at the angle ``theta`` ``(H, L)`` and goes the length ``a`` there, or
-    points the other way. Where ``a`` is a difference of link lengths, it changes its sign from
-    sample to sample while x does not. So x first takes the way of the reference's x, and where the
-    axis was moved, also the way that the written θ and a point.
+    x is along a normal at the angle ``theta`` ``(H, L)``, where the link length is ``a``, or points
+    the opposite way. If ``a`` is a difference of lengths, its sign may change between samples, but
+    that of x does not. So x first points the same way as the reference's x; if the axis was moved,
+    the directions of the written θ and a are tried, too.
     """
     x_angle = np.arctan2(target[..., 1, 0], target[..., 0, 0])
     along = np.cos(theta - x_angle)
@@ -184,15 +184,15 @@ def _signs(
 
 
 def _half_turned(theta: Numbers, x_sign: Numbers) -> Numbers:
-    """The angle of x: ``theta`` ``(H, L)``, or half a turn on, for each sign ``(H, K, L)``."""
+    """Return ``theta`` ``(H, L)``, plus π where the sign of x ``(H, K, L)`` is negative."""
     return theta[:, None] + np.where(x_sign < 0, np.pi, 0.0)
 
 
 def _parallel_twist(target: Matrices, z_sign: Numbers) -> Numbers:
-    """α between parallel axes, 0 or π, for each sign ``(K, 1)``: ``(H, K, L)``."""
+    """Return α between parallel axes, 0 or π, for each sign ``(K, 1)``: ``(H, K, L)``."""
     return np.where(target[:, None, :, 2, 2] * z_sign > 0, 0.0, np.pi)
 
 
 def _rows(a: Numbers, alpha: Numbers, d: Numbers, theta: Numbers) -> Numbers:
-    """Columns that broadcast to ``(H, K, L)`` as rows ``(H, K, 4, L)``."""
+    """Stack columns that broadcast to ``(H, K, L)`` into rows ``(H, K, 4, L)``."""
     return np.stack(np.broadcast_arrays(a, alpha, d, theta), axis=2)

@@ -1,8 +1,9 @@
-"""A chain seen from its tool: the inverse product, so that a given tool serves as a given base.
+"""The inverse of a chain, which begins at the tool, so that a given tool is treated like a base.
 
-The inverse of X_0 Z_1 X_1 … Z_m X_m is X_m⁻¹ Z_m⁻¹ … X_1⁻¹ Z_1⁻¹ X_0⁻¹, again a product of screws
-about x and z in turn. Row j of it is the product Z X of Z_{m+1−j}⁻¹ and X_{m−j}⁻¹; the first row
-has no Z. It leads to the frame that lies behind Z_{m−j}, on the same axis as the one before it.
+The inverse of X_0 Z_1 X_1 … Z_m X_m is X_m⁻¹ Z_m⁻¹ … X_1⁻¹ Z_1⁻¹ X_0⁻¹, again an alternating
+product of screw motions about x and z. Its row j is the product Z X of Z_{m+1−j}⁻¹ and X_{m−j}⁻¹;
+the first row has no Z. Row j leads to the frame after Z_{m−j}, which is on the same axis as the
+frame before Z_{m−j}.
 
 Shapes: L samples; cells are ``(rows, 4, ...)`` in the column order a, α, d, θ, as in
 ``chain_match``.
@@ -24,13 +25,13 @@ _Cell = TypeVar("_Cell", bound=np.generic)
 
 
 def reversed_cells(cells: NDArray[_Cell]) -> NDArray[_Cell]:
-    """The cells in the order of the inverse product; they keep their signs. Its own inverse."""
+    """Return the cells in the order of the inverse product, with unchanged signs. Self-inverse."""
     x, z = cells[::-1, :D], np.roll(cells[::-1, D:], 1, axis=0)
     return np.concatenate([x, z], axis=1)
 
 
 def reversed_rows(rows: Sequence[RowConstants]) -> list[RowConstants]:
-    """The rows of the inverse product."""
+    """Return the rows of the inverse product."""
     of_joints = [rows[0], *rows[:0:-1]]
     cells = zip(
         -reversed_cells(np.array([row.written for row in rows])),
@@ -47,9 +48,9 @@ def reversed_rows(rows: Sequence[RowConstants]) -> list[RowConstants]:
 
 
 def reversed_targets(targets: Sequence[Target], offsets: Matrices) -> list[Target]:
-    """The targets of the inverse product, from a given tool to a base of the writer's choice.
+    """Return the targets of the inverse product, from a given tool to a base that is free.
 
-    ``offsets`` ``(n, L, 4, 4)`` is the Z of the reference's constants on each joint axis.
+    ``offsets`` ``(n, L, 4, 4)`` has the factor Z of the reference's constants on each joint axis.
     """
     here = identity((offsets.shape[1],))
     each_offset = iter(offsets)

@@ -1,7 +1,7 @@
-"""The right answer to a part, by its kind: one module for one kind.
+"""The right answer to a part, with one module for each kind.
 
-A module ``<kind>.py`` has a function ``answer(part, work)``, and ``lazy(part, exercise)`` for the
-answers of somebody who knows nothing. It is found here by its name.
+A module ``<kind>.py`` has a function ``answer(part, work)``, which returns the right answer, and
+``lazy(part, exercise)``, which returns answers that need no knowledge. Modules are found by name.
 """
 
 from collections.abc import Callable, Mapping

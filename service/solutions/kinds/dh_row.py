@@ -1,4 +1,4 @@
-"""The model answer of kind ``dh_row``: the row of a transform, or that it has none."""
+"""The model answer of kind ``dh_row``: the DH row of a transform, or that it has none."""
 
 import numpy as np
 import sympy
@@ -19,10 +19,10 @@ _MOST_STEPS = 60
 
 
 def answer(part: DhRowSpec, work: Work) -> PrintedAnswer:
-    """The row (a, α, d, θ) of the part's transform, or that it has none.
+    """Return the row (a, α, d, θ) of the part's transform, or that it has none.
 
-    Read off the link transforms' own entries (Spong, Hutchinson, Vidyasagar, *Robot Modeling and
-    Control*, eq. 3.10; Craig, *Introduction to Robotics*, eq. 3.6).
+    The row follows from the entries of a link transform (Spong, Hutchinson, Vidyasagar, *Robot
+    Modeling and Control*, eq. 3.10; Craig, *Introduction to Robotics*, eq. 3.6).
     """
     grid = work.exercise.formulas[part.id]
     numbers = np.moveaxis(grid_values(grid, trial_values(work.exercise.variables), TRIALS), -1, 0)
@@ -43,10 +43,10 @@ def answer(part: DhRowSpec, work: Work) -> PrintedAnswer:
 
 
 def _simplified(length: sympy.Expr) -> sympy.Expr:
-    """Such as l for l cos² φ + l sin² φ; a long formula would take seconds, and stays."""
+    """Simplify l cos² φ + l sin² φ to l. Long formulas stay as they are, to save time."""
     return sympy.trigsimp(sympy.expand(length)) if length.count_ops() < _MOST_STEPS else length
 
 
 def lazy(_part: DhRowSpec, _exercise: Exercise) -> list[object]:
-    """Zeros; that there is no row is a guess, and may be right."""
+    """Return a row of zeros. "No row" is not included, because this guess may be right."""
     return [dict.fromkeys(COLUMNS, "0")]

@@ -1,4 +1,4 @@
-"""The model answer of kind ``dh_table``: the reference's table, in the convention asked for."""
+"""The model answer of kind ``dh_table``: the reference table in the requested convention."""
 
 from service.catalogue import Exercise
 from service.catalogue.parts.dh_table import DhTableSpec
@@ -10,7 +10,7 @@ from service.solutions.work import Work
 
 
 def answer(part: DhTableSpec, work: Work) -> PrintedAnswer:
-    """The table; where either convention will do, it names its own."""
+    """Return the table. If the part accepts either convention, the table names its convention."""
     robot = work.exercise.robot
     asked = part.convention
     convention = asked if isinstance(asked, Convention) else robot.convention
@@ -20,7 +20,7 @@ def answer(part: DhTableSpec, work: Work) -> PrintedAnswer:
 
 
 def lazy(part: DhTableSpec, exercise: Exercise) -> list[object]:
-    """The joint variables in their columns and 0 elsewhere."""
+    """Return a table with the joint variables in their columns and 0 elsewhere."""
     robot, asked = exercise.robot, part.convention
     convention = asked if isinstance(asked, Convention) else robot.convention
     table = robot.tables[convention]

@@ -9,7 +9,7 @@ from service.solutions.work import Work
 
 
 def answer(part: EulerAnglesSpec, work: Work) -> PrintedAnswer:
-    """The angles as the file gives them, or those of the robot's pose."""
+    """Return the angles that the exercise file gives, or the angles of the robot's pose."""
     given = work.as_written(part)
     if given:
         return layout.listed(given[0])
@@ -18,5 +18,5 @@ def answer(part: EulerAnglesSpec, work: Work) -> PrintedAnswer:
 
 
 def lazy(_part: EulerAnglesSpec, _exercise: Exercise) -> list[object]:
-    """Zeros."""
+    """Return three zeros."""
     return [["0"] * 3]

@@ -1,4 +1,4 @@
-"""The model answer of kind ``link_transforms``: the transforms of the reference's rows."""
+"""The model answer of kind ``link_transforms``: the transforms of the reference table's rows."""
 
 from service.catalogue import Exercise
 from service.catalogue.parts.link_transforms import LinkTransformsSpec
@@ -8,7 +8,7 @@ from service.solutions.work import Work
 
 
 def answer(part: LinkTransformsSpec, work: Work) -> PrintedAnswer:
-    """The matrices one after the other, each with its name."""
+    """Return the link transforms in order, each with its name."""
     matrices = work.link_matrices(part.convention)
     return PrintedAnswer(
         "\n\n".join(f"A{label} =\n{matrix.text}" for label, matrix in matrices.items()),
@@ -20,7 +20,7 @@ def answer(part: LinkTransformsSpec, work: Work) -> PrintedAnswer:
 
 
 def lazy(part: LinkTransformsSpec, exercise: Exercise) -> list[object]:
-    """The motion of each joint, and the identity for a fixed row."""
+    """Return the motion of each joint, and the identity for each fixed row."""
     table = exercise.robot.tables[part.convention]
     fixed = len(table.rows) - len(table.joints)
     return [[*(motion([joint]) for joint in table.joints), *[IDENTITY] * fixed]]

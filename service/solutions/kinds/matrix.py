@@ -1,4 +1,4 @@
-"""The model answer of kind ``matrix``: the matrix that the file gives."""
+"""The model answer of kind ``matrix``: the matrix in the exercise file."""
 
 from service.catalogue import Exercise
 from service.catalogue.parts.matrix import MatrixSpec
@@ -8,14 +8,14 @@ from service.solutions.work import Work
 
 
 def answer(part: MatrixSpec, work: Work) -> PrintedAnswer:
-    """The entries row by row."""
+    """Return the matrix in the exercise file."""
     given = work.as_written(part)
     assert given is not None
     return layout.matrix(given)
 
 
 def lazy(part: MatrixSpec, _exercise: Exercise) -> list[object]:
-    """Zeros, and ones on the diagonal."""
+    """Return a matrix of zeros, and one with ones on the diagonal."""
     rows, columns = len(part.quantities), len(part.quantities[0])
     zeros = [["0"] * columns for _ in range(rows)]
     ones = [["1" if i == j else "0" for j in range(columns)] for i in range(rows)]

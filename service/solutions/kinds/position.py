@@ -9,7 +9,7 @@ from service.solutions.work import Work
 
 
 def answer(part: PositionSpec, work: Work) -> PrintedAnswer:
-    """The coordinates as the file gives them, or those of the robot's frame."""
+    """Return the coordinates that the exercise file gives, or those of the robot's frame."""
     given = work.as_written(part)
     if given:
         return layout.listed(given[0])
@@ -20,5 +20,5 @@ def answer(part: PositionSpec, work: Work) -> PrintedAnswer:
 
 
 def lazy(part: PositionSpec, _exercise: Exercise) -> list[object]:
-    """Zeros."""
+    """Return zeros for all coordinates."""
     return [["0"] * len(part.coordinates)]

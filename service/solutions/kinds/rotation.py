@@ -12,13 +12,13 @@ _AXES = {"x": X, "y": Y, "z": Z}
 
 
 def answer(part: RotationSpec, work: Work) -> PrintedAnswer:
-    """The rotation as the file gives it, the product of its turns, or that of the robot."""
+    """Return the rotation: from the exercise file, as the product of its turns, or of the robot."""
     given = work.as_written(part) if part.steps is None else None
     return layout.matrix(given) if given else work.matrix(multiplied(_turns(part, work)).rotation)
 
 
 def _turns(part: RotationSpec, work: Work) -> list[Motion]:
-    """The turns that the rotation is made of; about a fixed axis they go before all others."""
+    """Return the rotation's turns as factors. A turn about a fixed axis goes to the front."""
     if part.steps is None:
         return work.pose_motions(part)
     angles = work.algebra.matrix(work.exercise.formulas[part.id])
@@ -29,5 +29,5 @@ def _turns(part: RotationSpec, work: Work) -> list[Motion]:
 
 
 def lazy(_part: RotationSpec, exercise: Exercise) -> list[object]:
-    """The identity, and all joints on one axis."""
+    """Return the identity, and the rotation if all joints had the same axis."""
     return [*poses(exercise, 3)]

@@ -13,7 +13,7 @@ from service.solutions.work import Work
 
 
 def answer(part: ScrewAxesSpec, work: Work) -> PrintedAnswer:
-    """The axes as the file gives them, or those of the robot's joints at home."""
+    """Return the axes that the exercise file gives, or those of the robot's joints at home."""
     given = work.as_written(part)
     if given:
         return layout.matrix(given)
@@ -28,7 +28,7 @@ def answer(part: ScrewAxesSpec, work: Work) -> PrintedAnswer:
 
 
 def _in_space(exercise: Exercise, algebra: Algebra) -> list[tuple[sympy.Matrix, sympy.Matrix]]:
-    """The screw axis (ω; v) of each joint at home, seen from the base frame."""
+    """Return the screw axis (ω; v) of each joint at home, in the base frame."""
     if isinstance(exercise.reference, ScrewRobot):
         rows = algebra.matrix(exercise.reference.axes).tolist()
         return [(sympy.Matrix(row[:3]), sympy.Matrix(row[3:])) for row in rows]
@@ -40,7 +40,7 @@ def _in_space(exercise: Exercise, algebra: Algebra) -> list[tuple[sympy.Matrix, 
 
 
 def lazy(part: ScrewAxesSpec, exercise: Exercise) -> list[object]:
-    """Zeros, and each axis z of the base frame."""
+    """Return axes that are all the z axis of the base frame, and axes of zeros."""
     kinds = [joint.prismatic for joint in exercise.joints]
     prismatic = kinds if part.expected is None else [False] * len(part.expected)
     axes = [["0"] * 5 + ["1"] if slides else [*"001000"] for slides in prismatic]

@@ -10,7 +10,7 @@ from service.solutions.work import Work
 
 
 def answer(part: TransformSpec, work: Work) -> PrintedAnswer:
-    """The transform as the file gives it, or the pose of the robot."""
+    """Return the transform that the exercise file gives, or the pose of the robot."""
     given = work.as_written(part)
     return (
         layout.matrix(given) if given else work.matrix(multiplied(work.pose_motions(part)).matrix())
@@ -18,5 +18,5 @@ def answer(part: TransformSpec, work: Work) -> PrintedAnswer:
 
 
 def lazy(_part: TransformSpec, exercise: Exercise) -> list[object]:
-    """The identity, and all joints on one axis."""
+    """Return the identity, and the transform if all joints had the same axis."""
     return [*poses(exercise, 4)]

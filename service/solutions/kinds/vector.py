@@ -1,4 +1,4 @@
-"""The model answer of kind ``vector``: the list that the file gives."""
+"""The model answer of kind ``vector``: the list in the exercise file."""
 
 from service.catalogue import Exercise
 from service.catalogue.parts.vector import VectorSpec
@@ -8,12 +8,12 @@ from service.solutions.work import Work
 
 
 def answer(part: VectorSpec, work: Work) -> PrintedAnswer:
-    """The components in order."""
+    """Return the components in order."""
     given = work.as_written(part)
     assert given is not None
     return layout.listed(given[0])
 
 
 def lazy(part: VectorSpec, _exercise: Exercise) -> list[object]:
-    """Zeros."""
+    """Return zeros for all components."""
     return [["0"] * len(part.components)]

@@ -1,4 +1,4 @@
-"""LaTeX commands beside letters and digits."""
+"""LaTeX commands next to letters and digits."""
 
 import pytest
 
@@ -23,7 +23,7 @@ from service.expressions import Symbol, Vocabulary, read
         ("sin d", "sin(d)"),
     ],
 )
-def test_a_command_does_not_run_into_the_letters_beside_it(text: str, meaning: str) -> None:
+def test_a_command_does_not_merge_with_adjacent_letters(text: str, meaning: str) -> None:
     vocabulary = Vocabulary(
         [
             Symbol("theta1", "angle", ("q1",), joint=1),

@@ -1,4 +1,4 @@
-"""The rounded decimals of a formula: those with three figures or more, behind a point."""
+"""The rounded decimals of a formula: numbers with a point and three or more figures."""
 
 import numpy as np
 import pytest
@@ -26,11 +26,11 @@ ARM = Vocabulary([joint_variable(1)])
         ("1e-3", []),
     ],
 )
-def test_units(text: str, units: list[float]) -> None:
+def test_the_unit_of_a_decimal_is_one_in_its_last_place(text: str, units: list[float]) -> None:
     assert decimals_of(read(text, ARM)).units == pytest.approx(units)
 
 
-def test_shifted_decimals() -> None:
+def test_a_shift_moves_a_decimal_by_units() -> None:
     decimals = decimals_of(read("2*cos(q1) + 0.125*q1 - 57.3deg", ARM))
     q1 = np.array([0.0, 1.0])
     found = decimals.shifted(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, -0.5]]), {"theta1": q1})
@@ -47,5 +47,5 @@ def test_shifted_decimals() -> None:
         ("1.571*q1", 0), ("sin(1.571)", 0), ("90.0deg", 0), ("1.57 + 1.57", 0), ("q1", 0),
     ],
 )  # fmt: skip
-def test_the_sign_of_a_decimal_that_stands_alone(text: str, sign: int) -> None:
+def test_only_a_single_decimal_has_a_sign(text: str, sign: int) -> None:
     assert decimals_of(read(text, ARM)).sign == sign

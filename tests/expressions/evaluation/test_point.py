@@ -1,4 +1,4 @@
-"""The value of a tree at one point against the compiled program at many."""
+"""The value of a tree at one point, compared with the compiled program."""
 
 import math
 
@@ -26,7 +26,7 @@ AT = {"theta1": 0.7, "theta2": -1.9, "l1": 0.4}
         "2^-3 + q1^3",
     ],
 )
-def test_it_is_what_the_program_gives(text: str) -> None:
+def test_the_value_is_that_of_the_program(text: str) -> None:
     expression = read(text, VOCABULARY)
     expected = expression.evaluate({name: np.array([value]) for name, value in AT.items()})
     assert value_at(expression.tree, AT, {}) == pytest.approx(float(np.ravel(expected)[0]))
@@ -37,13 +37,13 @@ def test_it_is_what_the_program_gives(text: str) -> None:
 @pytest.mark.parametrize(
     "text", ["1/0", "sqrt(-1)", "q2^0.5", "asin(2)", "exp(1000)", "10^400", "q1 + 1/(q2 - q2)"]
 )
-def test_where_there_is_no_value_it_is_not_a_number(text: str) -> None:
+def test_an_undefined_value_is_nan(text: str) -> None:
     tree = read(text, VOCABULARY).tree
     assert math.isnan(value_at(tree, AT, {}))
     assert math.isnan(value_at(tree, AT, known_values(tree, AT)))
 
 
-def test_what_is_known_is_not_worked_out_again() -> None:
+def test_a_known_value_is_not_computed_again() -> None:
     tree = read("l1*c1", VOCABULARY).tree
     known = {id(tree): 40.0}
     assert value_at(Binary("+", tree, Number(2.0, "2")), {}, known) == 42.0

@@ -1,4 +1,4 @@
-"""Programs: all samples at once, undefined values, and what expressions share."""
+"""Programs: all samples at once, undefined values, and the memo that expressions share."""
 
 from math import cos, isinf, isnan
 
@@ -22,7 +22,7 @@ def test_all_samples_are_evaluated_at_once(arm: Vocabulary) -> None:
 @pytest.mark.parametrize(
     "text", ["sqrt(-1)", "0/0", "asin(2)", "(-8)^(1/3)", "sqrt(-l1)", "acos(k)"]
 )
-def test_undefined_is_nan(text: str, arm: Vocabulary, values: Values) -> None:
+def test_an_undefined_value_is_nan(text: str, arm: Vocabulary, values: Values) -> None:
     assert all(map(isnan, np.ravel(read(text, arm).evaluate(values))))
 
 
@@ -34,20 +34,20 @@ UNDEFINED_WITHIN = [
 
 
 @pytest.mark.parametrize("text", UNDEFINED_WITHIN)
-def test_what_holds_something_undefined_is_undefined(
+def test_a_formula_with_an_undefined_part_is_undefined(
     text: str, arm: Vocabulary, values: Values
 ) -> None:
-    """1/(1/0) is no 0: Python, too, raises an error there instead of going on."""
+    """1/(1/0) is not 0; Python raises an error there, too."""
     assert all(map(isnan, np.ravel(read(text, arm).evaluate(values))))
 
 
-def test_only_the_undefined_samples_are_undefined(arm: Vocabulary) -> None:
+def test_an_undefined_sample_does_not_affect_other_samples(arm: Vocabulary) -> None:
     result = read("1/(1/k) + sqrt(k)^0", arm).evaluate({"k": np.array([-1.0, 0.0, 2.0])})
     np.testing.assert_array_equal(result, [np.nan, np.nan, 3.0])
 
 
 @pytest.mark.parametrize("text", ["1/0", "exp(10^9)", "l1/(k-k)", "10^300*10^300", "0^-1"])
-def test_unbounded_is_infinite(text: str, arm: Vocabulary, values: Values) -> None:
+def test_an_overflow_is_infinite(text: str, arm: Vocabulary, values: Values) -> None:
     assert all(map(isinf, np.ravel(read(text, arm).evaluate(values))))
 
 
@@ -69,7 +69,7 @@ def test_constants_are_folded(arm: Vocabulary, values: Values) -> None:
     assert not memo
 
 
-def test_what_two_texts_share_is_computed_once() -> None:
+def test_a_part_that_two_texts_share_is_computed_once() -> None:
     memo: dict[str, object] = {}
     product = read("l1*c1", ROBOT).evaluate(SAMPLES, memo)
     assert read("l1 cos(θ1)", ROBOT).evaluate(SAMPLES, memo) is product
@@ -83,7 +83,7 @@ def test_a_symbol_called_inf_is_not_infinite() -> None:
     assert read("inf*nan", vocabulary).evaluate(values) == [6.0]
 
 
-def test_all_at_once_is_the_same_as_one_by_one() -> None:
+def test_evaluating_all_at_once_gives_the_same_values() -> None:
     texts = ["2", "k", "k/0", "sqrt(k)", "1/0", "l1*c1"]
     expressions = [read(text, ROBOT) for text in texts]
     found = evaluate_all([*expressions, None], SAMPLES, {})

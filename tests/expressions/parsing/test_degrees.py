@@ -1,4 +1,4 @@
-"""Bare numbers where the student works in degrees."""
+"""Bare numbers of a student who works in degrees."""
 
 from math import cos, pi, sin
 
@@ -66,7 +66,9 @@ NUMBERS = [
         *((text, "number", value) for text, value in NUMBERS),
     ],
 )
-def test_value(text: str, quantity: Kind, expected: float, arm: Vocabulary, values: Values) -> None:
+def test_bare_angles_are_degrees(
+    text: str, quantity: Kind, expected: float, arm: Vocabulary, values: Values
+) -> None:
     expression = read(text, arm, quantity=quantity, angle_unit="degrees")
     assert np.ravel(expression.evaluate(values)) == pytest.approx([expected], rel=1e-12)
 
@@ -79,17 +81,16 @@ def test_a_constant_with_pi_is_radians(text: str, span: tuple[int, int], arm: Vo
     assert [(note.code, note.span) for note in expression.notes] == [("radians_in_degrees", span)]
 
 
-def test_in_radians_a_number_is_itself(arm: Vocabulary) -> None:
+def test_in_radians_a_number_keeps_its_value(arm: Vocabulary) -> None:
     assert read("90", arm, quantity="angle").evaluate({}) == 90.0
 
 
-def test_a_length_is_no_angle(arm: Vocabulary) -> None:
+def test_in_degrees_a_length_keeps_its_value(arm: Vocabulary) -> None:
     assert read("90", arm, quantity="length", angle_unit="degrees").evaluate({}) == 90.0
 
 
 @together("text", [text for text, _ in ANGLES])
-def test_the_text_says_its_units(text: str, arm: Vocabulary) -> None:
-    """What is printed reads to the same tree in degrees."""
+def test_printed_text_reads_back_in_degrees(text: str, arm: Vocabulary) -> None:
     tree = read(text, arm, quantity="angle", angle_unit="degrees")
     again = read(tree.text(), arm, quantity="angle", angle_unit="degrees")
     assert again.tree == tree.tree

@@ -1,4 +1,4 @@
-"""The parser takes what its grammar says, and no text brings it near Python's recursion limit."""
+"""The parser accepts exactly its grammar, and no text brings it near Python's recursion limit."""
 
 import re
 import sys
@@ -18,14 +18,14 @@ from service.expressions.parsing import parser
 from service.expressions.parsing.lexing.tokens import END, Token
 from service.expressions.parsing.tree_builder import Builder
 
-# A part of a rule: a symbol, or what may be repeated or left out, as alternatives of sequences.
+# A part of a rule: ("", symbol), or a bracket with alternatives, each a sequence of parts.
 Part = tuple[str, "str | list[list[Part]]"]
 UNITS: tuple[Literal["radians", "degrees"], ...] = ("radians", "degrees")
 CLOSING = {"{": "}", "[": "]", "(": ")"}
 
 
 def grammar() -> dict[str, list[list[Part]]]:
-    """The rules as the module's docstring states them."""
+    """Return the rules in the docstring of the parser module."""
     text = str(parser.__doc__).split("\n\n")[2]
     rules = re.split(r"^ +(\w+) +=", text, flags=re.MULTILINE)[1:]
     return {
@@ -35,7 +35,7 @@ def grammar() -> dict[str, list[list[Part]]]:
 
 
 def alternatives(words: list[str], closing: str = "") -> list[list[Part]]:
-    """The alternatives up to ``closing``; their words are taken off the front of ``words``."""
+    """Parse the alternatives up to ``closing``; remove their words from the front of ``words``."""
     found: list[list[Part]] = [[]]
     while words:
         word = words.pop(0)
@@ -55,7 +55,7 @@ TERMINALS = sorted(set(re.findall(r"\b[A-Z]+\b", str(GRAMMAR))))
 
 
 class Recogniser:
-    """Where in ``terminals`` the parts of the grammar may end that begin at a place."""
+    """Finds all places in ``terminals`` where a part of the grammar may end, given its start."""
 
     def __init__(self, terminals: Sequence[str]) -> None:
         self.terminals = terminals
@@ -94,7 +94,7 @@ def is_sentence(terminals: list[str]) -> bool:
 
 
 def sentence(random: Random, name: str = "sum", depth: int = 7) -> list[str]:
-    """Terminals that the grammar derives from ``name``; short ones where ``depth`` is used up."""
+    """Return random terminals that the grammar derives from ``name``, nested at most ``depth``."""
     if name.isupper():
         return [name]
     return expansion(random, GRAMMAR[name], depth - 1)
@@ -110,7 +110,7 @@ def expansion(random: Random, choices: list[list[Part]], depth: int) -> list[str
     return found
 
 
-# Its methods are called thousands of times: a mock would take most of the time for counting that.
+# Plain functions replace the mock's methods, which are called thousands of times and would be slow.
 BUILDER = Mock(spec=Builder)
 for _method in [name for name, member in vars(Builder).items() if isfunction(member)]:
     if not _method.startswith("__"):
@@ -126,21 +126,21 @@ def accepts(terminals: list[str]) -> bool:
     return True
 
 
-def test_the_grammar_names_every_method() -> None:
+def test_the_parser_uses_every_method_of_the_builder() -> None:
     methods = re.findall(r"builder\.(\w+)", getsource(parser))
     public = {name for name, member in vars(Builder).items() if isfunction(member)}
     assert set(methods) == {name for name in public if not name.startswith("_")}
     assert len(TERMINALS) == 17
 
 
-def test_what_the_grammar_derives_is_parsed() -> None:
+def test_every_sentence_of_the_grammar_is_parsed() -> None:
     random = Random(0)
     for _ in range(750):
         terminals = sentence(random)
         assert accepts(terminals), terminals
 
 
-def test_what_it_does_not_derive_is_refused() -> None:
+def test_other_terminals_are_refused() -> None:
     random = Random(1)
     refused = 0
     for _ in range(750):
@@ -178,7 +178,7 @@ def test_no_chain_nears_the_recursion_limit(chain: str, arm: Vocabulary) -> None
 
 
 @pytest.mark.parametrize("chain", ["-", "√", "tg ", "tg k^", "tg 2k^"])
-def test_a_long_chain_is_too_deep_or_too_large(chain: str, arm: Vocabulary) -> None:
+def test_a_long_chain_exceeds_a_limit(chain: str, arm: Vocabulary) -> None:
     text = chain * (LIMITS.characters // len(chain) - 1) + "k"
     with pytest.raises(ExpressionError, match=r"inside each other|operations and values|too long"):
         read(text, arm)

@@ -1,4 +1,4 @@
-"""LaTeX, as typed and not rearranged."""
+"""Formulas printed as LaTeX."""
 
 import pytest
 
@@ -7,7 +7,7 @@ from tests.expressions.printing.formulas import FORMULAS
 
 
 @pytest.mark.parametrize(("source", "text", "latex"), FORMULAS)
-def test_latex(source: str, text: str, latex: str, arm: Vocabulary) -> None:
+def test_latex_is_as_typed(source: str, text: str, latex: str, arm: Vocabulary) -> None:
     assert read(source, arm).latex() == read(text, arm).latex() == latex
 
 
@@ -21,5 +21,5 @@ def test_latex(source: str, text: str, latex: str, arm: Vocabulary) -> None:
         (Symbol("d3", "length", latex="d_3^*"), "d_3^*"),
     ],
 )
-def test_symbols(symbol: Symbol, latex: str) -> None:
+def test_a_symbol_is_printed_with_its_index(symbol: Symbol, latex: str) -> None:
     assert read(symbol.name, Vocabulary([symbol])).latex() == latex

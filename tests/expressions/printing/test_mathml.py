@@ -1,4 +1,4 @@
-"""MathML, as typed and not rearranged."""
+"""Formulas printed as MathML."""
 
 import xml.etree.ElementTree as ET
 
@@ -30,7 +30,7 @@ def test_mathml_is_well_formed(source: str, arm: Vocabulary) -> None:
         ("2rad", "2rad"),
     ],
 )
-def test_mathml_characters(source: str, characters: str, arm: Vocabulary) -> None:
+def test_mathml_is_as_typed(source: str, characters: str, arm: Vocabulary) -> None:
     element = ET.fromstring(read(source, arm).mathml())
     assert "".join(element.itertext()) == characters
 
@@ -51,7 +51,7 @@ def test_mathml_characters(source: str, characters: str, arm: Vocabulary) -> Non
 def test_mathml_shows_a_symbol_as_its_latex_does(
     latex: str | None, characters: str, elements: str
 ) -> None:
-    """What the LaTeX says beyond letters, indices and stars, MathML takes from the name."""
+    """For other LaTeX than letters, indices and stars, MathML uses the symbol's name."""
     symbol = Symbol("d3", "length", latex=latex)
     element = ET.fromstring(read("d3", Vocabulary([symbol])).mathml())
     assert "".join(element.itertext()) == characters

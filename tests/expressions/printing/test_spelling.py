@@ -1,4 +1,4 @@
-"""Formulas printed as a student writes."""
+"""Formulas printed in the student's spelling."""
 
 import pytest
 
@@ -24,7 +24,7 @@ def spelling(*typed: str, unit: AngleUnit = "radians") -> Spelling:
 
 
 def printed(formula: str, *typed: str, unit: AngleUnit = "radians") -> str:
-    """A formula in the spelling of what was typed."""
+    """Return ``formula`` in the common spelling of the ``typed`` formulas."""
     return to_text(read(formula, ARM).tree, spelling(*typed, unit=unit))
 
 
@@ -47,11 +47,11 @@ def test_joint_variables_have_the_names_that_were_typed(typed: str, text: str) -
     assert read(text, ARM).tree == read("theta1 + theta2*d3", ARM).tree
 
 
-def test_a_name_that_was_typed_itself_comes_before_one_made_like_it() -> None:
+def test_a_typed_name_precedes_a_derived_name() -> None:
     assert printed("theta1 + theta2 + theta4", "q1", "θ2") == "q1 + θ2 + q4"
 
 
-def test_other_letters_keep_the_way_that_they_were_typed() -> None:
+def test_other_symbols_have_the_names_that_were_typed() -> None:
     assert printed("l1 + alpha", "l_1 + α") == "l_1 + α"
 
 
@@ -65,7 +65,7 @@ def test_other_letters_keep_the_way_that_they_were_typed() -> None:
         ((r"90^\circ",), True, "°", "pi"),
         ((r"\pi/2",), False, "deg", "pi"),
         (("theta1", "0"), False, "deg", "pi"),
-        (("-90",), True, "deg", "pi"),  # meant in degrees, whatever it was read as
+        (("-90",), True, "deg", "pi"),  # read as radians, but meant in degrees
         (("1.5708",), False, "deg", "pi"),
     ],
 )
@@ -76,7 +76,7 @@ def test_the_unit_of_angles_is_that_of_most_entries(
     assert (found.in_degrees, found.degree, found.pi) == (in_degrees, degree, pi)
 
 
-def test_where_bare_numbers_are_degrees_a_right_angle_is_bare() -> None:
+def test_a_student_who_works_in_degrees_gets_bare_degrees() -> None:
     found = spelling("theta1", "90", unit="degrees")
     assert found.in_degrees
     assert to_text(read("90deg", ARM).tree, found) == "90"
@@ -85,7 +85,7 @@ def test_where_bare_numbers_are_degrees_a_right_angle_is_bare() -> None:
     assert spelling("90°", unit="degrees").degree == "°"
 
 
-def test_one_entry_is_answered_in_its_own_unit_and_names() -> None:
+def test_the_spelling_for_one_entry_has_its_own_unit_and_names() -> None:
     common = spelling("pi/2", "pi/2", "90°")
     assert spelling_for(read("90°", ARM).typed, common, ARM).degree == "°"
     assert spelling_for(read("90°", ARM).typed, common, ARM).in_degrees
@@ -104,13 +104,13 @@ def test_one_entry_is_answered_in_its_own_unit_and_names() -> None:
         ("cos(theta1 + theta1)", "cos(theta1 + theta1)"),
     ],
 )
-def test_shorthand_for_those_who_write_it(formula: str, text: str) -> None:
+def test_only_students_who_write_shorthand_get_it(formula: str, text: str) -> None:
     assert printed(formula, "s1") == text
     assert printed(formula, "sin(theta1)") == formula
     assert read(text, ARM).tree == read(formula, ARM).tree
 
 
-def test_no_shorthand_where_it_names_a_symbol() -> None:
+def test_no_shorthand_if_a_symbol_has_such_a_name() -> None:
     words = Vocabulary([*ARM.symbols, Symbol("c2", "length")])
     found = spelling_of([habits_of(read("s1", words).typed, words)], words, degrees=False)
     assert not found.shorthand

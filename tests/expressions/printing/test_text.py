@@ -1,4 +1,4 @@
-"""Normal text, which reads back to the same tree."""
+"""Formulas printed as normal text."""
 
 import pytest
 
@@ -7,7 +7,7 @@ from tests.expressions.printing.formulas import FORMULAS
 
 
 @pytest.mark.parametrize(("source", "text"), [formula[:2] for formula in FORMULAS])
-def test_text(source: str, text: str, arm: Vocabulary) -> None:
+def test_text_reads_back_to_the_same_tree(source: str, text: str, arm: Vocabulary) -> None:
     expression = read(source, arm)
     assert expression.text() == text
     assert read(text, arm).tree == expression.tree

@@ -1,9 +1,9 @@
-"""Each repair on its cases: texts that it refuses, and near ones that are read.
+"""Test each repair with its cases: texts that it refuses, and similar texts that are read.
 
-The cases of ``service/expressions/repairs/<name>.py`` stand in ``corpus/repairs/<name>.txt``, one
-a line, in the names of ``ROBOT``:
+The cases of ``service/expressions/repairs/<name>.py`` are in ``corpus/repairs/<name>.txt``, one on
+each line, with the names of ``ROBOT``:
 
-    text that is refused | code | from-to and what stands there | repaired text, or -
+    text that is refused | code | from-to and the text there | repaired text, or -
     text that is read | its meaning as normal text
 """
 
@@ -26,7 +26,7 @@ NAMES = corpus_files.repairs()
 CASES = [(name, case) for name in NAMES for case in repair_cases(name)]
 REFUSED = [(name, case) for name, case in CASES if case.code]
 ACCEPTED = [(name, case) for name, case in CASES if not case.code]
-# What a repair needs besides the names of the robot.
+# Symbols that the cases of a repair need in addition to the names of the robot.
 DECLARED = {"ambiguous_number": [Symbol("e1", "length"), Symbol("e", "number")]}
 
 
@@ -43,7 +43,7 @@ def test_every_rule_is_registered_once_and_has_cases() -> None:
 
 
 @together(("repair", "case"), REFUSED)
-def test_refused(repair: str, case: RepairCase) -> None:
+def test_a_slip_is_refused_with_its_repair(repair: str, case: RepairCase) -> None:
     names = vocabulary(repair)
     with pytest.raises(ExpressionError) as caught:
         read(case.text, names)
@@ -61,8 +61,8 @@ def test_refused(repair: str, case: RepairCase) -> None:
 
 
 @together("repair", NAMES)
-def test_a_message_shows_no_separator_of_records(repair: str) -> None:
-    """This character counts as blank space, so it may stand within whatever a message quotes."""
+def test_a_message_never_contains_a_record_separator(repair: str) -> None:
+    """The record separator counts as a blank, so a quotation in a message might contain it."""
     texts = {str(case.text) for case in repair_cases(repair) if len(str(case.text)) < 30}
     split = [f"{text[:i]}\x1e{text[i:]}" for text in texts for i in range(len(text) + 1)]
     messages = [error.message for error in map(partial(_error, vocabulary(repair)), split) if error]
@@ -78,8 +78,7 @@ def _error(names: Vocabulary, text: str) -> ExpressionError | None:
 
 
 @together(("repair", "case"), ACCEPTED)
-def test_accepted(repair: str, case: RepairCase) -> None:
-    """A near text is read, so the rule leaves it alone."""
+def test_a_similar_text_is_read(repair: str, case: RepairCase) -> None:
     assert read(case.text, vocabulary(repair)).text() == case.answer
 
 
@@ -113,6 +112,6 @@ def test_a_repaired_text_loses_nothing(text: str) -> None:
     assert joined.isdisjoint(_DIGITS.findall(repaired)), repaired
     if error.code not in {"raised_zero", "equation"}:
         assert sum(map(len, _DIGITS.findall(repaired))) >= sum(map(len, written)), repaired
-    # A unit may go where it is behind a variable, but then no number may be left without one.
+    # A unit after a variable may be removed, but then every number must have a unit.
     if error.code == "unit_on_variable" and "rad" not in text and "(" not in text:
         assert not _TERM.search(repaired), repaired

@@ -1,4 +1,4 @@
-"""Declared names."""
+"""Vocabularies of declared symbols."""
 
 import pytest
 
@@ -9,16 +9,16 @@ from service.expressions.vocabulary.symbols import normal_form
 @pytest.mark.parametrize(
     "name", ["theta1", "q1", "θ1", "θ_1", "θ₁", r"\theta_{1}", "theta_1", "q_{1}"]
 )
-def test_one_symbol_under_all_its_names(name: str) -> None:
+def test_a_symbol_is_found_by_all_its_names(name: str) -> None:
     symbol = joint_variable(1)
     assert Vocabulary([symbol]).by_name.get(normal_form(name)) is symbol
 
 
-def test_an_unknown_name() -> None:
+def test_an_unknown_name_is_not_found() -> None:
     assert Vocabulary([joint_variable(1)]).by_name.get(normal_form("q2")) is None
 
 
-def test_an_alias_in_greek_answers_in_ascii() -> None:
+def test_a_greek_alias_is_found_by_its_ascii_name() -> None:
     symbol = Symbol("a", "angle", aliases=("φ_{12}",))
     assert Vocabulary([symbol]).by_name.get(normal_form("phi12")) is symbol
 
@@ -40,12 +40,12 @@ def test_an_alias_in_greek_answers_in_ascii() -> None:
         [Symbol("", "number")],
     ],
 )
-def test_a_clash_is_refused(symbols: list[Symbol]) -> None:
+def test_clashing_or_unusable_names_are_refused(symbols: list[Symbol]) -> None:
     with pytest.raises(ValueError, match=r"name|joint"):
         Vocabulary(symbols)
 
 
-def test_equal_by_content() -> None:
+def test_vocabularies_with_the_same_symbols_are_equal() -> None:
     one, other = Vocabulary([joint_variable(1)]), Vocabulary([joint_variable(1)])
     assert one == other
     assert hash(one) == hash(other)

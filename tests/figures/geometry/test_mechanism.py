@@ -1,7 +1,7 @@
-"""The drawn points move as the robot does, by formulas that the drawing does not use.
+"""Drawn points move with the robot. The expected values use other formulas than the drawing.
 
-Figures go along screw axes; here everything is worked out by the link transforms of the table, or
-by SciPy's matrix exponential where a robot has no table.
+The drawing uses screw axes; the tests use the link transforms of the table, or SciPy's matrix
+exponential if a robot has no table.
 """
 
 from collections.abc import Mapping
@@ -26,7 +26,7 @@ ROBOTS = [name for name, exercise in SHIPPED.items() if exercise.reference is no
 
 
 def link_transform(row: Numbers, convention: Convention) -> Numbers:
-    """The transform of one row, multiplied out by hand from the two definitions."""
+    """Return the transform of one row, as the product of its two screw motions."""
     a, alpha, d, theta = row
     turn_x, turn_z = np.eye(4), np.eye(4)
     turn_x[1:3, 1:3] = [[np.cos(alpha), -np.sin(alpha)], [np.sin(alpha), np.cos(alpha)]]
@@ -36,7 +36,7 @@ def link_transform(row: Numbers, convention: Convention) -> Numbers:
 
 
 def bodies(exercise: Exercise, values: Mapping[str, float]) -> tuple[list[Numbers], list[Numbers]]:
-    """A frame on each body, the base first, and the frames whose z axes are the joints'."""
+    """Return a frame on each body, the base first, and frames whose z axes are the joint axes."""
     reference = exercise.reference
     each = {name: np.array([value]) for name, value in values.items()}
     if isinstance(reference, Robot):
@@ -71,7 +71,7 @@ def bodies(exercise: Exercise, values: Mapping[str, float]) -> tuple[list[Number
 
 
 @pytest.mark.parametrize("name", ROBOTS)
-def test_every_drawn_point_is_carried_by_its_link(name: str) -> None:
+def test_every_drawn_point_moves_with_its_link(name: str) -> None:
     exercise = SHIPPED[name]
     numbers = drawing_numbers(exercise.variables)
     assert exercise.reference is not None
@@ -91,7 +91,7 @@ def test_every_drawn_point_is_carried_by_its_link(name: str) -> None:
             if not joint.prismatic:
                 assert np.cross(centre - frame[:3, 3], frame[:3, 2]) == pytest.approx(0, abs=EXACT)
         for i, (body, line) in enumerate(zip(carried, shown.links, strict=True)):
-            # The first point of a link is in the joint before it, which may slide along it.
+            # The first point of a link is in the joint before it, along which the link may slide.
             points = line[1:] if i and exercise.joints[i - 1].prismatic else line
             rigid[i].append((points - body[:3, 3]) @ body[:3, :3])
     for seen in rigid:
@@ -114,7 +114,7 @@ def test_links_lead_from_joint_to_joint_without_a_gap(name: str) -> None:
 
 
 def test_joints_whose_axes_meet_are_drawn_apart() -> None:
-    """The wrist of the Stanford arm, and its shoulder."""
+    """The axes meet in the wrist and in the shoulder of the Stanford arm."""
     exercise = SHIPPED["stanford-arm"]
     numbers = drawing_numbers(exercise.variables)
     assert exercise.reference is not None
@@ -122,5 +122,5 @@ def test_joints_whose_axes_meet_are_drawn_apart() -> None:
     [shown] = mechanism.at(np.array([[numbers[joint.variable] for joint in exercise.joints]]))
     apart = np.linalg.norm(np.diff(shown.centres, axis=0), axis=1)
     assert apart.min() > 0.1 * mechanism.size
-    # With d3 drawn out the wrist centre is above the boom's box: joint 5 sits in it.
+    # With d3 extended, joint 5 is at the wrist centre, above the box of joint 3.
     assert shown.centres[4] == pytest.approx([0, numbers["d2"], numbers["d3"]])

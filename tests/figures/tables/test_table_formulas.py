@@ -1,4 +1,4 @@
-"""A table as formulas: they have the numbers of the table itself, whatever is in it."""
+"""The formulas of a table have the same values as the table itself."""
 
 from collections.abc import Iterable
 
@@ -43,7 +43,7 @@ def found(name: str, convention: Convention) -> TableFormulas:
 
 @pytest.mark.parametrize("convention", Convention)
 @pytest.mark.parametrize("name", TABLES)
-def test_formulas_have_the_numbers_of_the_table(name: str, convention: Convention) -> None:
+def test_formulas_have_the_values_of_the_table(name: str, convention: Convention) -> None:
     formulas = found(name, convention)
     rng = np.random.default_rng(5)
     variables = free_scope(TABLES[name][0]).variables
@@ -70,7 +70,7 @@ def test_parallel_axes_give_the_formulas_of_a_textbook() -> None:
     ]
 
 
-def test_what_is_unread_or_too_long_is_left_out() -> None:
+def test_unreadable_or_too_long_formulas_are_left_out() -> None:
     half = formulas_of([["a1", "0", "", "q1"]], "R", Convention.STANDARD)
     assert [cell and cell.text() for cell in half.cells[0]] == ["a1", "0", None, "theta1"]
     assert not half.converted
@@ -82,11 +82,11 @@ def test_what_is_unread_or_too_long_is_left_out() -> None:
 
 
 @pytest.mark.parametrize("convention", Convention)
-def test_a_table_without_rows_says_nothing(convention: Convention) -> None:
+def test_a_table_without_rows_has_no_formulas(convention: Convention) -> None:
     assert formulas_of(" ", "R", convention) == TableFormulas(())
 
 
-def test_no_more_is_printed_than_a_request_may_cost() -> None:
+def test_printing_stops_when_the_budget_is_used_up() -> None:
     rows = [[f"{'sin(30)' * 25}+{4 * i + j}" for j in range(4)] for i in range(12)]
     cells = [cell for row in formulas_of(rows, "R", Convention.STANDARD).cells for cell in row]
     printed = [cell is not None for cell in cells]

@@ -1,4 +1,4 @@
-"""The frames of tables as they are written, right or wrong."""
+"""The frames of students' tables, right or wrong."""
 
 import numpy as np
 import pytest
@@ -27,8 +27,8 @@ def framed(
 ELBOW = [["0", "90deg", "d1", "theta1"], ["a2", "0", "0", "q2"]]
 
 
-def test_an_elbow_by_hand() -> None:
-    """θ1 = 90° turns the arm to y; θ2 = 30° raises it."""
+def test_the_frames_of_an_elbow_are_those_computed_by_hand() -> None:
+    """θ1 = 90° turns the arm to y, and θ2 = 30° raises it."""
     found = framed(ELBOW, "RR", [[0, 0], [np.pi / 2, np.pi / 6]], d1=0.5, a2=2)
     assert found.complete
     assert found.frames.shape == (2, 3, 4, 4)
@@ -40,8 +40,8 @@ def test_an_elbow_by_hand() -> None:
     assert (found.freedoms, found.lost) == (2, ())
 
 
-def test_the_modified_convention_and_degrees() -> None:
-    """The same rows mean another arm: a and α come before d and θ."""
+def test_frames_follow_the_convention_and_the_angle_unit() -> None:
+    """In the modified convention, a and α come before d and θ, so the arm is another one."""
     found = framed(ELBOW, "RR", [[0, 0]], MODIFIED, d1=0.5, a2=2)
     assert found.frames[0, 2, :3, 3] == pytest.approx([2, -0.5, 0])
     scope = free_scope("R")
@@ -96,7 +96,7 @@ def test_lost_freedoms_are_named(
     assert [each.joints for each in found.lost] == lost
 
 
-def test_no_rows_at_all() -> None:
+def test_an_answer_without_rows_is_unreadable() -> None:
     with pytest.raises(UnreadableAnswerError):
         framed(7, "R", [[0]])
     assert framed({"rows": []}, "R", [[0]]).frames.shape == (1, 1, 4, 4)

@@ -1,4 +1,4 @@
-"""Limits before work."""
+"""Limits on pasted texts."""
 
 import pytest
 
@@ -17,13 +17,13 @@ from service.grids import GRID_LIMITS, GridError, read_grid
         ("a,b\n" + " " * GRID_LIMITS.characters, "too_long"),
     ],
 )
-def test_limits(text: str, code: str) -> None:
+def test_a_text_beyond_a_limit_is_refused(text: str, code: str) -> None:
     with pytest.raises(GridError) as caught:
         read_grid(text)
     assert caught.value.code == code
 
 
-def test_what_just_fits_the_limits_is_read() -> None:
+def test_a_text_exactly_at_a_limit_is_read() -> None:
     row = ",".join(["1"] * GRID_LIMITS.columns)
     assert read_grid("\n".join([row] * GRID_LIMITS.rows)).size == "13 × 12"
     assert len(read_grid("a,b".ljust(GRID_LIMITS.characters)).rows) == 1

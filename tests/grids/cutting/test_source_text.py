@@ -15,7 +15,7 @@ def test_each_span_is_the_place_of_its_cell(name: str) -> None:
                 assert text[slice(*cell.span(i, i + 1))] == letter
 
 
-def test_a_span_in_a_changed_cell_is_that_of_what_was_typed() -> None:
+def test_a_span_in_a_rewritten_cell_is_the_place_in_the_typed_text() -> None:
     text = "<table><tr><td>&alpha;<sub>1</sub>+foo</td></tr></table>"
     [[cell]] = read_grid(text).rows
     assert cell.text == "α_{1}+foo"

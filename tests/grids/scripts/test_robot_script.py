@@ -1,4 +1,4 @@
-"""Scripts for robotics toolboxes give the rows of their links, or say what leaves them open."""
+"""A script for a robotics toolbox gives one row for each link, or an error if it is ambiguous."""
 
 import tomllib
 from pathlib import Path
@@ -44,7 +44,7 @@ def test_a_dictionary_of_columns_keeps_its_headers() -> None:
     assert (found.convention, found.has_headers) == (None, True)
 
 
-def test_a_cell_is_where_it_is_written_and_an_implied_one_where_its_link_is() -> None:
+def test_an_implied_cell_has_the_place_of_its_link() -> None:
     text = "% a comment\nL(1) = Link('a', a1, ... comment\n  'd', 0.5, 'offset', pi/2);"
     [row] = table(text).grid.rows
     link = "Link('a', a1, ... comment\n  'd', 0.5, 'offset', pi/2)"
@@ -53,7 +53,7 @@ def test_a_cell_is_where_it_is_written_and_an_implied_one_where_its_link_is() ->
     assert (note.code, text[slice(*note.span)]) == ("script_rows", link)
 
 
-def test_numbers_that_a_script_gives_its_letters_are_told() -> None:
+def test_a_note_lists_letters_with_assigned_numbers() -> None:
     found = table("a1 = 0.4;\nm = 3;\nL(1) = Link([0 0 a1 0]);\nqz = 0;")
     assert [note.code for note in found.grid.notes] == ["script_rows", "given_numbers"]
     assert "to a1;" in found.grid.notes[1].message
@@ -69,7 +69,7 @@ def test_numbers_that_a_script_gives_its_letters_are_told() -> None:
         ("L(1) = Link(DH(1,:));", UNREAD, "DH(1,:)"),
         ("robot = SerialLink(L);", UNREAD, "L"),
         ("a1 = 2*b;\nL(1) = Link([0 0 a1 0]);", "given_value", "a1 = 2*b"),
-        # what a toolbox ignores, and a student may mean
+        # values that a toolbox ignores but a student may mean
         ("L(1) = Link([pi/2 0 a1 0]);", UNREAD, "pi/2"),
         ("L(1) = Link([q1+pi/2 0 a1 0 0 pi]);", UNREAD, "q1+pi/2"),
         (f"{JOINT}\nsetFixedTransform(j1,[0 0 0 pi/2],'dh')", UNREAD, "pi/2"),
@@ -106,7 +106,7 @@ def test_numbers_that_a_script_gives_its_letters_are_told() -> None:
         ("Link([" * 10000, "too_long", None),
     ],
 )  # fmt: skip
-def test_a_table_that_is_not_certain_is_refused(text: str, code: str, marked: str | None) -> None:
+def test_an_uncertain_table_is_refused(text: str, code: str, marked: str | None) -> None:
     with pytest.raises(GridError) as caught:
         read_robot(text)
     span = caught.value.span
@@ -128,5 +128,5 @@ def test_a_table_that_is_not_certain_is_refused(text: str, code: str, marked: st
         "{a1: 1, alpha2: 0, d1: 1}",
     ],
 )
-def test_other_texts_are_no_script(text: str) -> None:
+def test_other_texts_are_not_read_as_scripts(text: str) -> None:
     assert read_robot(text) is None

@@ -1,4 +1,4 @@
-"""Axes that were moved as one body are moved back."""
+"""Aligning the axes of an arm with those of the same arm, moved as a rigid body."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from tests.kinematics.constructions import trans
 SAMPLES = 3
 MOTION = trans(0.4, -1.1, 0.7) @ rot_z(0.9) @ rot_x(-2.0)
 UP = np.eye(4)
-# Joint frames, and which of them slide.
+# The joint frames of each arm, and True for prismatic joints.
 ARMS: dict[str, tuple[list[Matrices], list[bool]]] = {
     "skew axes": ([UP, trans(0.3, 0, 0) @ rot_x(0.8), trans(0, 0.5, 0.2)], [False] * 3),
     "parallel axes": ([UP, trans(0.3, 0, 0), trans(0.3, 0.4, 0)], [False] * 3),
@@ -24,7 +24,7 @@ ARMS: dict[str, tuple[list[Matrices], list[bool]]] = {
 
 
 @pytest.mark.parametrize("name", ARMS)
-def test_the_axes_of_a_moved_arm_come_to_lie_on_the_others(name: str) -> None:
+def test_aligned_axes_coincide_with_the_axes_of_the_moved_arm(name: str) -> None:
     joints, slides = ARMS[name]
     source = np.repeat(np.array(joints)[:, None], SAMPLES, axis=1)
     target = MOTION @ source

@@ -1,4 +1,4 @@
-"""The freedom of a free base lasts as long as the axes lie on one line."""
+"""The freedom of a free base remains as long as the axes coincide."""
 
 import numpy as np
 
@@ -16,7 +16,7 @@ def at(frame: Matrices) -> Matrices:
     return np.broadcast_to(frame, (SAMPLES, 4, 4))
 
 
-def test_a_turning_joint_leaves_a_turn_and_a_slide_along_its_axis() -> None:
+def test_a_revolute_joint_leaves_a_turn_and_a_slide_along_its_axis() -> None:
     freedom = BaseFreedom.on_first_axis(prismatic=False, samples=SAMPLES)
     assert freedom.turn
     assert not freedom.is_used_up
@@ -30,7 +30,7 @@ def test_a_turning_joint_leaves_a_turn_and_a_slide_along_its_axis() -> None:
     assert across.is_used_up
 
 
-def test_a_sliding_joint_leaves_the_frame_anywhere() -> None:
+def test_a_prismatic_joint_leaves_the_place_of_the_frame_free() -> None:
     freedom = BaseFreedom.on_first_axis(prismatic=True, samples=SAMPLES)
     assert freedom.anywhere
     turning = freedom.at_next(at(rot_x(1.0)), TargetKind.REVOLUTE, 1.0)
@@ -38,7 +38,7 @@ def test_a_sliding_joint_leaves_the_frame_anywhere() -> None:
     assert turning.slide is not None
 
 
-def test_a_slide_is_used_up_by_the_written_length() -> None:
+def test_the_slide_is_chosen_to_match_the_written_length() -> None:
     freedom = BaseFreedom.on_first_axis(prismatic=False, samples=SAMPLES)
     beyond = ROWS.copy()
     beyond[:, 2] -= 1.0
@@ -47,7 +47,7 @@ def test_a_slide_is_used_up_by_the_written_length() -> None:
     np.testing.assert_allclose(distance, -0.5)
 
 
-def test_a_turn_takes_the_written_angle() -> None:
+def test_the_turn_is_chosen_to_match_the_written_angle() -> None:
     freedom = BaseFreedom.on_first_axis(prismatic=False, samples=SAMPLES)
     np.testing.assert_array_equal(freedom.with_written_angle(ROWS, WRITTEN)[0, 3], WRITTEN[3])
     np.testing.assert_array_equal(BaseFreedom().with_written_angle(ROWS, WRITTEN), ROWS)

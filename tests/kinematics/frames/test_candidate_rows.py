@@ -1,4 +1,4 @@
-"""Every candidate leads to its target, and the rows that a textbook knows are among them."""
+"""Every candidate row leads to its target, and the candidates include the textbook's rows."""
 
 import numpy as np
 import pytest
@@ -31,7 +31,7 @@ RELATIONS = pytest.mark.parametrize("relation", TARGETS)
 
 
 def reached(rows: Numbers, target: Matrices) -> Matrices:
-    """The frames behind the rows, seen from the target: ``(H, K, L, 4, 4)``."""
+    """Return the frames after the rows, relative to the target: ``(H, K, L, 4, 4)``."""
     return np.asarray(inverse(target)[:, None] @ standard_link(*np.moveaxis(rows, 2, 0)))
 
 
@@ -55,13 +55,13 @@ def test_every_candidate_puts_z_on_the_line(relation: AxisRelation, written: Num
 
 
 @RELATIONS
-def test_every_candidate_for_a_sliding_joint_points_along_it(relation: AxisRelation) -> None:
+def test_every_candidate_for_a_prismatic_joint_is_parallel_to_it(relation: AxisRelation) -> None:
     target, written = TARGETS[relation], RNG.uniform(-1, 1, (4, SAMPLES))
     rows = candidate_rows(target, written, TargetKind.PRISMATIC, 1.0)
     frames = reached(rows, target)
     np.testing.assert_allclose(np.abs(frames[..., 2, 2]), 1, atol=1e-12)
     as_written = np.abs(rows[0, :, [0, 2]] - written[[0, 2], None]).max(axis=(0, 2))
-    assert (as_written == 0).any()  # the axis may be moved to where the row puts it
+    assert (as_written == 0).any()  # the axis may be where the written row puts it
 
 
 @RELATIONS
@@ -104,5 +104,5 @@ def test_an_open_tool_and_a_fixed_frame_take_the_row_as_written() -> None:
         np.testing.assert_array_equal(rows[0, 0], written)
 
 
-def test_the_other_value_stands_where_nothing_was_written() -> None:
+def test_the_other_value_is_used_if_nothing_was_written() -> None:
     np.testing.assert_array_equal(written_or(np.array([1.0, np.nan]), np.array([5.0, 6.0])), [1, 6])

@@ -1,4 +1,4 @@
-"""A chain seen from its tool is the inverse of the chain, and what is given there is found."""
+"""Reversed chains: the inverse product, and the nearest valid table from the tool."""
 
 from collections.abc import Sequence
 
@@ -16,7 +16,7 @@ Rows = Sequence[tuple[float, float, float, float]]
 
 SAMPLES = 3
 PI = np.pi
-# Two parallel axes, a third across them, a tool: rows (a, α, d, θ) that lead from base to tool.
+# Rows (a, α, d, θ) from base to tool: two parallel axes, a perpendicular third one, and a tool.
 REFERENCE: Rows = [(0, 0, 0, 0), (0.5, 0, 0.2, 0), (0.4, PI / 2, 0, 0), (0.1, 0, 0.3, 0)]
 KINDS = [TargetKind.REVOLUTE, TargetKind.REVOLUTE, TargetKind.REVOLUTE, TargetKind.TOOL]
 
@@ -48,13 +48,13 @@ OFFSETS = z_links(cells_of(REFERENCE)[1:])
 
 
 def seen_from_tool(table: Rows) -> tuple[float, Numbers]:
-    """The cost of the nearest valid table, and its rows in the order of the table."""
+    """Return the cost of the nearest valid table, and its rows in the order of the table."""
     targets = reversed_targets(TARGETS, OFFSETS)
     match = nearest_table(reversed_rows(rows_of(table)), targets, 0.5)
     return match.cost, -reversed_cells(match.rows)
 
 
-def test_the_rows_are_those_of_the_inverse_product() -> None:
+def test_the_reversed_rows_give_the_inverse_product() -> None:
     cells = cells_of(REFERENCE)
     backwards = np.array([row.written for row in reversed_rows(rows_of(REFERENCE))])
     product = compound(standard_link(*np.moveaxis(backwards, 1, 0)))
@@ -72,7 +72,7 @@ def test_the_reference_is_valid_from_its_tool() -> None:
     np.testing.assert_allclose(poses[:, 0] - np.eye(4), 0, atol=1e-12)
 
 
-def test_a_base_of_one_s_own_is_valid_from_the_tool() -> None:
+def test_another_base_is_valid_from_the_tool() -> None:
     cost, _ = seen_from_tool([(0, 0, 0, 0), (0.5, 0, 0.9, 1.1), *REFERENCE[2:]])
     assert cost < 1
 

@@ -1,4 +1,4 @@
-"""DH rows and screw axes as formulas."""
+"""Model answers: DH rows, screw axes, and poses that are too long."""
 
 from collections.abc import Callable, Mapping
 
@@ -7,7 +7,7 @@ import pytest
 from service.catalogue import Exercise
 from service.solutions import solve
 
-# Of row (l, −90°, h, φ) in each convention, multiplied out by hand.
+# The link transform of row (l, −90°, h, φ) in each convention, multiplied by hand.
 LINKS = {
     "standard": [
         ["cos(phi)", "0", "-sin(phi)", "l*cos(phi)"],
@@ -25,7 +25,7 @@ LINKS = {
 
 
 @pytest.mark.parametrize("convention", LINKS)
-def test_a_row_is_read_off_its_transform(
+def test_the_row_of_a_transform_is_found(
     convention: str, make_exercise: Callable[[str], Exercise]
 ) -> None:
     exercise = make_exercise(f"""
@@ -48,7 +48,7 @@ transform = {LINKS[convention]}
 
 
 def test_screw_axes_of_a_table(make_exercise: Callable[[str], Exercise]) -> None:
-    """The planar RR arm by Modern Robotics' definitions: S2 = (0,0,1; 0,−a1,0) and so on."""
+    """The expected axes of the arm follow from the definitions in Modern Robotics."""
     exercise = make_exercise("""
 title = "Two joints"
 source = "made for this test"
@@ -83,7 +83,7 @@ frame = "body"
 
 
 @pytest.mark.campaign
-def test_a_pose_too_long_to_hand_in_is_left_as_a_product(
+def test_a_pose_that_is_too_long_is_printed_as_a_product(
     make_exercise: Callable[[str], Exercise],
 ) -> None:
     rows = ", ".join(f'["0.1", "31deg", "0.1", "q{i}"]' for i in range(1, 9))
@@ -114,5 +114,5 @@ to = 2
     assert isinstance(tip.answer, list)
 
 
-def test_no_row_is_said(catalogue: Mapping[str, Exercise]) -> None:
+def test_a_transform_without_a_row_has_the_answer_none(catalogue: Mapping[str, Exercise]) -> None:
     assert solve(catalogue["dh-conditions"]).answers["second"] == {"none": True}

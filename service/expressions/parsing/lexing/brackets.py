@@ -1,4 +1,4 @@
-"""The brackets that are open while a text is read."""
+"""The stack of open brackets while a text is read."""
 
 import re
 from typing import Final
@@ -9,7 +9,7 @@ from service.expressions.limits import LIMITS
 
 PARTNERS: Final = {"(": ")", "[": "]", "{": "}", "|": "|", OPEN: CLOSE}
 _ROUND: Final = re.compile("[()]")
-# In place of a token: brackets around brackets mean nothing and become no tokens.
+# The token index of redundant braces around round brackets, which have no token.
 WRAPPING: Final = -1
 
 
@@ -22,15 +22,15 @@ class Brackets:
         self.opened: list[tuple[str, Span, int]] = []
 
     def open(self, bracket: str, span: Span, token: int) -> None:
-        """Open a bracket, the token at index ``token``. Raises UnreadableError for one too many."""
+        """Push the bracket of token ``token``. Raises UnreadableError if it is nested too deep."""
         if len(self.opened) >= LIMITS.depth:
             raise UnreadableError("beyond", span, limit="depth")
         self.opened.append((bracket, span, token))
 
     def close(self, bracket: str, span: Span) -> int | None:
-        """Close the innermost bracket; return its token's index, or None where none is open.
+        """Close the innermost bracket; return its token's index, or None if no bracket is open.
 
-        Raises UnreadableError where it is of another kind.
+        Raises UnreadableError if that bracket is of another kind.
         """
         if not self.opened:
             return None
@@ -40,12 +40,12 @@ class Brackets:
         return token
 
     def in_bars(self) -> bool:
-        """Whether the innermost bracket is a bar, as in |x|."""
+        """True if the innermost bracket is a bar, as in |x|."""
         return bool(self.opened) and self.opened[-1][0] == "|"
 
 
 def partners(text: str) -> dict[int, int]:
-    """The place of the closing round bracket for that of each opening one with a partner."""
+    """Map the place of each opening round bracket to that of its closing bracket, if it has one."""
     found: dict[int, int] = {}
     opened: list[int] = []
     for match in _ROUND.finditer(text):

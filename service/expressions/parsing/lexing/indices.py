@@ -16,10 +16,10 @@ _STEM: Final = re.compile(rf"[A-Za-z{greek.CLASS}]+$")
 
 
 class Indexed(NamedTuple):
-    """A run and its index, read together.
+    """A run of letters and its index in brackets, read together.
 
-    ``pieces`` are those of the run with the index behind it, None where that has no reading.
-    ``digits`` is the index as declared names carry it, ``end`` the place behind the brackets.
+    ``pieces`` are the pieces of the run followed by the index, None if they have no meaning.
+    ``digits`` is the index as in declared names, ``end`` the place after the brackets.
     """
 
     pieces: tuple[Piece, ...] | None
@@ -31,9 +31,9 @@ class Indexed(NamedTuple):
 def indexed(
     run: str, text: str, end: int, vocabulary: Vocabulary, *, from_one: bool = False
 ) -> Indexed | None:
-    """``run``, which ends at ``text[end]``, with the index in brackets behind it, if any.
+    """Return ``run``, which ends at ``text[end]``, with the index in brackets after it, or None.
 
-    ``from_one`` says that square brackets count from 1, too.
+    With ``from_one``, square brackets count from 1, too.
     """
     match = INDEX.match(text, end)
     if match is None or _STEM.search(run) is None:
@@ -50,12 +50,12 @@ def indexed(
 
 
 def is_family(run: str, vocabulary: Vocabulary) -> bool:
-    """Whether some name is ``run`` with an index: q, where there is a q1."""
+    """True if ``run`` with some index is a name: q, if q1 is declared."""
     return any(split(f"{run}{index}", vocabulary) for index in {1, 2, *vocabulary.joints})
 
 
 def _first(run: str, vocabulary: Vocabulary) -> int:
-    """The index of the first joint for a joint variable's letter, else 1."""
+    """Return the index of the first joint if ``run`` names joint variables; else 1."""
     for joint in vocabulary.joints:
         pieces = split(f"{run}{joint}", vocabulary)
         if pieces and pieces[-1].kind == "symbol" and pieces[-1].symbols[0].joint is not None:

@@ -1,13 +1,13 @@
-r"""The star behind a joint variable: the marker that tables print, or a product.
+r"""The star after a joint variable: the marker that tables print, or a product.
 
-Nothing behind it    θ1*, (d3*), atan2(q1*, k)    the marker
-+ behind it          θ1* + 90°, d3*+l1            the marker: nobody writes a product so
-- behind it          θ1* - 90°, θ1*-π/2           the marker, with a note
-                     d3*-l1                       a product, with a note
-anything else        q1*k                         a product
+Followed by nothing    θ1*, (d3*), atan2(q1*, k)    the marker
+Followed by +          θ1* + 90°, d3*+l1            the marker: nobody writes a product like this
+Followed by -          θ1* - 90°, θ1*-π/2           the marker, with a note
+                       d3*-l1                       a product, with a note
+Followed by others     q1*k                         a product
 
-A marked variable is the first factor of its term. Behind another factor (k*q1*), or behind a blank
-(q1 * + k), the star of the first three rows has no one reading; a raised star always marks.
+A marked variable is the first factor of its term. After another factor (k*q1*) or a blank
+(q1 * + k), a star in the first three rows is ambiguous. A raised star is always the marker.
 """
 
 import re
@@ -15,10 +15,10 @@ from typing import Final, Literal
 
 from service.expressions.characters.unicode import CLOSE, OPEN
 
-# How a star was read; "noted" where the sign behind it allows for another reading.
+# How a star was read; "noted" if the sign after it allows another reading.
 Star = Literal["marker", "noted_marker", "product", "noted_product", "ambiguous"]
 
-# Behind a marked joint variable, an angle is subtracted as often as added: θ1*-π/2, θ1*-90°,
+# An angle is subtracted from a marked joint variable as often as added: θ1*-π/2, θ1*-90°,
 # θ1*-\frac{\pi}{2}.
 _ANGLE_SUBTRACTED: Final = (
     rf"\s*-[\s({{{OPEN}]*(?:pi\b|π|[0-9.]+\s*+\*?+\s*+(?:pi\b|π)|[0-9.]+\s*(?:°|deg)|"
@@ -28,15 +28,15 @@ _NOTHING: Final = re.compile(r"\s*(?:[)\]},]|$)")
 _PLUS: Final = re.compile(r"\s*\+")
 _MINUS: Final = re.compile(r"\s*-")
 _SUBTRACTED: Final = re.compile(rf"\s+-\s|{_ANGLE_SUBTRACTED}")
-# These are read as stars, but mark nothing.
+# These are read as stars, but are never the marker.
 _DOTS: Final = frozenset({"·", "⋅", "×", r"\cdot", r"\times"})
 
 
 def read_star(text: str, start: int, end: int, typed: str, *, first: bool) -> Star:
-    """How the * at text[start:end], right behind a joint variable, is read.
+    """Return how to read the * at text[start:end], which follows a joint variable.
 
-    ``typed`` is the star as typed: a dot multiplies, whatever follows. ``first`` tells whether the
-    joint variable is the first factor of its term.
+    ``typed`` is the star as typed: a dot always multiplies. ``first`` is True if the joint variable
+    is the first factor of its term.
     """
     if typed in _DOTS:
         return "product"

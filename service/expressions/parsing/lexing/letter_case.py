@@ -1,6 +1,6 @@
-"""Names with other capitals than the declared ones: l1 where only L1 is declared.
+"""Names whose letter case differs from the declared one: l1 if only L1 is declared.
 
-Such a name is read where it has no other reading, and where one symbol alone has it.
+Such a name is read if it has no other reading and fits only one symbol.
 """
 
 from dataclasses import replace
@@ -17,9 +17,9 @@ _PLAIN: Final = frozenset(ascii_letters + digits)
 
 
 def split_in_other_case(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
-    """The pieces of a run that has none as it is written, or None.
+    """Split a run that has no reading as written, ignoring letter case. Return its pieces or None.
 
-    A single letter of another case is a name only where it stands alone.
+    A single letter of another case is a name only if it is the whole run.
     """
     pieces = split(run, _with_other_capitals(vocabulary))
     if pieces is None:
@@ -39,11 +39,11 @@ def split_in_other_case(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] |
 
 @lru_cache(maxsize=256)
 def _with_other_capitals(vocabulary: Vocabulary) -> Vocabulary:
-    """The vocabulary in which each symbol has its names in other capitals, too."""
+    """Return the vocabulary in which each symbol has its names in other letter cases, too."""
     owners: dict[str, dict[str, Symbol]] = {}
     for name, symbol in vocabulary.by_name.items():
         for other in {name.lower(), name.upper(), name[0].swapcase() + name[1:]}:
-            # A capital alpha is no name, for it looks like an A.
+            # A capital alpha is not accepted, because it looks like an A.
             if not set(other) - set(greek.CLASS) <= _PLAIN:
                 continue
             owners.setdefault(other, {})[symbol.name] = symbol

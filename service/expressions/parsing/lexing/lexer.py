@@ -27,7 +27,7 @@ _E_NAME: Final = re.compile(r"([eE])([+-]?)([0-9]+)$")
 _NUMERIC_FRACTION: Final = re.compile(rf"{OPEN}\{{?\s*[0-9]+\s*\}}?/\{{?\s*[0-9]+\s*\}}?{CLOSE}")
 _BEGINS_WRAPPED: Final = re.compile(r"\{\s*\(")
 _ENDS_WRAPPED: Final = re.compile(r"\)\s*\}")
-# A bar that LaTeX says to be a left one, and how far in front of it that is looked for.
+# A bar that LaTeX marks as a left bar, and how many characters before the bar are searched.
 _LEFT_REACH: Final = 40
 _LEFT_BAR: Final = re.compile(r"(?:\\(?:m?left|[bB]igg?l)\s*(?:\||\\[a-z]*)|\\lvert)\Z")
 _SIGNS: Final = frozenset({"PLUS", "MINUS"})
@@ -36,12 +36,12 @@ _FACTOR_OPERATORS: Final = frozenset({"STAR", "SLASH", "POWER"})
 
 
 class Lexer(WordLexer):
-    """One pass over the ``characters`` of ``source``."""
+    """Turns the ``characters`` of ``source`` into tokens, in one pass."""
 
     __slots__ = ()
 
     def run(self) -> list[Token]:
-        """The tokens, with END last. Raises UnreadableError."""
+        """Return the tokens, with END last. May raise UnreadableError."""
         text, match, position = self.text, _TOKEN.match, 0
         in_place, length = self.starts is None, len(text)
         while position < length:
@@ -58,7 +58,7 @@ class Lexer(WordLexer):
                 if terminal is None or (operator == "*" and self._is_joint()):
                     position = self._operator(operator, start, position)
                     continue
-                # Fast, for most tokens are such: an operator of one meaning in an unchanged text.
+                # A fast path for most tokens: an unambiguous operator in an unchanged text.
                 a, b = (start, position) if in_place else self._span(start, position)
                 self.tokens.append((terminal, None, a, b))
                 self.last = terminal
@@ -84,7 +84,7 @@ class Lexer(WordLexer):
         self._operand("NUMBER", Number(value, literal, *span), *span)
 
     def _check_power_of_ten(self, literal: str, span: Span) -> None:
-        """Refuse 2e1 where e1 is declared, and 2e-1 where e is."""
+        """Raise UnreadableError for 2e1 if e1 is declared, and for 2e-1 if e is declared."""
         match = _E_NAME.search(literal)
         assert match is not None
         letter, sign, digits = match.groups()
@@ -95,7 +95,7 @@ class Lexer(WordLexer):
     # --- operators and brackets
 
     def _operator(self, text: str, start: int, end: int) -> int:
-        """Read an operator or a bracket; return where to go on."""
+        """Read an operator or a bracket; return the place after it."""
         span = self._span(start, end)
         if text in "([{":
             self._open(text, start, span)
@@ -120,7 +120,7 @@ class Lexer(WordLexer):
         return end
 
     def _close(self, bracket: str, span: Span, end: int) -> int:
-        """Close a bracket; return where to go on."""
+        """Close a bracket; return the place after it."""
         opener = self.brackets.close(bracket, span)
         if bracket == "}" and self.last == "FUNCTION" and opener == len(self.tokens) - 2:
             # Braces around the name of a function mean nothing: {cos}^2 θ.
@@ -134,7 +134,7 @@ class Lexer(WordLexer):
         return end
 
     def _is_wrapped(self, start: int) -> bool:
-        r"""Whether braces hold nothing but round brackets: \sin{(q_1)}, as SymPy prints it."""
+        r"""True if braces enclose only round brackets: \sin{(q_1)}, as SymPy prints it."""
         inner = _BEGINS_WRAPPED.match(self.text, start)
         if inner is None:
             return False
@@ -155,7 +155,7 @@ class Lexer(WordLexer):
             self._operand("LEFT", None, *span)
 
     def _bar(self, span: Span) -> None:
-        r"""Read |x|: a bar behind an operand closes, any other opens, and so does \left|."""
+        r"""Read a bar of |x|: after an operand it closes; any other bar, and \left|, opens."""
         closes = self.last in OPERAND_ENDS and self.brackets.in_bars()
         if closes and not _LEFT_BAR.search(self.source, max(0, span[0] - _LEFT_REACH), span[1]):
             self.brackets.close("|", span)
@@ -182,7 +182,7 @@ class Lexer(WordLexer):
                 self.fraction_end = len(self.tokens) - 1
 
     def _star(self, start: int, end: int, span: Span) -> None:
-        """Read the * right behind a joint variable: its marker, or a product."""
+        """Read the * after a joint variable: its marker, or a product."""
         typed = self.source[slice(*span)]
         star = read_star(self.text, start, end, typed, first=self._is_first_factor())
         if star == "ambiguous":
@@ -193,7 +193,7 @@ class Lexer(WordLexer):
         self.notes.star(star, span)
 
     def _is_first_factor(self) -> bool:
-        """Whether the last operand begins a term: nothing, a bracket or a sign is before it."""
+        """True if the last operand begins a term: nothing, a bracket or a sign precedes it."""
         before = [token[0] for token in self.tokens[-3:-1]]
         if before and before[-1] in _SIGNS:
             before.pop()
@@ -201,7 +201,7 @@ class Lexer(WordLexer):
         return not before or before[-1] in _TERM_STARTS
 
     def _marker(self, span: Span) -> None:
-        """Read a raised star, which marks a joint variable and nothing else."""
+        """Read a raised star. Raises UnreadableError unless it marks a joint variable."""
         if not self._is_joint():
             raise UnreadableError("character", span)
         self.notes.star("marker", span)
@@ -209,7 +209,7 @@ class Lexer(WordLexer):
     # --- characters that cannot be read
 
     def _is_percent_pi(self, letter: str, at: int) -> bool:
-        """Whether a % begins Maxima's %pi, and no comment behind a value."""
+        """True if a % begins Maxima's %pi; after a value it begins a comment."""
         return letter == "%" and self.last not in OPERAND_ENDS and self.text.startswith("pi", at)
 
     def _stray(self, letter: str, span: Span) -> UnreadableError:

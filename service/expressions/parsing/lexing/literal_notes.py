@@ -1,6 +1,6 @@
-"""Notes on formulas that are read to the letter where something else is likely to be meant.
+"""Notes on formulas that are read literally although the student may mean something else.
 
-``θ1 + 90`` adds 90 radians, ``cos(1)`` is the cosine of 1 radian, ``s1+2`` is a sine and 2.
+``θ1 + 90`` adds 90 radians, ``cos(1)`` is the cosine of 1 radian, ``s1+2`` is a sine plus 2.
 """
 
 import math
@@ -13,7 +13,7 @@ from service.expressions.tree import Binary, Call, Negation, Node, Number, Symbo
 from service.expressions.vocabulary.functions import TRIGONOMETRIC
 from service.expressions.vocabulary.symbols import Symbol
 
-# A larger angle is a whole turn or more: 90, 180 or 22.5 radians are hardly meant.
+# Students hardly mean larger angles (90, 180 or 22.5) in radians.
 _WHOLE_TURN: Final = 2 * math.pi
 _SHORTHAND: Final = re.compile(r"(?:[cCsS]|cos|sin)_?[0-9₀-₉]+")
 _WORDS: Final = {"sin": "sine", "cos": "cosine"}
@@ -21,7 +21,7 @@ _DIGIT: Final = re.compile(r"[1-9]")
 
 
 def on_sum(left: Node, right: Node, *, degrees: bool) -> Note | None:
-    """The note on θ1 + 90, where a bare number of radians is added to an angle."""
+    """Return the note on θ1 + 90, a bare number of radians added to an angle, or None."""
     for one, other in ((left, right), (right, left)):
         number = _number(other)
         if number is not None and not degrees and _is_large(number) and _is_angle(one):
@@ -32,7 +32,7 @@ def on_sum(left: Node, right: Node, *, degrees: bool) -> Note | None:
 def on_shorthand(
     source: str, left: Node, right: Node, turning: Mapping[int, Symbol]
 ) -> Note | None:
-    """The note on s1+2, written without spaces, where 2 may belong to the index: s12."""
+    """Return the note on s1+2, whose 2 may belong to the index as in s12, or None."""
     if type(right) is not Number or not _DIGIT.fullmatch(right.literal):
         return None
     last, digit = left, right.literal
@@ -56,7 +56,7 @@ def on_shorthand(
 def on_call(
     function: str, argument: Node, turning: Mapping[int, Symbol], *, degrees: bool
 ) -> Note | None:
-    """The note on cos(1) and cos(90), where the angle of joint 1 or 90° may be meant."""
+    """Return the note on cos(1) or cos(90), which may mean joint angle 1 or 90°, or None."""
     number = _number(argument)
     if number is None or function not in TRIGONOMETRIC:
         return None
@@ -78,18 +78,18 @@ def _radians(number: Number) -> Note:
 
 
 def _number(node: Node) -> Number | None:
-    """A number with or without a sign."""
+    """Return ``node`` without its sign if it is a number; else None."""
     node = node.operand if type(node) is Negation else node
     return node if type(node) is Number else None
 
 
 def _is_large(number: Number) -> bool:
-    """Whether a number has at most the decimal .5, and is no angle that one writes in radians."""
+    """True if a number is more than a whole turn in radians, and a multiple of 0.5."""
     return number.value > _WHOLE_TURN and (2 * number.value).is_integer()
 
 
 def _is_angle(node: Node) -> bool:
-    """Whether a node is an angle's symbol, or its last or first part is one."""
+    """True if a node, or its left or right operand, is the symbol of an angle."""
     parts: list[Node] = [node]
     if type(node) is Binary:
         parts += [node.left, node.right]
@@ -98,6 +98,6 @@ def _is_angle(node: Node) -> bool:
 
 
 def _last_joint(argument: Node) -> int | None:
-    """The joint of the last angle in the sum that a shorthand stands for."""
+    """Return the joint of the last angle in the argument of a shorthand, or None."""
     last = argument.right if type(argument) is Binary else argument
     return last.symbol.joint if type(last) is SymbolNode else None

@@ -1,4 +1,4 @@
-"""Notes on single words that another reader might read otherwise."""
+"""Notes on single words that have another possible reading."""
 
 from typing import Final
 
@@ -38,14 +38,14 @@ class WordNotes:
             self.notes.append(Note(code, message, span))
 
     def star(self, star: Star, span: Span) -> None:
-        """Note a star that marks a joint variable, or that stands where a marker may stand."""
+        """Note a star that marks a joint variable, or that might mark it."""
         if star == "product":
             return
         code = "joint_marker" if star == "marker" else "marker_or_product"
         self._add(code, _PRODUCT if star == "noted_product" else _MARKER, span)
 
     def index(self, style: str, symbol: Symbol, span: Span) -> None:
-        """Note how q[0] or q(1) was counted."""
+        """Note whether the index of q[0] or q(1) was counted from 0 or 1."""
         code = "zero_based_index" if style == "[" else "one_based_index"
         self._add(code, _INDEXING[style].format(name=symbol.name), span)
 
@@ -66,17 +66,17 @@ class WordNotes:
             self._add("shorthand", message, (a, b))
 
     def other_capitals(self, name: str, a: int, b: int) -> None:
-        """Note l1 where only L1 is declared."""
+        """Note a name in another letter case: l1 if only L1 is declared."""
         self._add("letter_case", f"{quoted(self.source[a:b])} was read as {name}.", (a, b))
 
     def pi(self, a: int, b: int) -> None:
-        """Note Pi and PI."""
+        """Note that Pi or PI was read as the number."""
         of_program = self.source[a - 1 : a] in {".", ":"} or self.source[b : b + 2] == "()"
         if self.source[a:b] in PI_CAPITALS and not of_program:
             self._add("letter_case", "This was read as the number pi.", (a, b))
 
     def function(self, name: str, a: int, b: int) -> None:
-        """Note a name in capitals, a function of degrees, and acos where a is a symbol."""
+        """Note a function in capitals, a function of degrees, or acos if a is a symbol."""
         written = self.source[a:b]
         # Mathematica writes Cos[q1], and C# Math.Cos(q1).
         of_program = self.source[a - 1 : a] in {".", ":"} or self.source[b : b + 1] == "["

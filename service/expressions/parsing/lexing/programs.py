@@ -1,4 +1,4 @@
-"""Words as programs write them: np.cos, std::cos, M_PI_2, Subscript[θ, 1], 0.5f, %pi."""
+"""Words in the notation of programs: np.cos, std::cos, M_PI_2, Subscript[θ, 1], 0.5f, %pi."""
 
 import re
 from typing import Final
@@ -17,24 +17,24 @@ _COUNTS_FROM_ONE: Final = re.compile(
 
 
 def degrees_function_end(text: str, at: int) -> int | None:
-    """The end of ``radians`` or ``toRadians`` behind a module's name, else None."""
+    """Return the end of ``radians`` or ``toRadians`` after a module's name, or None."""
     found = _RADIANS.match(text, at)
     return found and found.end()
 
 
 def subscripted(text: str, at: int) -> tuple[str, int] | None:
-    """The name that ``Subscript`` makes of the brackets at ``text[at:]``, and where they end."""
+    """Return the name and the end of ``Subscript[name, index]``, given the place of its bracket."""
     found = _SUBSCRIPT.match(text, at)
     return found and (f"{found[1]}{found[2]}", found.end())
 
 
 def counts_from_one(text: str) -> bool:
-    """Whether an index in square brackets counts from 1, by the program that wrote ``text``."""
+    """True if ``text`` is from a program in which an index in square brackets counts from 1."""
     return _COUNTS_FROM_ONE.search(text) is not None
 
 
 def constant(name: str, start: int, end: int) -> Node:
-    """One of C's constants: π/2 for M_PI_2."""
+    """Return the tree of a constant of C: π/2 for M_PI_2."""
     form, value = CONSTANTS[name]
     number = Number(float(value), str(value), start, end)
     if form == "pi":

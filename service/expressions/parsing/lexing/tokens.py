@@ -1,4 +1,4 @@
-"""Tokens, and the writing of them: operands, and the products that are not written."""
+"""Tokens, and a writer that inserts a product token where a product sign is omitted."""
 
 from typing import Any, Final
 
@@ -48,15 +48,15 @@ class TokenWriter:
         self.last = ""
         self.brackets = Brackets()
         self.has_separators = not source.isprintable()
-        # The index of the CLOSE of a fraction of numbers right behind a function: sin ½q1.
+        # The index of the CLOSE of a fraction of numbers right after a function: sin ½q1.
         self.fraction_end = -1
         self.indices: list[tuple[Indexed, str, Span]] = []
-        # Found when they are asked for.
+        # Computed on first use.
         self.partners: dict[int, int] | None = None
         self.from_one: bool | None = None
 
     def _span(self, start: int, end: int) -> Span:
-        """The span as typed of the plain characters [start, end)."""
+        """Return the span in the typed text of the plain characters [start, end)."""
         if self.starts is None or self.ends is None:
             return start, end
         return self.starts[start], self.ends[end - 1]
@@ -66,7 +66,7 @@ class TokenWriter:
         self.last = terminal
 
     def _operand(self, terminal: str, value: Any, start: int, end: int) -> None:
-        """Emit the first token of an operand, and before it the product that is not written."""
+        """Emit the first token of an operand; after another operand, emit a product first."""
         if self.last in OPERAND_ENDS:
             tokens = self.tokens
             before = tokens[-1]

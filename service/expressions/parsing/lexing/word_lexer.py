@@ -26,12 +26,12 @@ _EXPONENT: Final = re.compile(
 
 
 class WordLexer(TokenWriter):
-    """Reads the runs of letters and digits of a text."""
+    """Turns runs of letters and digits into tokens."""
 
     __slots__ = ()
 
     def _word(self, run: str, start: int, end: int) -> int:
-        """Read a run of letters and digits; return where to go on."""
+        """Read a run of letters and digits; return the place after it."""
         if run in MODULES and (member := MEMBER.match(self.text, end)):
             return self._after_module(member.end())
         pieces = split(run, self.vocabulary)
@@ -59,7 +59,7 @@ class WordLexer(TokenWriter):
         return end
 
     def _note_product(self, run: str, pieces: tuple[Piece, ...], angle: Piece, start: int) -> None:
-        """Note cβ where c is a symbol: the product, and not the cosine."""
+        """Note cβ if c is a symbol: it is read as a product, not as a cosine."""
         before = pieces[pieces.index(angle) - 1]
         if before.kind == "symbol":
             a, b = self._span(start + before.start, start + angle.end)
@@ -68,14 +68,14 @@ class WordLexer(TokenWriter):
     def _piece(self, piece: Piece, start: int, end: int) -> int:
         """Emit a constant, a number or a unit of a run that begins at ``start``.
 
-        Return where to go on, which is at ``end`` unless more was read than the run.
+        Return the place after the text read: ``end``, or more if brackets after the run were read.
         """
         kind, word, stop = piece.kind, piece.word, start + piece.end
         a, b = self._span(start + piece.start, stop)
         if kind == "pi":
             self.notes.pi(a, b)
             self._operand("NAME", Pi(a, b), a, b)
-            # A spreadsheet's pi is a function of nothing: PI().
+            # In a spreadsheet, pi is a function without arguments: PI().
             return end + 2 * self.text.startswith("()", end)
         if kind == "constant":
             self._operand("NAME", constant(word, a, b), a, b)
@@ -88,7 +88,7 @@ class WordLexer(TokenWriter):
         return end
 
     def _after_module(self, at: int) -> int:
-        """Read what follows ``np.``, where radians(90) is 90 degrees; return where to go on."""
+        """Read ``radians`` after ``np.`` as degrees; return the place after it."""
         end = degrees_function_end(self.text, at)
         if end is None:
             return at
@@ -97,7 +97,7 @@ class WordLexer(TokenWriter):
         return end
 
     def _is_float_suffix(self, run: str, start: int) -> bool:
-        """Whether ``run`` is the mark of C's short numbers: 0.5f."""
+        """True if ``run`` is the suffix of a float in C: 0.5f."""
         return (
             run == "f"
             and self.last == "NUMBER"
@@ -106,7 +106,7 @@ class WordLexer(TokenWriter):
         )
 
     def _unsplit(self, run: str, start: int, end: int) -> tuple[tuple[Piece, ...], int]:
-        """Read a run that has no reading by itself; return the pieces and where to go on."""
+        """Read a run that ``split`` cannot read; return its pieces and the place after it."""
         if len(run) > LONGEST_RUN:
             raise self._unknown(run, start, end)
         if run == "Subscript" and (found := subscripted(self.text, end)):
@@ -118,7 +118,7 @@ class WordLexer(TokenWriter):
         return (other, end) if other else self._index(run, start, end)
 
     def _index(self, run: str, start: int, end: int) -> tuple[tuple[Piece, ...], int]:
-        """Read q[0], q(1) or q{1}; return the pieces and where to go on."""
+        """Read q[0], q(1) or q{1}; return the pieces and the place after it."""
         if self.from_one is None:
             self.from_one = counts_from_one(self.text)
         found = indexed(run, self.text, end, self.vocabulary, from_one=self.from_one)
@@ -140,7 +140,7 @@ class WordLexer(TokenWriter):
         return (*found.pieces[:-1], stretched), found.end
 
     def _check_indices(self) -> None:
-        """Refuse q[0] beside q(1), and beside q1: together they have no one reading."""
+        """Raise UnreadableError for q[0] together with q(1) or q1, which is ambiguous."""
         stems = set()
         for found, stem, span in self.indices:
             if found.style != self.indices[0][0].style:
@@ -166,13 +166,13 @@ class WordLexer(TokenWriter):
         self._operand("NAME", Call(piece.word, (total,), a, b), a, b)
 
     def _function(self, name: str, at: int, end: int, a: int, b: int) -> int:
-        """Emit a function with the power written on it; return where to go on."""
+        """Emit a function with the power after its name, if any; return the place after it."""
         if name == "rad2deg" or (name in IN_DEGREES and not self.degrees):
             raise UnreadableError("degrees", (a, b), name=name)
         self.notes.function(name, a, b)
         name = IN_DEGREES.get(name, name)
         power: int | None = None
-        # As most are called with a bracket, look at one character first.
+        # A fast path: most names are followed by a bracket.
         if at == end and self.text[at : at + 1] != "(":
             power, end = self._function_power(name, at, a, b)
             # Julia writes cos.(q).
@@ -181,7 +181,7 @@ class WordLexer(TokenWriter):
         return end
 
     def _function_power(self, name: str, at: int, a: int, b: int) -> tuple[int | None, int]:
-        """The power behind a function's name, if any, and where to go on."""
+        """Return the power after a function's name, or None, and the place after it."""
         raised = _FUNCTION_POWER.match(self.text, at)
         if raised is None:
             return None, at

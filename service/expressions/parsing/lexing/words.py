@@ -1,8 +1,8 @@
-"""A run of letters and digits -> the names, functions and units that it is made of.
+"""Split a run of letters and digits into names, functions and units.
 
-``l1c1`` is l1·c1 and ``2sinq1`` is 2·sin(q1): the longest known name first, trying shorter ones
-only where the rest of the run would otherwise make no sense. A name never ends between two digits,
-so q12 is not q1·2.
+``l1c1`` is l1·c1 and ``2sinq1`` is 2·sin(q1). The longest known name comes first; a shorter one is
+taken only if the rest of the run would otherwise have no meaning. A name never ends between two
+digits, so q12 is not q1·2.
 """
 
 import re
@@ -31,11 +31,11 @@ _WORDS: Final[dict[str, tuple[PieceKind, str]]] = {
     **dict.fromkeys(functions.PI, ("pi", "pi")),
 }
 _WHOLE: Final = functions.ALONE | _WORDS
-# An underscore behind one of these begins no new factor: a_b is no product.
+# An underscore after one of these does not begin a new factor: a_b is not a product.
 _NAMES: Final = frozenset({"symbol", "pi", "shorthand", "invalid_shorthand", "number", "unit"})
-# A longer run is no formula.
+# A longer run is not a formula.
 LONGEST_RUN: Final = 80
-# sind30 may be read as sin(d30): these need a bracket or a space before their number.
+# sind30 might mean sin(d30), so these functions need a bracket or a space before a number.
 _NOT_BEFORE_NUMBERS: Final = frozenset({*functions.OF_DEGREES, *functions.IN_DEGREES})
 
 
@@ -43,9 +43,9 @@ _NOT_BEFORE_NUMBERS: Final = frozenset({*functions.OF_DEGREES, *functions.IN_DEG
 class Piece:
     """One part of a run, ``run[start:end]``.
 
-    ``word`` is the canonical function or unit, or the digits of a number. ``symbols`` holds the
-    symbol, or the joint angles that a shorthand adds up. ``ambiguous`` marks a shorthand with
-    another reading: sin12. ``joint`` is the index that an invalid shorthand names.
+    ``word`` is the canonical function or unit, or the digits of a number. ``symbols`` are the
+    symbol, or the joint angles whose sum a shorthand means. ``ambiguous`` is True for a shorthand
+    with another reading, such as sin12. ``joint`` is the wrong index of an invalid shorthand.
     """
 
     kind: PieceKind
@@ -59,8 +59,8 @@ class Piece:
 
 @lru_cache(maxsize=8192)
 def split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
-    """The pieces of ``run`` (characters in normal form), or None where it has no reading."""
-    # The longest reading wins, and none is longer than the whole run.
+    """Return the pieces of ``run`` (plain characters), or None if it has no reading."""
+    # The longest reading wins, so try the whole run first.
     if (symbol := vocabulary.by_name.get(run)) is not None:
         return (Piece("symbol", 0, len(run), symbols=(symbol,)),)
     if (word := _WHOLE.get(run)) is not None:
@@ -89,9 +89,9 @@ def _with_underscores(piece: Piece, kept: list[int], run: str) -> Piece:
 
 
 def _split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
-    """The pieces of ``run``, found from the right, so that each position is split once."""
+    """Split ``run`` from right to left, so that each position is split once."""
     length = len(run)
-    # The first pieces of the reading from each position on, and whether it holds no invalid one.
+    # For each position: the first pieces of the rest of the run, and True if no piece is invalid.
     first: list[tuple[Piece, ...] | None] = [None] * length
     is_valid = [False] * length + [True]
     for start in range(length - 1, -1, -1):
@@ -111,7 +111,7 @@ def _split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
 
 
 def _joined(first: list[tuple[Piece, ...] | None]) -> tuple[Piece, ...] | None:
-    """The pieces of the whole run, given the first ones of the reading from each position on."""
+    """Return the pieces of the whole run, given the first pieces from each position on."""
     found: list[Piece] = []
     at = 0
     while at < len(first):
@@ -124,8 +124,8 @@ def _joined(first: list[tuple[Piece, ...] | None]) -> tuple[Piece, ...] | None:
 
 
 def _candidates(run: str, start: int, vocabulary: Vocabulary) -> list[tuple[Piece, ...]]:
-    """The readings from ``start`` on, the longest first, of equals a declared symbol first."""
-    shorthand = _shorthand(run, start, vocabulary) or _of_angle(run, start, vocabulary)
+    """Return the possible pieces at ``start``, longest first; a symbol precedes others as long."""
+    shorthand = _shorthand(run, start, vocabulary) or _angle_shorthand(run, start, vocabulary)
     found: list[tuple[Piece, ...]] = [] if shorthand is None else [(shorthand,)]
     for end in range(min(len(run), start + vocabulary.longest), start, -1):
         word = run[start:end]
@@ -147,14 +147,14 @@ def _candidates(run: str, start: int, vocabulary: Vocabulary) -> list[tuple[Piec
 
 
 def _shorthand(run: str, start: int, vocabulary: Vocabulary) -> Piece | None:
-    """The shorthand of joint angles at ``start``, if any: c12, s3, cθ1, cosθ12 or sin12."""
+    """Return the shorthand of joint angles at ``start``, or None: c12, s3, cθ1, cosθ12, sin12."""
     match = _SHORTHAND.match(run, start)
     if match is None or not vocabulary.joints:
         return None
     function, angle, index = match.group("function", "angle", "index")
     spelled = len(function) > 1
     if angle and (function in vocabulary.by_name or (spelled and len(index) == 1)):
-        # The plain reading comes first: c·θ1 where c is declared; cos θ1 is a cosine in any case.
+        # Other readings come first: c·θ1 if c is declared; cosθ1 is a plain function call.
         return None
     joints = _joints(index, vocabulary)
     wrong = [joint for joint in joints if joint not in vocabulary.turning]
@@ -174,8 +174,8 @@ def _shorthand(run: str, start: int, vocabulary: Vocabulary) -> Piece | None:
     )
 
 
-def _of_angle(run: str, start: int, vocabulary: Vocabulary) -> Piece | None:
-    """The shorthand of a declared angle at ``start``, if any: cα1, sβ."""
+def _angle_shorthand(run: str, start: int, vocabulary: Vocabulary) -> Piece | None:
+    """Return the shorthand of a declared angle at ``start``, or None: cα1, sβ."""
     function = _SHORT.get(run[start])
     if function is None or run[start] in vocabulary.by_name:
         return None
@@ -189,10 +189,10 @@ def _of_angle(run: str, start: int, vocabulary: Vocabulary) -> Piece | None:
 
 
 def _joints(index: str, vocabulary: Vocabulary) -> tuple[int, ...]:
-    """The joints that ``index`` names: one digit each, or else one joint from 10 on."""
+    """Return the joints in ``index``: one for each digit, or one joint with number 10 or more."""
     digits = tuple(map(int, index))
     if len(set(digits)) == len(digits) and set(digits).issubset(vocabulary.joints):
         return digits
-    # Twelve rows are the most that a table has; a longer index is no single joint.
+    # A table has at most twelve rows, so a longer index is not one joint.
     whole = int(index) if len(index) == 2 else -1
     return (whole,) if whole in vocabulary.joints else digits

@@ -1,4 +1,4 @@
-"""Readings that a student should know of, with the place in the text as typed."""
+"""Notes on ambiguous readings, with their places in the typed text."""
 
 import pytest
 
@@ -40,11 +40,13 @@ CASES = [
 
 
 @together(("text", "expected"), CASES)
-def test_notes(text: str, expected: list[tuple[str, tuple[int, int]]], arm: Vocabulary) -> None:
+def test_an_ambiguous_reading_has_a_note(
+    text: str, expected: list[tuple[str, tuple[int, int]]], arm: Vocabulary
+) -> None:
     assert [(note.code, note.span) for note in read(text, arm).notes] == expected
 
 
-def test_digits_behind_a_sine_in_degrees_have_two_readings(six: Vocabulary) -> None:
+def test_digits_after_a_sine_are_ambiguous_in_degrees(six: Vocabulary) -> None:
     assert read("sin45", six).notes[0].code == "shorthand"
     with pytest.raises(ExpressionError) as caught:
         read("sin45", six, angle_unit="degrees")
@@ -82,7 +84,7 @@ MORE: list[tuple[str, list[tuple[str, tuple[int, int]]]]] = [
     ("sin 30", [("bare_radians", (4, 6))]),
     ("l1cos(1)", [("bare_radians", (6, 7))]),
     ("cos(-2)", [("bare_radians", (5, 6))]),
-    # No joint 3 turns, and these are angles that one writes in radians.
+    # Joint 3 does not turn, and the other numbers are usual angles in radians.
     ("cos(3)", []),
     ("q1 + 1.5708", []),
     ("q1 + 7.854", []),
@@ -97,7 +99,7 @@ MORE: list[tuple[str, list[tuple[str, tuple[int, int]]]]] = [
     ("s1+2", [("shorthand", (0, 4))]),
     ("l1c1 + l2c1+2", [("shorthand", (9, 13))]),
     ("c_12+4", [("shorthand", (0, 6))]),
-    # Beside a space, or where no sum of joint angles is that one, 2 is a length.
+    # With spaces, or if there is no such sum of joint angles, 2 is a length.
     ("s1 + 2", []),
     ("s2+1", []),
     ("s1+3", []),
@@ -114,18 +116,18 @@ MORE: list[tuple[str, list[tuple[str, tuple[int, int]]]]] = [
 
 
 @together(("text", "expected"), MORE)
-def test_notes_on_other_spellings(
+def test_an_ambiguous_spelling_has_a_note(
     text: str, expected: list[tuple[str, tuple[int, int]]], arm: Vocabulary
 ) -> None:
     assert [(note.code, note.span) for note in read(text, arm).notes] == expected
 
 
-def test_a_number_beside_degrees_needs_no_note_where_all_are_degrees(arm: Vocabulary) -> None:
+def test_a_bare_number_next_to_degrees_has_no_note_in_degrees(arm: Vocabulary) -> None:
     expression = read("90 + 45°", arm, quantity="angle", angle_unit="degrees")
     assert expression.notes == ()
 
 
-def test_in_degrees_only_the_number_of_a_joint_is_noted(arm: Vocabulary) -> None:
+def test_in_degrees_only_a_joint_number_has_a_note(arm: Vocabulary) -> None:
     notes = {
         text: [note.code for note in read(text, arm, angle_unit="degrees").notes]
         for text in ("q1 + 90", "cos(90)", "cos(q1 + 90)", "cos(1)")
@@ -140,7 +142,7 @@ def test_in_degrees_the_inverse_functions_of_degrees_are_read(arm: Vocabulary) -
     assert [note.code for note in expression.notes] == ["degrees_function"]
 
 
-def test_acos_is_not_a_product_where_a_is_a_symbol() -> None:
+def test_acos_is_not_a_product_even_if_a_is_a_symbol() -> None:
     vocabulary = Vocabulary([Symbol("a", "length"), Symbol("k", "number")])
     [note] = read("acos(k)", vocabulary).notes
     assert (note.code, note.span) == ("function_name", (0, 4))

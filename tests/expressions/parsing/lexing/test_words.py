@@ -16,7 +16,7 @@ def test_a_declared_c_is_a_factor() -> None:
     assert read("cθ1", vocabulary).tree == read("c*θ1", vocabulary).tree
 
 
-def test_the_longest_name_is_read_but_a_shorter_one_where_that_makes_sense() -> None:
+def test_the_longest_name_that_leaves_a_readable_rest_is_read() -> None:
     vocabulary = Vocabulary([Symbol(name, "number") for name in ("a", "b", "ab", "bc", "d")])
     assert read("abd", vocabulary).tree == read("ab*d", vocabulary).tree
     assert read("abc", vocabulary).tree == read("a*bc", vocabulary).tree
