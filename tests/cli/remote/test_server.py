@@ -202,7 +202,7 @@ def test_the_environment_names_server_and_key(
             "has no part 'tabel'. Did you mean 'table'",
         ),
         (("--assignment", "hw.toml"), "exercises[0].id (line 3): There is no exercise 'own'"),
-        (("--exercise", "planar-rr", "--key", "a b"), "The key is empty or holds a character"),
+        (("--exercise", "planar-rr", "--key", "a b"), "The key is empty or has a character"),
     ],
 )
 def test_unknown_exercises_parts_and_keys_of_a_server_are_named(
