@@ -83,6 +83,6 @@ def fault_reason(error: Exception) -> str:
         case UnicodeDecodeError():
             return f"is not UTF-8 text: {error.reason}"
         case RecursionError():
-            return "has tables or lists too deep in each other"
+            return "has tables or lists nested too deep"
         case _:  # of TOML itself, or of a number with thousands of digits
             return f"is not TOML: {error}"
