@@ -151,7 +151,7 @@ class AttemptStore:
     async def override(
         self, attempt_id: str, points: float | None, reason_given: str, author: str
     ) -> ListedAttempt:
-        """Override the points of an attempt's report, or withdraw overrides with None.
+        """Override the points of an attempt's report; ``points=None`` withdraws the override.
 
         Raises UnknownAttemptError, UnusablePointsError.
         """

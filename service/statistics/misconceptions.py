@@ -32,7 +32,7 @@ class CountedSlip:
     _sentences: Counter[str] = field(default_factory=Counter)
 
     def add(self, submission: int, part: tuple[str, str], sentence: str) -> None:
-        """Count the slip in a part; add all parts of a submission one after the other."""
+        """Count the slip in a part. Add all parts of a submission before those of the next."""
         if not self.submissions or self.submissions[-1] != submission:
             self.submissions.append(submission)
         self.parts[part] += 1

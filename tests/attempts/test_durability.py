@@ -99,7 +99,7 @@ def killed_at_random(
 ) -> None:
     """Kill one replica after the other; assert that acknowledged attempts are recorded once.
 
-    Each is killed up to ``most`` seconds after clients got answers since the previous kill.
+    After each kill, wait for an answer of the others and up to ``most`` seconds more.
     """
     dice = random.Random(seed)
     logs = [folder / f"log{i}" for i in range(replicas)]

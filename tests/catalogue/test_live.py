@@ -1,4 +1,4 @@
-"""A catalogue with ``reload`` follows its files."""
+"""A catalogue with ``reload`` reads changed files again."""
 
 import logging
 import os

@@ -142,7 +142,7 @@ class Robot:
         return known[name] if isinstance(name, str) else name - self.joints[0].index + 1
 
     def has_frame(self, name: int | str) -> bool:
-        """True if ``frame`` accepts this name."""
+        """True if the robot has a frame of this name."""
         first = self.joints[0].index
         return isinstance(name, str) or first - 1 <= name < first + len(self.joints)
 

@@ -39,7 +39,7 @@ class ScrewRobot:
         return ("base", "tool")
 
     def has_frame(self, name: int | str) -> bool:
-        """True if ``frame`` accepts this name."""
+        """True if the robot has a frame of this name."""
         return name in self.frames
 
     def frame(self, name: int | str, values: SymbolValues, samples: int) -> Matrices:

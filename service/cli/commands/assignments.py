@@ -61,7 +61,7 @@ def _lines(assignment: Assignment) -> Iterator[Text]:
         level = assignment.ceiling(each)
         yield Text.assemble(
             "  ", (each.exercise.id, "bold"), f", {number(each.worth)} points: {parts}",
-            (f"; students are told {level}; files {visible(_files(each))}", "dim"),
+            (f"; feedback {level}; files {visible(_files(each))}", "dim"),
         )  # fmt: skip
 
 

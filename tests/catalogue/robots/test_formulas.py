@@ -171,7 +171,7 @@ FAULTS: dict[str, tuple[str, str, str]] = {
         "robot",
         "one for each",
     ),
-    "a robot's screw that is none": (
+    "a robot's invalid screw": (
         HEAD + SCREWS.replace('"0", "1", "0", "0"]]', '"0", "0", "0", "0"]]') + PART,
         "robot.screws[1]",
         "unit vector",
